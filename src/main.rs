@@ -1,0 +1,3 @@
+//! The `armctl` binary.
+
+fn main() {}
