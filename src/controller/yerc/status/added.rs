@@ -1,0 +1,145 @@
+//! The table of added status codes: what a row holds, and how one is found.
+
+use super::super::Model;
+use super::{link, robot};
+
+/// What an added status is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Class {
+    /// The command or the values that came with it.
+    Operand,
+    /// What the controller is doing, and its mode.
+    State,
+    /// Servo power, positions, panel locks, coordinates.
+    Servo,
+    /// Jobs and positions stored in the controller.
+    Job,
+    /// The text of a job or condition file that was loaded.
+    Syntax,
+    /// Backup functions and the devices they write to.
+    Backup,
+    /// Command, instance or attribute of the request.
+    Address,
+    /// The data of the request.
+    Data,
+    /// An error inside the controller.
+    System,
+    /// The controller has no time now.
+    Busy,
+    /// Files, and the frames they travel in.
+    File,
+}
+
+impl Class {
+    /// The class in words, for tables and JSON.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Operand => "command and operands",
+            Self::State => "controller state",
+            Self::Servo => "servo, position or panel",
+            Self::Job => "job or position data",
+            Self::Syntax => "job file syntax",
+            Self::Backup => "backup and devices",
+            Self::Address => "request addressing",
+            Self::Data => "request data",
+            Self::System => "system",
+            Self::Busy => "busy",
+            Self::File => "file and frame",
+        }
+    }
+}
+
+/// One added status code (FS and DX chapter 5).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AddedRow {
+    /// The code, 0x1010 to 0xFFFE.
+    pub code: u16,
+    /// What it is about.
+    pub class: Class,
+    /// The models whose manual prints it; none for the two codes that only other sources list (0xA100, 0xA102).
+    pub models: &'static [Model],
+    /// A few words.
+    pub name: &'static str,
+    /// What happened, and what usually leads to it.
+    pub cause: &'static str,
+    /// What to do now.
+    pub remedy: &'static str,
+}
+
+pub(super) const BOTH: &[Model] = &[Model::Fs100, Model::Dx200];
+pub(super) const DX200: &[Model] = &[Model::Dx200];
+pub(super) const NONE: &[Model] = &[];
+
+/// A row of the tables, in their column order.
+pub(super) const fn row(
+    code: u16,
+    class: Class,
+    models: &'static [Model],
+    name: &'static str,
+    cause: &'static str,
+    remedy: &'static str,
+) -> AddedRow {
+    AddedRow { code, class, models, name, cause, remedy }
+}
+
+/// The row of an added status code, if the code is known.
+pub fn added(code: u32) -> Option<&'static AddedRow> {
+    let code = u16::try_from(code).ok()?;
+    [robot::ROWS, link::ROWS].into_iter().find_map(|rows| {
+        let index = rows.binary_search_by_key(&code, |row| row.code).ok()?;
+        rows.get(index)
+    })
+}
+
+/// Every added status code, ascending.
+pub fn all_added() -> impl Iterator<Item = &'static AddedRow> {
+    robot::ROWS.iter().chain(link::ROWS)
+}
+
+/// Whether an added status says that the controller has no time now, so that the same request may succeed a moment
+/// later (DX chapter 5: 0xD8F1, 0xD8FA, 0xE444, 0xFFF6).
+pub fn is_busy(code: u32) -> bool {
+    added(code).is_some_and(|row| row.class == Class::Busy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_codes_of_the_manuals_and_two_more() {
+        let printed = |model| all_added().filter(|row| row.models.contains(&model)).count();
+        assert_eq!(all_added().count(), 146 + 2);
+        assert_eq!(printed(Model::Dx200), 146);
+        assert_eq!(printed(Model::Fs100), 105);
+        let elsewhere: Vec<u16> = all_added().filter(|row| row.models.is_empty()).map(|row| row.code).collect();
+        assert_eq!(elsewhere, [0xA100, 0xA102]);
+    }
+
+    #[test]
+    fn ascending_without_duplicates() {
+        let codes: Vec<u16> = all_added().map(|row| row.code).collect();
+        assert!(codes.is_sorted_by(|a, b| a < b));
+        assert!(all_added().all(|row| added(row.code.into()) == Some(row)));
+    }
+
+    #[test]
+    fn every_row_says_something_short_in_plain_ascii() {
+        for row in all_added() {
+            for text in [row.name, row.cause, row.remedy] {
+                assert!(text.len() >= 4 && text.len() <= 260, "{:#06X}: {} bytes: {text}", row.code, text.len());
+                assert!(text.bytes().all(|b| (0x20..0x7F).contains(&b)), "{:#06X}: {text}", row.code);
+                assert!(!text.contains("  "), "{:#06X}: {text}", row.code);
+            }
+            assert!(row.cause.ends_with('.') && row.remedy.ends_with('.'), "{:#06X}", row.code);
+        }
+    }
+
+    #[test]
+    fn four_codes_are_busy() {
+        let busy: Vec<u16> = all_added().filter(|row| is_busy(row.code.into())).map(|row| row.code).collect();
+        assert_eq!(busy, [0xD8F1, 0xD8FA, 0xE444, 0xFFF6]);
+        assert!(!is_busy(0x2010));
+        assert!(!is_busy(0x0001_D8F1));
+    }
+}

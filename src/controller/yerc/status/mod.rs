@@ -1,0 +1,297 @@
+//! What status and added status codes mean, and what to do about them (DX chapters 4 and 5, FS chapter 5).
+//!
+//! Names, causes and remedies are our own words. Where the evidence for a meaning is thin, the text says "hint".
+
+use std::borrow::Cow;
+
+use thiserror::Error;
+
+use super::Model;
+use super::wire::Status;
+
+mod added;
+mod link;
+mod robot;
+
+pub use added::{AddedRow, Class, added, all_added, is_busy};
+
+/// One status code. Only the DX200 manual prints a list (chapter 4); FS100 is expected to use the same codes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StatusRow {
+    /// The code.
+    pub code: u8,
+    /// The models whose manual prints it.
+    pub models: &'static [Model],
+    /// A few words.
+    pub name: &'static str,
+    /// What happened.
+    pub cause: &'static str,
+    /// What to do now.
+    pub remedy: &'static str,
+}
+
+/// In ascending order.
+static STATUSES: [StatusRow; 5] = [
+    StatusRow {
+        code: 0x00,
+        models: added::BOTH,
+        name: "done",
+        cause: "The controller carried the request out.",
+        remedy: "Nothing to do.",
+    },
+    StatusRow {
+        code: 0x08,
+        models: added::DX200,
+        name: "command not defined",
+        cause: "The controller does not know this command number.",
+        remedy: "Check the model (fs100 or dx200) and the software version (`armctl yerc info`): some commands are newer, \
+                 some exist on one model only.",
+    },
+    StatusRow {
+        code: 0x09,
+        models: added::DX200,
+        name: "element (attribute) number is invalid",
+        cause: "The command has no such field.",
+        remedy: "With `armctl yerc raw`, compare --attribute with the command's list or try 0; otherwise check the model.",
+    },
+    StatusRow {
+        code: 0x1F,
+        models: added::DX200,
+        name: "refused, see the added status",
+        cause: "The controller refused; the added status beside this code says why.",
+        remedy: "Look up the added status: `armctl explain yerc CODE`. If there is none, read the pendant and \
+                 `armctl yerc alarm list`.",
+    },
+    StatusRow {
+        code: 0x28,
+        models: added::DX200,
+        name: "array (instance) number does not exist",
+        cause: "What the request addresses is not there: a number beyond the last variable, signal, group or task, or \
+                number plus count running past the end (hint).",
+        remedy: "Check the number against this controller's ranges and the set model.",
+    },
+];
+
+/// The row of a status code, if the code is known.
+pub fn status(code: u8) -> Option<&'static StatusRow> {
+    STATUSES.iter().find(|row| row.code == code)
+}
+
+/// Every status code, ascending.
+pub fn all_statuses() -> impl Iterator<Item = &'static StatusRow> {
+    STATUSES.iter()
+}
+
+/// A code in words.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Explanation {
+    /// The code that says most, as hexadecimal: `0x2060` for an added status, `0x28` for a status without one.
+    pub code_text: String,
+    /// What the code is about; `None` for status codes and unknown ones.
+    pub class: Option<Class>,
+    /// The models whose manual prints the code.
+    pub models: &'static [Model],
+    /// Whether the code is in the tables.
+    pub known: bool,
+    /// A few words.
+    pub name: Cow<'static, str>,
+    /// What happened.
+    pub cause: Cow<'static, str>,
+    /// What to do now.
+    pub remedy: Cow<'static, str>,
+}
+
+/// Puts the result code of an answer in words. Always answers: an unknown code is named as such.
+///
+/// An added status says more than the status it stands beside, even beside status 0 (DX 3.1: 0xE29C and 0xE2A7 come
+/// with 0). Printed codes have 16 bits; of a two-word added status the lower word is looked up, as the manual leaves
+/// the upper one open (DX 3.1).
+pub fn explain(result: Status) -> Explanation {
+    if result.added_size == 0 || result.added == 0 {
+        return status(result.code).map_or_else(|| unknown_status(result.code), of_status);
+    }
+    let Some(row) = added(result.added & 0xFFFF) else {
+        return unknown_added(result.added);
+    };
+    Explanation { code_text: added_text(result.added), ..of_added(row) }
+}
+
+/// A text that is no code.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("'{text}' is no code: status codes have one or two hexadecimal digits, added status codes four, as in 0x2060")]
+pub struct NoCode {
+    /// What was given.
+    pub text: String,
+}
+
+/// Looks up a code that somebody typed: `2060`, `0x2060`, `e29c`, `1F`, `0x1f`. Codes are hexadecimal with or without
+/// the prefix. The result is never empty, and holds two entries only where a short code is in both tables.
+pub fn lookup(text: &str) -> Result<Vec<Explanation>, NoCode> {
+    let trimmed = text.trim();
+    let digits = trimmed.strip_prefix("0x").or_else(|| trimmed.strip_prefix("0X")).unwrap_or(trimmed);
+    let plain = !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_hexdigit());
+    let code = u32::from_str_radix(digits, 16).ok().filter(|_| plain);
+    let code = code.ok_or_else(|| NoCode { text: text.to_owned() })?;
+
+    let short = u8::try_from(code).ok();
+    let mut found: Vec<Explanation> = short.and_then(status).map(of_status).into_iter().collect();
+    found.extend(added(code).map(of_added));
+    if found.is_empty() {
+        let mut unknown = short.map_or_else(|| unknown_added(code), unknown_status);
+        if let Some(row) = digits.parse().ok().filter(|_| digits == trimmed).and_then(added) {
+            let hint = format!(" If {digits} was meant as a decimal number, it is 0x{:04X}: {}.", row.code, row.name);
+            unknown.remedy.to_mut().push_str(&hint);
+        }
+        found.push(unknown);
+    }
+    Ok(found)
+}
+
+fn of_status(row: &'static StatusRow) -> Explanation {
+    Explanation {
+        code_text: status_text(row.code),
+        class: None,
+        models: row.models,
+        known: true,
+        name: row.name.into(),
+        cause: row.cause.into(),
+        remedy: row.remedy.into(),
+    }
+}
+
+fn of_added(row: &'static AddedRow) -> Explanation {
+    Explanation {
+        code_text: added_text(row.code.into()),
+        class: Some(row.class),
+        models: row.models,
+        known: true,
+        name: row.name.into(),
+        cause: row.cause.into(),
+        remedy: row.remedy.into(),
+    }
+}
+
+fn unknown_status(code: u8) -> Explanation {
+    Explanation {
+        code_text: status_text(code),
+        class: None,
+        models: added::NONE,
+        known: false,
+        name: "unknown status code".into(),
+        cause: "No source lists this status. Any status other than 0x00 means that the request was not carried out as \
+                asked."
+            .into(),
+        remedy:
+            "Look for a message on the pendant and in `armctl yerc alarm list`. Record the exchange with --trace if \
+                 it comes again."
+                .into(),
+    }
+}
+
+fn unknown_added(code: u32) -> Explanation {
+    Explanation {
+        code_text: added_text(code),
+        class: None,
+        models: added::NONE,
+        known: false,
+        name: "unknown added status code".into(),
+        cause: "No source lists this added status; a newer controller or an option may have codes of its own.".into(),
+        remedy:
+            "Look for a message on the pendant. The number of an alarm is no added status: `armctl yerc alarm list` \
+                 shows its text."
+                .into(),
+    }
+}
+
+fn status_text(code: u8) -> String {
+    format!("0x{code:02X}")
+}
+
+fn added_text(code: u32) -> String {
+    format!("0x{code:04X}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(text: &str) -> Vec<String> {
+        lookup(text).unwrap().into_iter().map(|found| format!("{} {}", found.code_text, found.name)).collect()
+    }
+
+    #[test]
+    fn five_status_codes_ascending() {
+        let codes: Vec<u8> = all_statuses().map(|row| row.code).collect();
+        assert_eq!(codes, [0x00, 0x08, 0x09, 0x1F, 0x28]);
+        for row in all_statuses() {
+            assert_eq!(status(row.code), Some(row));
+            for text in [row.name, row.cause, row.remedy] {
+                assert!(text.len() >= 4 && text.is_ascii() && !text.contains("  "), "{:#04X}: {text}", row.code);
+            }
+        }
+    }
+
+    #[test]
+    fn the_added_status_speaks_for_a_refusal() {
+        let found = explain(Status::refused(0x2060));
+        assert_eq!((found.code_text.as_str(), found.class), ("0x2060", Some(Class::State)));
+        assert!(found.remedy.contains("alarm reset"), "{}", found.remedy);
+    }
+
+    #[test]
+    fn command_remote_names_the_switch() {
+        let found = explain(Status::refused(0x2100));
+        assert!(found.remedy.contains("#82015 CMD REMOTE SEL"), "{}", found.remedy);
+    }
+
+    #[test]
+    fn an_added_status_counts_beside_success() {
+        let result = Status { code: 0, added_size: 1, added: 0xE29C };
+        assert_eq!(explain(result).code_text, "0xE29C");
+        assert_eq!(explain(Status::OK).code_text, "0x00");
+    }
+
+    #[test]
+    fn a_two_word_code_is_found_by_its_lower_word_and_shown_whole() {
+        let found = explain(Status { code: 0x1F, added_size: 2, added: 0x0001_2070 });
+        assert!(found.known);
+        assert_eq!((found.code_text.as_str(), found.name.as_ref()), ("0x12070", "servo power is off"));
+    }
+
+    #[test]
+    fn what_nobody_lists_is_named_as_unknown() {
+        for result in [Status { code: 0x77, added_size: 0, added: 0 }, Status::refused(0x1234)] {
+            let found = explain(result);
+            assert!(!found.known && found.name.starts_with("unknown"), "{found:?}");
+            assert!(!found.cause.is_empty() && !found.remedy.is_empty());
+        }
+        assert_eq!(explain(Status { code: 0x77, added_size: 0, added: 0 }).code_text, "0x77");
+    }
+
+    #[test]
+    fn typed_codes() {
+        for text in ["2060", "0x2060", "0X2060", " 2060 "] {
+            assert_eq!(names(text), ["0x2060 an error or alarm is active"], "{text}");
+        }
+        for text in ["1f", "1F", "0x1F", "0x1f"] {
+            assert_eq!(names(text), ["0x1F refused, see the added status"], "{text}");
+        }
+        assert_eq!(names("0"), ["0x00 done"]);
+        assert_eq!(names("e29c"), ["0xE29C requested file does not exist or is empty"]);
+        assert_eq!(names("4315"), ["0x4315 unknown added status code"]);
+        assert_eq!(names("77"), ["0x77 unknown status code"]);
+    }
+
+    #[test]
+    fn a_decimal_code_is_recognised_as_a_slip() {
+        let found = lookup("8288").unwrap();
+        assert!(found[0].remedy.contains("0x2060"), "{}", found[0].remedy);
+    }
+
+    #[test]
+    fn no_codes() {
+        for text in ["", "0x", "hello", "+2060", "-1", "123456789", "20 60", "０ｘ２"] {
+            assert_eq!(lookup(text), Err(NoCode { text: text.to_owned() }), "{text}");
+        }
+    }
+}
