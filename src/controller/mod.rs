@@ -6,6 +6,7 @@
 
 use std::time::Duration;
 
+pub mod text;
 pub mod yerc;
 
 /// A moment, as time passed since an origin of the driver's choice. It never runs backwards.

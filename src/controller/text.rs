@@ -1,0 +1,444 @@
+//! Text as controllers store it: one encoding a robot, chosen by the language of its pendant.
+//!
+//! Decoding never fails: a byte that is no text is shown as `\xNN`. Encoding never guesses: a character that the
+//! encoding lacks is an error that names it. ASCII is the same in every encoding here, 0x5C (backslash) and 0x7E (tilde)
+//! included. Names of files and jobs go through [`Encoding::name`], which keeps the bytes where the text alone would not
+//! lead back to them.
+
+use std::fmt::{self, Write as _};
+use std::str::FromStr;
+
+use encoding_rs as rs;
+use thiserror::Error;
+
+/// A character encoding. The default, `Shift_JIS`, shows Japanese controllers right and leaves ASCII as it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Encoding {
+    /// Japanese, with the extensions of Windows code page 932.
+    #[default]
+    ShiftJis,
+    /// Japanese, Unix.
+    EucJp,
+    /// Chinese, simplified.
+    Gbk,
+    /// Chinese, traditional.
+    Big5,
+    /// Korean.
+    EucKr,
+    /// Western Europe, ISO 8859-1: byte and code point are the same number.
+    Latin1,
+    /// Western Europe, Windows.
+    Windows1252,
+    /// Central Europe, Windows.
+    Windows1250,
+    /// Cyrillic, Windows.
+    Windows1251,
+    /// Unicode.
+    Utf8,
+}
+
+/// Encoding, the name it is shown by, other names it is known by. Names are compared without case, `-`, `_` and blanks.
+const NAMES: [(Encoding, &str, &[&str]); 10] = [
+    (Encoding::ShiftJis, "shift_jis", &["sjis", "cp932", "ms932", "windows-31j", "ms_kanji"]),
+    (Encoding::EucJp, "euc-jp", &["ujis"]),
+    (Encoding::Gbk, "gbk", &["gb2312", "cp936", "chinese"]),
+    (Encoding::Big5, "big5", &["cp950", "big5-hkscs"]),
+    (Encoding::EucKr, "euc-kr", &["cp949", "uhc", "ks_c_5601-1987", "korean"]),
+    (Encoding::Latin1, "latin-1", &["iso-8859-1", "l1"]),
+    (Encoding::Windows1252, "windows-1252", &["cp1252"]),
+    (Encoding::Windows1250, "windows-1250", &["cp1250"]),
+    (Encoding::Windows1251, "windows-1251", &["cp1251"]),
+    (Encoding::Utf8, "utf-8", &["unicode"]),
+];
+
+/// A name that is no encoding.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("unknown text encoding '{name}'; there are {}", Encoding::names().collect::<Vec<_>>().join(", "))]
+pub struct UnknownEncoding {
+    /// What was given.
+    pub name: String,
+}
+
+/// A text that cannot be sent in an encoding.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum EncodeError {
+    /// The encoding has no such character.
+    #[error("'{}' (U+{:04X}), character {position} of the text, does not exist in {encoding}", .character.escape_debug(), u32::from(*.character))]
+    Character {
+        /// The character.
+        character: char,
+        /// Its place, counted in characters from 1.
+        position: usize,
+        /// The encoding that lacks it.
+        encoding: Encoding,
+    },
+    /// A NUL, which ends a text on the controller.
+    #[error("character {position} of the text is a NUL, which would cut the text there")]
+    Nul {
+        /// Its place, counted in characters from 1.
+        position: usize,
+    },
+    /// Longer than its field.
+    #[error("the text takes {len} bytes in {encoding}, but there is room for {max}")]
+    TooLong {
+        /// Bytes it takes.
+        len: usize,
+        /// Bytes there are.
+        max: usize,
+        /// The encoding it was measured in.
+        encoding: Encoding,
+    },
+}
+
+/// A name as a controller stores it, in text, and in bytes where the text does not lead back to them.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Name {
+    /// The name to show. Control characters are still in it; the output neutralises them.
+    pub text: String,
+    /// The bytes in hexadecimal, if encoding [`text`](Self::text) gives other bytes than the ones received.
+    pub hex: Option<String>,
+}
+
+impl Encoding {
+    /// The names that help texts and errors list.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        NAMES.into_iter().map(|(_, name, _)| name)
+    }
+
+    /// The name in settings, inventories and JSON.
+    pub fn label(self) -> &'static str {
+        NAMES.into_iter().find(|(encoding, ..)| *encoding == self).map_or("", |(_, name, _)| name)
+    }
+
+    /// Bytes as text. A byte that belongs to no character becomes `\xNN`; NULs stay, see [`until_nul`].
+    pub fn decode(self, bytes: &[u8]) -> String {
+        let Some(table) = self.table() else {
+            return bytes.iter().copied().map(char::from).collect();
+        };
+        let mut decoder = table.new_decoder_without_bom_handling();
+        let mut text = String::new();
+        let mut read = 0;
+        loop {
+            let rest = bytes.get(read..).unwrap_or_default();
+            // Room for the worst case, so that one call decodes up to the next malformed byte.
+            text.reserve(decoder.max_utf8_buffer_length_without_replacement(rest.len()).unwrap_or(0));
+            let (result, used) = decoder.decode_to_string_without_replacement(rest, &mut text, true);
+            read += used;
+            match result {
+                rs::DecoderResult::InputEmpty => return text,
+                rs::DecoderResult::OutputFull => {}
+                rs::DecoderResult::Malformed(bad, after) => {
+                    let end = read.saturating_sub(after.into());
+                    let start = end.saturating_sub(bad.into());
+                    for byte in bytes.get(start..end).unwrap_or_default() {
+                        push_escaped(&mut text, *byte);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Text as bytes, without a terminating NUL.
+    pub fn encode(self, text: &str) -> Result<Vec<u8>, EncodeError> {
+        let mut bytes = Vec::with_capacity(text.len());
+        for (index, character) in text.chars().enumerate() {
+            let missing = EncodeError::Character { character, position: index + 1, encoding: self };
+            self.push(character, &mut bytes).ok_or(missing)?;
+        }
+        Ok(bytes)
+    }
+
+    /// Text as bytes for a field of `max` bytes that a NUL ends early.
+    pub fn encode_within(self, text: &str, max: usize) -> Result<Vec<u8>, EncodeError> {
+        if let Some(index) = text.chars().position(|c| c == '\0') {
+            return Err(EncodeError::Nul { position: index + 1 });
+        }
+        let bytes = self.encode(text)?;
+        if bytes.len() > max {
+            return Err(EncodeError::TooLong { len: bytes.len(), max, encoding: self });
+        }
+        Ok(bytes)
+    }
+
+    /// Whether a text can be sent in a field of `max` bytes.
+    pub fn fits(self, text: &str, max: usize) -> bool {
+        self.encode_within(text, max).is_ok()
+    }
+
+    /// The name that bytes of a controller stand for.
+    pub fn name(self, bytes: &[u8]) -> Name {
+        let text = self.decode(bytes);
+        let exact = self.encode(&text).is_ok_and(|back| back == bytes);
+        let hex = (!exact).then(|| hex(bytes));
+        Name { text, hex }
+    }
+
+    /// The bytes of a name as it was shown: `\x80` to `\xff` stand for bytes that are no text, as [`decode`](Self::decode)
+    /// writes them; everything else is encoded.
+    pub fn encode_name(self, shown: &str) -> Result<Vec<u8>, EncodeError> {
+        let mut bytes = Vec::with_capacity(shown.len());
+        let mut rest = shown;
+        let mut position = 1;
+        while let Some(character) = rest.chars().next() {
+            let (len, count) = if let Some(byte) = escaped(rest) {
+                bytes.push(byte);
+                (ESCAPE_LEN, ESCAPE_LEN)
+            } else {
+                let missing = EncodeError::Character { character, position, encoding: self };
+                self.push(character, &mut bytes).ok_or(missing)?;
+                (character.len_utf8(), 1)
+            };
+            rest = rest.get(len..).unwrap_or_default();
+            position += count;
+        }
+        Ok(bytes)
+    }
+
+    /// Appends the bytes of a character, if it has bytes that lead back to it. Tables that send a look-alike instead
+    /// (the yen sign as a backslash) would damage names.
+    fn push(self, character: char, bytes: &mut Vec<u8>) -> Option<()> {
+        if character.is_ascii() {
+            bytes.push(u8::try_from(character).ok()?);
+            return Some(());
+        }
+        let Some(table) = self.table() else {
+            bytes.push(u8::try_from(character).ok()?);
+            return Some(());
+        };
+        let mut buffer = [0; 4];
+        let one: &str = character.encode_utf8(&mut buffer);
+        let (encoded, _, lost) = table.encode(one);
+        if lost || table.decode_without_bom_handling_and_without_replacement(&encoded)? != one {
+            return None;
+        }
+        bytes.extend_from_slice(&encoded);
+        Some(())
+    }
+
+    /// The conversion table; none for ISO 8859-1, which needs none (the web's "latin1" is Windows-1252).
+    fn table(self) -> Option<&'static rs::Encoding> {
+        match self {
+            Self::ShiftJis => Some(rs::SHIFT_JIS),
+            Self::EucJp => Some(rs::EUC_JP),
+            Self::Gbk => Some(rs::GBK),
+            Self::Big5 => Some(rs::BIG5),
+            Self::EucKr => Some(rs::EUC_KR),
+            Self::Latin1 => None,
+            Self::Windows1252 => Some(rs::WINDOWS_1252),
+            Self::Windows1250 => Some(rs::WINDOWS_1250),
+            Self::Windows1251 => Some(rs::WINDOWS_1251),
+            Self::Utf8 => Some(rs::UTF_8),
+        }
+    }
+}
+
+impl FromStr for Encoding {
+    type Err = UnknownEncoding;
+
+    fn from_str(text: &str) -> Result<Self, UnknownEncoding> {
+        let wanted = plain(text);
+        NAMES
+            .into_iter()
+            .find(|(_, name, others)| plain(name) == wanted || others.iter().any(|other| plain(other) == wanted))
+            .map(|(encoding, ..)| encoding)
+            .ok_or_else(|| UnknownEncoding { name: text.to_owned() })
+    }
+}
+
+impl fmt::Display for Encoding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.label())
+    }
+}
+
+/// The bytes before the first NUL, or all of them: text fields may fill their width.
+pub fn until_nul(bytes: &[u8]) -> &[u8] {
+    let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
+    bytes.get(..end).unwrap_or(bytes)
+}
+
+/// Bytes of an escape such as `\x80`.
+const ESCAPE_LEN: usize = 4;
+
+fn push_escaped(text: &mut String, byte: u8) {
+    write!(text, "\\x{byte:02x}").expect("writing to a String does not fail");
+}
+
+/// The byte that an escape at the start of `text` stands for. ASCII is never escaped, so its codes are no escapes.
+fn escaped(text: &str) -> Option<u8> {
+    let digits = text.strip_prefix("\\x")?.get(..2)?;
+    let lower_hex = digits.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
+    let byte = u8::from_str_radix(digits, 16).ok()?;
+    (lower_hex && byte >= 0x80).then_some(byte)
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::with_capacity(bytes.len() * 2), |mut text, byte| {
+        write!(text, "{byte:02x}").expect("writing to a String does not fail");
+        text
+    })
+}
+
+/// An encoding's name as names are compared.
+fn plain(name: &str) -> String {
+    name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn every() -> impl Iterator<Item = Encoding> {
+        NAMES.into_iter().map(|(encoding, ..)| encoding)
+    }
+
+    #[test]
+    fn a_job_label_a_japanese_controller() {
+        let field = [0x82, 0xC4, 0x82, 0xB7, 0x82, 0xC6, 0, 0, 0, 0];
+        assert_eq!(Encoding::default().decode(until_nul(&field)), "てすと");
+        assert_eq!(Encoding::ShiftJis.encode("てすと").unwrap(), field[..6]);
+    }
+
+    #[test]
+    fn half_width_katakana_and_full_width_letters_come_back() {
+        for (text, bytes) in [
+            ("ｱｲｳﾞ", &[0xB1, 0xB2, 0xB3, 0xDE][..]),
+            ("ＡＢ１", &[0x82, 0x60, 0x82, 0x61, 0x82, 0x50]),
+            ("溶接", &[0x97, 0x6E, 0x90, 0xDA]),
+            ("ソ表", &[0x83, 0x5C, 0x95, 0x5C]),
+            ("①髙", &[0x87, 0x40, 0xFB, 0xFC]),
+        ] {
+            assert_eq!(Encoding::ShiftJis.encode(text).unwrap(), bytes, "{text}");
+            assert_eq!(Encoding::ShiftJis.decode(bytes), text);
+        }
+    }
+
+    #[test]
+    fn ascii_is_ascii_everywhere() {
+        let ascii: Vec<u8> = (0..0x80).collect();
+        for encoding in every() {
+            let text = encoding.decode(&ascii);
+            assert!(text.bytes().eq(ascii.iter().copied()), "{encoding}");
+            assert_eq!(encoding.encode(&text).unwrap(), ascii, "{encoding}");
+        }
+    }
+
+    #[test]
+    fn other_languages() {
+        for (encoding, text, bytes) in [
+            (Encoding::Latin1, "Schweißen", &b"Schwei\xDFen"[..]),
+            (Encoding::Windows1252, "5€", b"5\x80"),
+            (Encoding::Windows1250, "Řez", b"\xD8ez"),
+            (Encoding::Windows1251, "Дом", b"\xC4\xEE\xEC"),
+            (Encoding::Gbk, "焊接", b"\xBA\xB8\xBD\xD3"),
+            (Encoding::Big5, "焊接", b"\xB2\x6B\xB1\xB5"),
+            (Encoding::EucKr, "용접", b"\xBF\xEB\xC1\xA2"),
+            (Encoding::EucJp, "てすと", b"\xA4\xC6\xA4\xB9\xA4\xC8"),
+            (Encoding::Utf8, "てす", b"\xE3\x81\xA6\xE3\x81\x99"),
+        ] {
+            assert_eq!(encoding.encode(text).unwrap(), bytes, "{encoding}");
+            assert_eq!(encoding.decode(bytes), text, "{encoding}");
+        }
+    }
+
+    #[test]
+    fn bytes_that_are_no_text_show_as_escapes() {
+        assert_eq!(Encoding::Utf8.decode(b"A\xFF\xFEB\xE3\x81"), "A\\xff\\xfeB\\xe3\\x81");
+        assert_eq!(Encoding::ShiftJis.decode(b"A\x81 B\x85\x41\x82"), "A\\x81 B\\x85A\\x82");
+        assert_eq!(Encoding::Utf8.decode(b"\xEF\xBB\xBFA"), "\u{FEFF}A");
+    }
+
+    #[test]
+    fn a_missing_character_is_named() {
+        let error = Encoding::ShiftJis.encode("AB한").unwrap_err();
+        assert_eq!(error.to_string(), "'한' (U+D55C), character 3 of the text, does not exist in shift_jis");
+        let error = Encoding::Latin1.encode("\u{202e}").unwrap_err();
+        assert!(error.to_string().starts_with("'\\u{202e}' (U+202E), character 1 "), "{error}");
+    }
+
+    #[test]
+    fn no_character_is_replaced_by_a_look_alike() {
+        for character in ["¥", "‾", "−"] {
+            assert!(Encoding::ShiftJis.encode(character).is_err(), "{character}");
+        }
+    }
+
+    #[test]
+    fn fields_count_bytes_not_characters() {
+        assert!(Encoding::ShiftJis.fits("てすと", 6));
+        assert!(!Encoding::ShiftJis.fits("てすと", 5));
+        assert!(!Encoding::Utf8.fits("てすと", 6));
+        let error = Encoding::Utf8.encode_within("てすと", 8).unwrap_err();
+        assert_eq!(error.to_string(), "the text takes 9 bytes in utf-8, but there is room for 8");
+        assert_eq!(Encoding::Utf8.encode_within("A\0", 8), Err(EncodeError::Nul { position: 2 }));
+    }
+
+    #[test]
+    fn names_of_encodings() {
+        for (name, encoding) in [
+            ("Shift_JIS", Encoding::ShiftJis),
+            ("shift-jis", Encoding::ShiftJis),
+            ("UTF8", Encoding::Utf8),
+            ("latin1", Encoding::Latin1),
+            ("ISO-8859-1", Encoding::Latin1),
+            ("CP932", Encoding::ShiftJis),
+            ("euckr", Encoding::EucKr),
+        ] {
+            assert_eq!(name.parse(), Ok(encoding), "{name}");
+        }
+        for encoding in every() {
+            assert_eq!(encoding.to_string().parse(), Ok(encoding));
+        }
+        let error = "klingon".parse::<Encoding>().unwrap_err().to_string();
+        assert!(error.contains("'klingon'") && error.contains("shift_jis") && error.contains("utf-8"), "{error}");
+        assert!("".parse::<Encoding>().is_err());
+    }
+
+    #[test]
+    fn a_name_keeps_its_bytes_where_text_does_not() {
+        assert_eq!(Encoding::ShiftJis.name(b"\x82\xC4.JBI"), Name { text: "て.JBI".into(), hex: None });
+        let odd = Encoding::ShiftJis.name(b"\x85\x41.JBI");
+        assert_eq!((odd.text.as_str(), odd.hex.as_deref()), ("\\x85A.JBI", Some("85412e4a4249")));
+        // Two places of the same character in Windows' table: only one of them is what the text encodes to.
+        let twin = Encoding::ShiftJis.name(b"\x87\x90");
+        assert_eq!((twin.text.as_str(), twin.hex.as_deref()), ("≒", Some("8790")));
+    }
+
+    #[test]
+    fn a_shown_name_is_understood() {
+        assert_eq!(Encoding::ShiftJis.encode_name("\\x85A.JBI").unwrap(), b"\x85A.JBI");
+        assert_eq!(Encoding::ShiftJis.encode_name("て\\x41\\xFF").unwrap(), b"\x82\xC4\\x41\\xFF");
+        let error = Encoding::ShiftJis.encode_name("\\xff한").unwrap_err();
+        assert!(matches!(error, EncodeError::Character { position: 5, .. }), "{error:?}");
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_lead_back_or_carry_hex(bytes in proptest::collection::vec(any::<u8>(), 0..64), which in 0..NAMES.len()) {
+            let encoding = NAMES[which].0;
+            let name = encoding.name(&bytes);
+            prop_assert_eq!(&name.text, &encoding.decode(&bytes));
+            match name.hex {
+                None => prop_assert_eq!(encoding.encode(&name.text).unwrap(), bytes),
+                Some(text) => prop_assert_eq!(text, hex(&bytes)),
+            }
+        }
+
+        #[test]
+        fn any_text_comes_back_or_is_refused(text in "\\PC{0,24}", which in 0..NAMES.len()) {
+            let encoding = NAMES[which].0;
+            if let Ok(bytes) = encoding.encode(&text) {
+                prop_assert_eq!(encoding.decode(&bytes), text);
+            }
+        }
+
+        #[test]
+        fn utf8_shows_every_byte(bytes in proptest::collection::vec(any::<u8>(), 0..64)) {
+            // A literal escape in the name would be taken for the byte; keep backslashes out.
+            prop_assume!(!bytes.contains(&b'\\'));
+            prop_assert_eq!(Encoding::Utf8.encode_name(&Encoding::Utf8.decode(&bytes)).unwrap(), bytes);
+        }
+    }
+}
