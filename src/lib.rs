@@ -5,5 +5,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`controller`] | what each controller understands: tables, codecs, sessions, simulators; no sockets, no clock, no clap |
+//! | [`output`] | the only writer to stdout and stderr; text made harmless for terminals |
 
 pub mod controller;
+pub mod output;

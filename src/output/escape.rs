@@ -1,0 +1,272 @@
+//! Text from outside made harmless for a terminal.
+//!
+//! Names and messages of a controller may hold any character. Printed as they are, some of them move the cursor, set
+//! the window title, reverse the direction of a line or hide text. [`line()`] and [`lines()`] turn them into visible
+//! escapes for people; [`Safe`] writes them as `\uXXXX` in JSON, which parses to the same value.
+
+use std::borrow::Cow;
+use std::fmt::Write as _;
+use std::io;
+use std::ops::RangeInclusive;
+
+use serde::Serialize;
+use serde_json::ser::{CompactFormatter, Formatter, PrettyFormatter, Serializer};
+
+/// One line of text: every character that a terminal does not simply draw becomes `\n`, `\x1b`, `\u{202e}`.
+/// A backslash stays a backslash; the result is for reading, not for parsing.
+pub fn line(text: &str) -> Cow<'_, str> {
+    neutralise(text, is_hidden)
+}
+
+/// Several lines of text: as [`line()`], but line feeds stay.
+pub fn lines(text: &str) -> Cow<'_, str> {
+    neutralise(text, |character| character != '\n' && is_hidden(character))
+}
+
+/// A value as JSON on one line, safe to print to a terminal.
+pub fn json_line<T: Serialize + ?Sized>(value: &T) -> serde_json::Result<String> {
+    json(value, CompactFormatter)
+}
+
+/// A value as indented JSON, safe to print to a terminal.
+pub fn json_pretty<T: Serialize + ?Sized>(value: &T) -> serde_json::Result<String> {
+    json(value, PrettyFormatter::new())
+}
+
+/// A JSON formatter that writes hidden characters inside strings as `\uXXXX`, and the rest as the formatter in it does.
+#[derive(Debug, Clone, Default)]
+pub struct Safe<F>(pub F);
+
+impl<F: Formatter> Formatter for Safe<F> {
+    /// What arrives here has been through the escapes that JSON demands; this adds those that terminals need.
+    fn write_string_fragment<W: ?Sized + io::Write>(&mut self, writer: &mut W, fragment: &str) -> io::Result<()> {
+        let mut rest = fragment;
+        while let Some((at, character)) = rest.char_indices().find(|(_, character)| is_hidden(*character)) {
+            let (plain, tail) = rest.split_at(at);
+            self.0.write_string_fragment(writer, plain)?;
+            for unit in character.encode_utf16(&mut [0; 2]) {
+                write!(writer, "\\u{unit:04x}")?;
+            }
+            rest = tail.get(character.len_utf8()..).unwrap_or_default();
+        }
+        self.0.write_string_fragment(writer, rest)
+    }
+
+    fn begin_array<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.begin_array(writer)
+    }
+
+    fn end_array<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.end_array(writer)
+    }
+
+    fn begin_array_value<W: ?Sized + io::Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
+        self.0.begin_array_value(writer, first)
+    }
+
+    fn end_array_value<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.end_array_value(writer)
+    }
+
+    fn begin_object<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.begin_object(writer)
+    }
+
+    fn end_object<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.end_object(writer)
+    }
+
+    fn begin_object_key<W: ?Sized + io::Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
+        self.0.begin_object_key(writer, first)
+    }
+
+    fn end_object_key<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.end_object_key(writer)
+    }
+
+    fn begin_object_value<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.begin_object_value(writer)
+    }
+
+    fn end_object_value<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.end_object_value(writer)
+    }
+}
+
+/// Characters beyond the controls that are drawn as nothing, steer the text around them, or break lines: Unicode's
+/// format characters (Cf), line and paragraph separators, and what it calls default-ignorable. Ascending.
+const HIDDEN: &[RangeInclusive<char>] = &[
+    '\u{00AD}'..='\u{00AD}',   // soft hyphen
+    '\u{034F}'..='\u{034F}',   // grapheme joiner
+    '\u{0600}'..='\u{0605}',   // Arabic number signs
+    '\u{061C}'..='\u{061C}',   // Arabic letter mark
+    '\u{06DD}'..='\u{06DD}',   // Arabic end of ayah
+    '\u{070F}'..='\u{070F}',   // Syriac abbreviation mark
+    '\u{0890}'..='\u{0891}',   // Arabic currency marks
+    '\u{08E2}'..='\u{08E2}',   // Arabic disputed end of ayah
+    '\u{115F}'..='\u{1160}',   // Hangul fillers
+    '\u{17B4}'..='\u{17B5}',   // Khmer inherent vowels
+    '\u{180B}'..='\u{180F}',   // Mongolian selectors and vowel separator
+    '\u{200B}'..='\u{200F}',   // zero-width characters, direction marks
+    '\u{2028}'..='\u{202E}',   // line and paragraph separator, direction embedding and override
+    '\u{2060}'..='\u{206F}',   // joiner, invisible operators, direction isolates
+    '\u{3164}'..='\u{3164}',   // Hangul filler
+    '\u{FE00}'..='\u{FE0F}',   // variation selectors
+    '\u{FEFF}'..='\u{FEFF}',   // byte order mark
+    '\u{FFA0}'..='\u{FFA0}',   // half-width Hangul filler
+    '\u{FFF0}'..='\u{FFFB}',   // interlinear annotation
+    '\u{110BD}'..='\u{110BD}', // Kaithi number sign
+    '\u{110CD}'..='\u{110CD}', // Kaithi number sign above
+    '\u{13430}'..='\u{1343F}', // hieroglyph joiners
+    '\u{1BCA0}'..='\u{1BCA3}', // shorthand controls
+    '\u{1D173}'..='\u{1D17A}', // musical controls
+    '\u{E0000}'..='\u{E0FFF}', // tags and more variation selectors
+];
+
+/// Whether a terminal does something else with a character than draw it.
+fn is_hidden(character: char) -> bool {
+    if character.is_ascii() {
+        return character.is_ascii_control();
+    }
+    character.is_control()
+        || HIDDEN
+            .binary_search_by(|range| {
+                if *range.end() < character {
+                    std::cmp::Ordering::Less
+                } else if *range.start() > character {
+                    std::cmp::Ordering::Greater
+                } else {
+                    std::cmp::Ordering::Equal
+                }
+            })
+            .is_ok()
+}
+
+fn neutralise(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
+    let Some(first) = text.find(&hidden) else {
+        return Cow::Borrowed(text);
+    };
+    let (clean, rest) = text.split_at(first);
+    let mut out = String::with_capacity(text.len() + 16);
+    out.push_str(clean);
+    for character in rest.chars() {
+        if hidden(character) {
+            push_escape(&mut out, character);
+        } else {
+            out.push(character);
+        }
+    }
+    Cow::Owned(out)
+}
+
+fn push_escape(out: &mut String, character: char) {
+    let code = u32::from(character);
+    let written = match character {
+        '\n' => out.write_str("\\n"),
+        '\r' => out.write_str("\\r"),
+        '\t' => out.write_str("\\t"),
+        '\0'..='\u{FF}' => write!(out, "\\x{code:02x}"),
+        _ => write!(out, "\\u{{{code:x}}}"),
+    };
+    written.expect("writing to a String does not fail");
+}
+
+fn json<T: Serialize + ?Sized>(value: &T, formatter: impl Formatter) -> serde_json::Result<String> {
+    let mut bytes = Vec::with_capacity(128);
+    value.serialize(&mut Serializer::with_formatter(&mut bytes, Safe(formatter)))?;
+    Ok(String::from_utf8(bytes).expect("serde_json writes UTF-8"))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use proptest::prelude::*;
+    use serde_json::{Value, json};
+
+    use super::*;
+
+    #[test]
+    fn plain_text_is_borrowed() {
+        for text in ["", "TESTJOB.JBI", "てすと ｱｲｳ 용접 é \\x1b"] {
+            assert!(matches!(line(text), Cow::Borrowed(same) if same == text));
+        }
+    }
+
+    #[test]
+    fn what_steers_a_terminal_becomes_visible() {
+        for (text, shown) in [
+            ("\x1b]0;title\x07", "\\x1b]0;title\\x07"),
+            ("a\0b\x7f", "a\\x00b\\x7f"),
+            ("\u{9b}31m", "\\x9b31m"),
+            ("job\u{202e}IBJ", "job\\u{202e}IBJ"),
+            ("a\u{200b}b\u{feff}", "a\\u{200b}b\\u{feff}"),
+            ("a\u{2028}b\u{2066}", "a\\u{2028}b\\u{2066}"),
+            ("soft\u{ad}", "soft\\xad"),
+            ("tag\u{e0041}", "tag\\u{e0041}"),
+            ("a\tb\r\nc", "a\\tb\\r\\nc"),
+        ] {
+            assert_eq!(line(text), shown);
+        }
+    }
+
+    #[test]
+    fn several_lines_keep_line_feeds_only() {
+        assert_eq!(lines("a\r\nb\x1b\u{85}c\n"), "a\\r\nb\\x1b\\x85c\n");
+        assert!(matches!(lines("a\nb\n"), Cow::Borrowed("a\nb\n")));
+    }
+
+    #[test]
+    fn the_table_is_ascending() {
+        assert!(HIDDEN.is_sorted_by(|a, b| a.start() <= a.end() && a.end() < b.start()));
+    }
+
+    #[test]
+    fn json_escapes_what_json_would_let_through() {
+        let value = json!({"name\u{9b}": "\x1b\x7f\u{85}\u{202e}\u{2028}\u{e0041}\"\\é溶"});
+        let text = json_line(&value).unwrap();
+        assert_eq!(text, r#"{"name\u009b":"\u001b\u007f\u0085\u202e\u2028\udb40\udc41\"\\é溶"}"#);
+        assert_eq!(serde_json::from_str::<Value>(&text).unwrap(), value);
+    }
+
+    #[test]
+    fn both_layouts_are_those_of_serde_json() {
+        let value = json!({"a": [1, 2.5, [], {}], "b": {"c": null, "d": [true, "x"]}, "e": "y"});
+        assert_eq!(json_line(&value).unwrap(), serde_json::to_string(&value).unwrap());
+        assert_eq!(json_pretty(&value).unwrap(), serde_json::to_string_pretty(&value).unwrap());
+    }
+
+    /// Text rich in the characters that matter here.
+    fn nasty() -> impl Strategy<Value = String> {
+        let character = prop_oneof![
+            any::<char>(),
+            prop::char::range('\0', '\u{FF}'),
+            prop::char::range('\u{2000}', '\u{206F}'),
+            prop::sample::select(HIDDEN.iter().map(|range| *range.end()).collect::<Vec<_>>()),
+        ];
+        prop::collection::vec(character, 0..40).prop_map(String::from_iter)
+    }
+
+    proptest! {
+        #[test]
+        fn nothing_hidden_is_left(text in nasty()) {
+            let shown = line(&text);
+            prop_assert!(!shown.chars().any(|c| c.is_control() || is_hidden(c)), "{:?}", shown);
+            let shown = lines(&text);
+            prop_assert!(!shown.chars().any(|c| c != '\n' && (c.is_control() || is_hidden(c))), "{:?}", shown);
+            prop_assert_eq!(shown.matches('\n').count(), text.matches('\n').count());
+            let once = line(&text);
+            prop_assert_eq!(line(&once), once.as_ref());
+        }
+
+        #[test]
+        fn json_is_safe_and_means_the_same(map in prop::collection::btree_map(nasty(), nasty(), 0..6)) {
+            for text in [json_line(&map).unwrap(), json_pretty(&map).unwrap()] {
+                prop_assert!(!text.chars().any(|c| c != '\n' && (c.is_control() || is_hidden(c))), "{:?}", text);
+                let back: BTreeMap<String, String> = serde_json::from_str(&text).unwrap();
+                prop_assert_eq!(&back, &map);
+            }
+            prop_assert!(!json_line(&map).unwrap().contains('\n'));
+        }
+    }
+}
