@@ -4,8 +4,17 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | [`settings`] | which robots, and every setting with where it came from; target URLs; the inventory |
+//! | [`gate`] | what stands between a typed command and a machine |
 //! | [`controller`] | what each controller understands: tables, codecs, sessions, simulators; no sockets, no clock, no clap |
 //! | [`output`] | the only writer to stdout and stderr; text made harmless for terminals |
+//! | [`failure`] | how a command can fail, and the only place with exit numbers |
+//!
+//! Dependencies run one way: command to controller, transport and output; controller and transport never see each other.
+//! A test holds that.
 
 pub mod controller;
+pub mod failure;
+pub mod gate;
 pub mod output;
+pub mod settings;

@@ -1,3 +1,174 @@
-//! The only writer to stdout and stderr, and what makes text fit to be written there.
+//! The only writer to stdout and stderr.
+//!
+//! stdout carries data only; prompts, progress, hints and logs go to stderr.
 
+pub mod envelope;
 pub mod escape;
+pub mod jq;
+pub mod progress;
+pub mod prompt;
+pub mod render;
+pub mod view;
+
+use std::io::{self, IsTerminal, Write};
+
+use serde::Serialize;
+
+use crate::failure::{Failure, Kind};
+
+/// How data is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Format {
+    /// Tables for people.
+    Table,
+    /// One envelope, or an array of them.
+    Json,
+    /// An envelope a line, with the time.
+    Jsonl,
+    /// Comma-separated values.
+    Csv,
+}
+
+/// When to use colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum ColorChoice {
+    /// On a terminal that can, unless `NO_COLOR` is set.
+    Auto,
+    /// Even into a file.
+    Always,
+    /// Not at all.
+    Never,
+}
+
+/// Where everything is written, and how.
+#[derive(Debug)]
+pub struct Screen {
+    /// How data is written.
+    pub format: Format,
+    /// Nothing on stderr but errors and questions.
+    pub quiet: bool,
+    /// `-v` 1 summary, `-vv` 2 frames, `-vvv` 3 bytes.
+    pub verbosity: u8,
+    color: ColorChoice,
+}
+
+impl Screen {
+    /// Everything as flags and environment want it.
+    pub fn new(format: Format, color: ColorChoice, quiet: bool, verbosity: u8) -> Self {
+        Self { format, quiet, verbosity, color }
+    }
+
+    /// Whether errors are JSON too.
+    pub fn is_json(&self) -> bool {
+        matches!(self.format, Format::Json | Format::Jsonl)
+    }
+
+    /// Whether stdout is a terminal.
+    pub fn is_stdout_terminal(&self) -> bool {
+        io::stdout().is_terminal()
+    }
+
+    /// Whether a person can be asked: stdin and stderr are terminals.
+    pub fn can_ask(&self) -> bool {
+        io::stdin().is_terminal() && io::stderr().is_terminal()
+    }
+
+    /// Whether progress can redraw itself on stderr.
+    pub fn can_redraw(&self) -> bool {
+        !self.quiet && io::stderr().is_terminal() && !is_dumb()
+    }
+
+    /// Columns that tables may fill.
+    pub fn width(&self) -> u16 {
+        if io::stdout().is_terminal() { console_width() } else { 80 }
+    }
+
+    /// Whether stdout is coloured.
+    pub fn stdout_color(&self) -> bool {
+        self.wants_color(io::stdout().is_terminal())
+    }
+
+    fn wants_color(&self, is_terminal: bool) -> bool {
+        match self.color {
+            ColorChoice::Always => true,
+            ColorChoice::Never => false,
+            ColorChoice::Auto => is_terminal && !is_dumb() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty()),
+        }
+    }
+
+    /// Writes data.
+    pub fn data(&self, text: &str) -> Result<(), Failure> {
+        self.bytes(text.as_bytes())
+    }
+
+    /// Writes data as it is.
+    pub fn bytes(&self, bytes: &[u8]) -> Result<(), Failure> {
+        let mut stdout = io::stdout().lock();
+        stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|error| Failure::io("stdout", &error))
+    }
+
+    /// Writes a value as JSON: a line in a pipe or as `jsonl`, indented on a terminal.
+    pub fn json(&self, value: &impl Serialize) -> Result<(), Failure> {
+        let pretty = self.format == Format::Json && self.is_stdout_terminal();
+        let mut text = if pretty { escape::json_pretty(value) } else { escape::json_line(value) }
+            .map_err(|error| Failure::local(format!("report as JSON: {error}")))?;
+        text.push('\n');
+        self.data(&text)
+    }
+
+    /// Says something on stderr, unless `--quiet`.
+    pub fn note(&self, text: &str) {
+        if !self.quiet {
+            Self::stderr(&format!("{}\n", escape::lines(text)));
+        }
+    }
+
+    /// Says something on stderr from `-v` times `level` on.
+    pub fn detail(&self, level: u8, text: &str) {
+        if self.verbosity >= level {
+            Self::stderr(&format!("{}\n", escape::lines(text)));
+        }
+    }
+
+    /// Reports a failure on stderr: `error:`, then `hint:` after an empty line.
+    pub fn failure(&self, failure: &Failure) {
+        if failure.kind == Kind::PipeClosed {
+            return;
+        }
+        let color = self.wants_color(io::stderr().is_terminal());
+        let paint = |code: &str, word: &str| if color { format!("\x1b[{code}m{word}\x1b[0m") } else { word.to_owned() };
+        let label = if failure.kind == Kind::Interrupted { "interrupted:" } else { "error:" };
+        let code = failure.code.as_ref().map(|code| format!(" [{code}]")).unwrap_or_default();
+        let hint = failure.hint.as_ref().map(|hint| format!("\n{} {}\n", paint("1;36", "hint:"), escape::lines(hint)));
+        let message = escape::lines(&failure.message);
+        Self::stderr(&format!("{} {message}{code}\n{}", paint("1;31", label), hint.unwrap_or_default()));
+    }
+
+    /// What the parser of the command line has to say about a mistake.
+    pub fn usage(&self, text: &clap::builder::StyledStr) {
+        let color = self.wants_color(io::stderr().is_terminal());
+        Self::stderr(&if color { text.ansi().to_string() } else { text.to_string() });
+    }
+
+    /// A line of JSON on stderr.
+    pub fn failure_json(&self, value: &impl Serialize) {
+        match escape::json_line(value) {
+            Ok(text) => Self::stderr(&format!("{text}\n")),
+            Err(error) => Self::stderr(&format!("error: {error}\n")),
+        }
+    }
+
+    /// What cannot be written to stderr cannot be reported anywhere; the exit code still tells.
+    fn stderr(text: &str) {
+        let _ = io::stderr().lock().write_all(text.as_bytes());
+    }
+}
+
+fn is_dumb() -> bool {
+    std::env::var_os("TERM").is_some_and(|term| term == "dumb")
+}
+
+fn console_width() -> u16 {
+    let (_, columns) = dialoguer::console::Term::stdout().size();
+    columns.max(40)
+}

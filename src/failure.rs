@@ -1,0 +1,166 @@
+//! How a command can fail, and the only place with exit numbers.
+
+use std::fmt;
+
+use serde::Serialize;
+
+/// The class of a failure; it decides the exit code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// The reader of stdout went away: not a failure at all.
+    PipeClosed,
+    /// A fault of this program, or of a local file or disk.
+    Local,
+    /// A command line, inventory or value that cannot be meant.
+    Usage,
+    /// The controller said no.
+    Refused,
+    /// Nobody answered, or the port is absent or busy.
+    NoAnswer,
+    /// An answer that makes no sense.
+    Malformed,
+    /// A state-changing request went out and its answer was lost.
+    OutcomeUnknown,
+    /// Refused on this side, before anything was sent.
+    RefusedHere,
+    /// The condition of `--until` or `--check` was not met.
+    ConditionNotMet,
+    /// Some robots failed, some did not.
+    Mixed,
+    /// Ctrl-C.
+    Interrupted,
+}
+
+impl Kind {
+    /// Every kind with its exit code and what the code means, in the order of `armctl help exit-codes`.
+    pub const TABLE: [(Self, u8, &'static str); 11] = [
+        (Self::PipeClosed, 0, "done (also when the reader of stdout went away)"),
+        (Self::Local, 1, "own fault, or a local file or disk"),
+        (Self::Usage, 2, "usage or configuration"),
+        (Self::Refused, 3, "the controller refused"),
+        (Self::NoAnswer, 4, "no answer, or port absent or busy"),
+        (Self::Malformed, 5, "malformed or unexpected answer"),
+        (Self::OutcomeUnknown, 6, "outcome unknown: a state-changing request was sent, the answer was lost"),
+        (Self::RefusedHere, 7, "refused here: not confirmed, or a read-only robot"),
+        (Self::ConditionNotMet, 8, "condition not met (--until, --check, diff)"),
+        (Self::Mixed, 9, "some robots failed, some did not"),
+        (Self::Interrupted, 130, "interrupted"),
+    ];
+
+    /// The process exit code.
+    pub fn exit(self) -> u8 {
+        // Every kind has a row: a test counts them.
+        Self::TABLE.iter().find(|(kind, ..)| *kind == self).map_or(1, |row| row.1)
+    }
+}
+
+/// A failed command: what happened, and what to do about it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Failure {
+    /// The class.
+    pub kind: Kind,
+    /// The controller's own code, such as `0x2060`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub code: Option<String>,
+    /// What happened, in a sentence without a full stop.
+    pub message: String,
+    /// What to do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hint: Option<String>,
+}
+
+impl Failure {
+    /// A failure of `kind` without code or hint.
+    pub fn new(kind: Kind, message: impl Into<String>) -> Self {
+        Self { kind, code: None, message: message.into(), hint: None }
+    }
+
+    /// A mistake on the command line or in a file of settings.
+    pub fn usage(message: impl Into<String>) -> Self {
+        Self::new(Kind::Usage, message)
+    }
+
+    /// A fault of this program or of the local machine.
+    pub fn local(message: impl Into<String>) -> Self {
+        Self::new(Kind::Local, message)
+    }
+
+    /// A failed operation on a local file: exit 1, or 0 when it is a closed pipe.
+    pub fn io(what: impl fmt::Display, error: &std::io::Error) -> Self {
+        use std::io::ErrorKind;
+
+        if error.kind() == ErrorKind::BrokenPipe {
+            return Self::new(Kind::PipeClosed, "the reader of stdout went away");
+        }
+        let failure = Self::local(format!("{what}: {}", plain(error)));
+        match error.kind() {
+            ErrorKind::PermissionDenied => failure.hint("check the permissions of the folder, or choose another"),
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
+                failure.hint("free some space and repeat; nothing was replaced")
+            }
+            ErrorKind::NotFound => failure.hint("check the path; folders are not made silently"),
+            _ => failure,
+        }
+    }
+
+    /// Adds what to do.
+    #[must_use]
+    pub fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    /// Adds the controller's code.
+    #[must_use]
+    pub fn code(mut self, code: impl Into<String>) -> Self {
+        self.code = Some(code.into());
+        self
+    }
+}
+
+/// An I/O error without the `(os error 13)` that tells a technician nothing.
+fn plain(error: &std::io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or_default().to_lowercase()
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Failure {}
+
+/// An error with context from [`anyhow`]: a [`Failure`] inside keeps its kind, anything else is a local fault.
+impl From<anyhow::Error> for Failure {
+    fn from(error: anyhow::Error) -> Self {
+        match error.downcast::<Self>() {
+            Ok(failure) => failure,
+            Err(error) => match error.downcast_ref::<std::io::Error>() {
+                Some(io) => Self::io(error.to_string(), io),
+                None => Self::local(format!("{error:#}")),
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exit_codes_are_those_of_the_contract() {
+        let codes: Vec<u8> = Kind::TABLE.iter().map(|(kind, ..)| kind.exit()).collect();
+        assert_eq!(codes, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 130]);
+    }
+
+    #[test]
+    fn context_keeps_the_kind_of_a_failure() {
+        use anyhow::Context;
+
+        let failed: Result<(), _> = Err(Failure::new(Kind::Refused, "no")).context("while asking");
+        assert_eq!(Failure::from(failed.unwrap_err()).kind, Kind::Refused);
+    }
+}

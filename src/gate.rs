@@ -1,0 +1,64 @@
+//! What stands between a typed command and a machine that can hurt someone.
+
+use crate::controller::Risk;
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::settings::Robot;
+
+/// What Ctrl-C does to a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum OnInterrupt {
+    /// Stop the robot, then disconnect.
+    #[default]
+    Stop,
+    /// Disconnect only; the motion goes on.
+    Leave,
+}
+
+/// What the operator allowed beforehand.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Gate {
+    /// `--yes`.
+    pub yes: bool,
+    /// `--dry-run`.
+    pub dry_run: bool,
+    /// `--on-interrupt`.
+    pub on_interrupt: OnInterrupt,
+}
+
+impl Gate {
+    /// Lets a command of `risk` through to `robot`, asking where the contract wants it. `intent` says what will happen,
+    /// as in "start the selected job".
+    pub fn pass(&self, screen: &Screen, robot: &Robot, risk: Risk, intent: &str) -> Result<(), Failure> {
+        if risk == Risk::Read || self.dry_run {
+            return Ok(());
+        }
+        if robot.read_only.value {
+            return Err(Failure::new(Kind::RefusedHere, format!("{} is read-only", robot.label()))
+                .hint("remove read_only from its entry in robots.toml if it may be changed"));
+        }
+        if risk < Risk::Motion || self.yes || robot.target.value.is_simulated() {
+            return Ok(());
+        }
+        let refused = |message: String| Failure::new(Kind::RefusedHere, message);
+        if !screen.can_ask() {
+            return Err(refused(format!("not confirmed: this would {intent} on {}", robot.label()))
+                .hint("add --yes when nobody is in the cell, or --dry-run to see what would be sent"));
+        }
+        screen.ask_note(&format!("{} is a real {} controller.", robot.label(), robot.family));
+        if screen.confirm(&format!("This will {intent}. Go on?"))? {
+            Ok(())
+        } else {
+            Err(refused("not confirmed; nothing was sent".to_owned()))
+        }
+    }
+
+    /// Refuses to move several robots that were not each named.
+    pub fn pass_many(risk: Risk, robots: &[Robot], each_named: bool) -> Result<(), Failure> {
+        if risk < Risk::Motion || robots.len() < 2 || each_named {
+            return Ok(());
+        }
+        Err(Failure::new(Kind::RefusedHere, format!("{} robots would move at once", robots.len()))
+            .hint("name each of them with -r; globs, --tag and --all do not move robots"))
+    }
+}

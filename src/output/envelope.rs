@@ -1,0 +1,103 @@
+//! The one envelope of every JSON answer.
+
+use jiff::Timestamp;
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::failure::Failure;
+use crate::settings::Robot;
+
+/// `{"robot":…,"family":…,"target":…,"simulated":…,"command":…,"ok":…,"data"|"error":…}`.
+#[derive(Debug, Clone, Serialize)]
+pub struct Envelope {
+    /// When the answer was complete; in `jsonl` only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<Timestamp>,
+    /// Name of the robot.
+    pub robot: Option<String>,
+    /// Its family.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub family: Option<&'static str>,
+    /// Its URL.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub target: Option<String>,
+    /// Whether nothing real was talked to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub simulated: Option<bool>,
+    /// `yerc.status` and the like.
+    pub command: Option<String>,
+    /// Whether it was done.
+    pub ok: bool,
+    /// The report.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub data: Option<Value>,
+    /// Why there is none, or why it is not whole.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<ErrorBody>,
+}
+
+/// `{"kind":"refused","exit":3,"code":"0x2060","message":…,"hint":…}`.
+#[derive(Debug, Clone, Serialize)]
+pub struct ErrorBody {
+    /// Exit code that the kind stands for.
+    exit: u8,
+    #[serde(flatten)]
+    failure: Failure,
+}
+
+impl From<Failure> for ErrorBody {
+    fn from(failure: Failure) -> Self {
+        Self { exit: failure.kind.exit(), failure }
+    }
+}
+
+impl Envelope {
+    /// The answer of one robot.
+    pub fn of(robot: &Robot, command: &str, result: Result<Value, Failure>) -> Self {
+        let (data, error) = match result {
+            Ok(data) => (Some(data), None),
+            Err(failure) => (None, Some(failure.into())),
+        };
+        Self {
+            time: None,
+            robot: Some(robot.name.clone()),
+            family: Some(robot.family.name()),
+            target: Some(robot.target.value.url().to_owned()),
+            simulated: Some(robot.target.value.is_simulated()),
+            command: Some(command.to_owned()),
+            ok: error.is_none(),
+            data,
+            error,
+        }
+    }
+
+    /// The answer of a command that is about no robot.
+    pub fn local(command: &str, data: Value) -> Self {
+        Self {
+            time: None,
+            robot: None,
+            family: None,
+            target: None,
+            simulated: None,
+            command: Some(command.to_owned()),
+            ok: true,
+            data: Some(data),
+            error: None,
+        }
+    }
+
+    /// A failure before any robot was chosen.
+    pub fn failed(command: Option<&str>, failure: Failure) -> Self {
+        Self {
+            time: None,
+            robot: None,
+            family: None,
+            target: None,
+            simulated: None,
+            command: command.map(ToOwned::to_owned),
+            ok: false,
+            data: None,
+            error: Some(failure.into()),
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Views as tables for people and as CSV for spreadsheets.
+
+use comfy_table::presets::NOTHING;
+use comfy_table::{Attribute, CellAlignment, Color, ContentArrangement};
+
+use super::escape;
+use super::view::{Cell, Section, Table, Tone, View};
+
+/// The view as text of at most `width` columns.
+pub fn text(view: &View, width: u16, color: bool) -> String {
+    let parts: Vec<String> = view.sections.iter().map(|section| section_text(section, width, color)).collect();
+    parts.join("\n")
+}
+
+/// The view as CSV (RFC 4180): its table, or its fields as one row, after a column that names the robot where there are
+/// several. Lines end in `\n`.
+pub fn csv(view: &View, robot: Option<&str>) -> String {
+    let mut out = String::new();
+    let header = |names: &mut dyn Iterator<Item = &str>| {
+        robot.map(|_| "robot".to_owned()).into_iter().chain(names.map(column_id)).collect::<Vec<_>>()
+    };
+    let line = |cells: &mut dyn Iterator<Item = &Cell>| {
+        robot.map(ToOwned::to_owned).into_iter().chain(cells.map(|cell| cell.text.clone())).collect::<Vec<_>>()
+    };
+    for section in &view.sections {
+        match section {
+            Section::Fields(fields) => {
+                csv_line(&mut out, &header(&mut fields.iter().map(|(name, _)| *name)));
+                csv_line(&mut out, &line(&mut fields.iter().map(|(_, cell)| cell)));
+            }
+            Section::Table(table) => {
+                csv_line(&mut out, &header(&mut table.columns.iter().copied()));
+                for row in &table.rows {
+                    csv_line(&mut out, &line(&mut row.iter()));
+                }
+            }
+            Section::Text(text) => out.push_str(text),
+        }
+    }
+    out
+}
+
+fn section_text(section: &Section, width: u16, color: bool) -> String {
+    let mut grid = comfy_table::Table::new();
+    grid.load_style(NOTHING).set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
+    if color {
+        grid.enforce_styling();
+    } else {
+        grid.force_no_tty();
+    }
+    match section {
+        Section::Text(text) => {
+            let mut text = escape::lines(text).into_owned();
+            if !text.is_empty() && !text.ends_with('\n') {
+                text.push('\n');
+            }
+            return text;
+        }
+        Section::Fields(fields) => {
+            for (name, cell) in fields {
+                // Values of fields stand on the left: they are of different kinds.
+                let value = styled(&Cell { is_number: false, ..cell.clone() });
+                grid.add_row([comfy_table::Cell::new(*name).add_attribute(Attribute::Dim), value]);
+            }
+        }
+        Section::Table(Table { rows, empty, .. }) if rows.is_empty() => return format!("{empty}\n"),
+        Section::Table(table) => {
+            let header = table.columns.iter().enumerate().map(|(index, name)| {
+                let is_number = table.rows.iter().all(|row| row[index].is_number || row[index].text == "-");
+                let cell = comfy_table::Cell::new(name.to_uppercase()).add_attribute(Attribute::Bold);
+                if is_number { cell.set_alignment(CellAlignment::Right) } else { cell }
+            });
+            grid.set_header(header.collect::<Vec<_>>());
+            for row in &table.rows {
+                grid.add_row(row.iter().map(styled).collect::<Vec<_>>());
+            }
+        }
+    }
+    for column in grid.column_iter_mut() {
+        column.set_padding((0, 2));
+    }
+    grid.lines().fold(String::new(), |text, line| text + line.trim_end() + "\n")
+}
+
+fn styled(cell: &Cell) -> comfy_table::Cell {
+    let shown = comfy_table::Cell::new(escape::line(&cell.text));
+    let shown = match cell.tone {
+        Tone::Plain => shown,
+        Tone::Good => shown.fg(Color::Green),
+        Tone::Warning => shown.fg(Color::Yellow),
+        Tone::Bad => shown.fg(Color::Red),
+    };
+    if cell.is_number { shown.set_alignment(CellAlignment::Right) } else { shown }
+}
+
+/// `x (mm)` becomes `x_mm`.
+fn column_id(name: &str) -> String {
+    let words = name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
+    words.map(str::to_lowercase).collect::<Vec<_>>().join("_")
+}
+
+fn csv_line(out: &mut String, fields: &[String]) {
+    for (index, field) in fields.iter().enumerate() {
+        if index > 0 {
+            out.push(',');
+        }
+        if field.contains([',', '"', '\n', '\r']) {
+            out.push('"');
+            out.push_str(&field.replace('"', "\"\""));
+            out.push('"');
+        } else {
+            out.push_str(field);
+        }
+    }
+    out.push('\n');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> View {
+        let mut table = Table::new(&["name", "x (mm)"], "nothing here");
+        table.row(["てすと".into(), Cell::number("1.000")]);
+        table.row(["a,\"b\"\u{1b}[31m".into(), Cell::number("-20.500")]);
+        View::table(table)
+    }
+
+    #[test]
+    fn numbers_stand_right_and_wide_characters_count_double() {
+        assert_eq!(
+            text(&sample(), 80, false),
+            "NAME            X (MM)\nてすと           1.000\na,\"b\"\\x1b[31m  -20.500\n"
+        );
+    }
+
+    #[test]
+    fn csv_quotes_what_needs_it() {
+        assert_eq!(csv(&sample(), None), "name,x_mm\nてすと,1.000\n\"a,\"\"b\"\"\u{1b}[31m\",-20.500\n");
+    }
+
+    #[test]
+    fn tables_fit_the_width() {
+        let view = View::fields([("text", Cell::from("word ".repeat(40)))]);
+        assert!(text(&view, 80, false).lines().all(|line| line.chars().count() <= 80));
+    }
+}

@@ -1,0 +1,139 @@
+//! What a report looks like before anyone decides on table or CSV: fields, tables and lines.
+
+/// How a cell wants to be noticed, where there is colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Tone {
+    /// Plain text.
+    #[default]
+    Plain,
+    /// As it should be.
+    Good,
+    /// Worth a look.
+    Warning,
+    /// Wrong.
+    Bad,
+}
+
+/// One value of a table.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Cell {
+    /// Its text, not yet made safe for a terminal.
+    pub text: String,
+    /// Numbers stand on the right.
+    pub is_number: bool,
+    /// How it is coloured.
+    pub tone: Tone,
+}
+
+impl Cell {
+    /// A number with its own formatting, such as `100.000`.
+    pub fn number(text: impl Into<String>) -> Self {
+        Self { text: text.into(), is_number: true, tone: Tone::Plain }
+    }
+
+    /// The same cell in another tone.
+    #[must_use]
+    pub fn tone(mut self, tone: Tone) -> Self {
+        self.tone = tone;
+        self
+    }
+
+    /// A switch: `on` or `off`.
+    pub fn switch(on: bool) -> Self {
+        Self::from(if on { "on" } else { "off" })
+    }
+
+    /// A value that may be missing.
+    pub fn maybe<T: Into<Self>>(value: Option<T>) -> Self {
+        value.map_or_else(|| Self::from("-"), Into::into)
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Self { text: text.to_owned(), ..Self::default() }
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Self { text, ..Self::default() }
+    }
+}
+
+macro_rules! cell_from_number {
+    ($($number:ty),*) => {
+        $(impl From<$number> for Cell {
+            fn from(value: $number) -> Self {
+                Self::number(value.to_string())
+            }
+        })*
+    };
+}
+cell_from_number!(u8, u16, u32, u64, usize, i16, i32, i64);
+
+/// Rows under named columns.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Table {
+    /// Column names, in words; CSV turns them into identifiers.
+    pub columns: Vec<&'static str>,
+    /// Rows as long as `columns`.
+    pub rows: Vec<Vec<Cell>>,
+    /// Said instead of an empty table.
+    pub empty: &'static str,
+}
+
+impl Table {
+    /// A table without rows yet, and what to say if it stays that way.
+    pub fn new(columns: &[&'static str], empty: &'static str) -> Self {
+        Self { columns: columns.to_vec(), rows: Vec::new(), empty }
+    }
+
+    /// Adds a row.
+    pub fn row<const N: usize>(&mut self, cells: [Cell; N]) {
+        debug_assert_eq!(N, self.columns.len(), "a row has a cell a column");
+        self.rows.push(cells.into());
+    }
+}
+
+/// A part of a view.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Section {
+    /// Names and values, a line each.
+    Fields(Vec<(&'static str, Cell)>),
+    /// Rows and columns.
+    Table(Table),
+    /// Text of several lines, such as a diff.
+    Text(String),
+}
+
+/// A whole report, for a person.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct View {
+    /// Its parts, with an empty line between.
+    pub sections: Vec<Section>,
+}
+
+impl View {
+    /// One list of fields.
+    pub fn fields<const N: usize>(fields: [(&'static str, Cell); N]) -> Self {
+        Self { sections: vec![Section::Fields(fields.into())] }
+    }
+
+    /// One table.
+    pub fn table(table: Table) -> Self {
+        Self { sections: vec![Section::Table(table)] }
+    }
+
+    /// One text.
+    pub fn text(text: impl Into<String>) -> Self {
+        Self { sections: vec![Section::Text(text.into())] }
+    }
+
+    /// Adds a part.
+    #[must_use]
+    pub fn and(mut self, section: Section) -> Self {
+        self.sections.push(section);
+        self
+    }
+}

@@ -1,0 +1,342 @@
+//! `robots.toml`: the robots of a site, by name.
+//!
+//! ```toml
+//! default = "cell3"
+//!
+//! [defaults]
+//! timeout = "3s"
+//!
+//! [[robot]]
+//! name = "cell3"
+//! target = "udp://192.168.1.31?model=dx200"
+//! tags = ["line1", "welding"]
+//! read_only = true
+//! ```
+//!
+//! A mistake in it is an error with line, column and a suggestion; nothing is ever guessed.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use etcetera::BaseStrategy as _;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::duration;
+use super::target::{Family, Target};
+use crate::controller::text::Encoding;
+use crate::controller::yerc::Model;
+use crate::failure::Failure;
+
+/// Name of the file in the platform's configuration folder, below `armctl/`.
+const FILE_NAME: &str = "robots.toml";
+
+/// Settings that a robot, the `[defaults]` of the file, a flag or the environment can give.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Options {
+    /// Longest wait for an answer.
+    pub timeout: Option<Duration>,
+    /// Repetitions of a read after silence.
+    pub retries: Option<u32>,
+    /// Encoding of names and texts on the controller.
+    pub encoding: Option<Encoding>,
+    /// Read commands only.
+    pub read_only: Option<bool>,
+    /// Controller model (yerc).
+    pub model: Option<Model>,
+}
+
+/// A robot of the inventory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// Its name, unique in the file.
+    pub name: String,
+    /// Where it is.
+    pub target: Target,
+    /// Its family.
+    pub family: Family,
+    /// What is set for it alone.
+    pub options: Options,
+    /// Free words to choose by.
+    pub tags: Vec<String>,
+}
+
+/// The whole file.
+#[derive(Debug, Clone, Default)]
+pub struct Inventory {
+    /// Where it was read, or would be.
+    pub path: Option<PathBuf>,
+    /// The robot taken when none is named.
+    pub default: Option<String>,
+    /// What is set for all robots.
+    pub defaults: Options,
+    /// The robots, in the order of the file.
+    pub robots: Vec<Entry>,
+}
+
+/// The path of the inventory: named by flag or environment, or in the platform's folder.
+#[derive(Debug, Clone)]
+pub enum Location {
+    /// Named: it must exist.
+    Named(PathBuf),
+    /// The platform's: it may be missing.
+    Usual(PathBuf),
+    /// No home folder to look in.
+    Nowhere,
+}
+
+impl Location {
+    /// The place that counts when `named` is what flag or environment gave.
+    pub fn find(named: Option<PathBuf>) -> Self {
+        match (named, etcetera::choose_base_strategy()) {
+            (Some(path), _) => Self::Named(path),
+            (None, Ok(folders)) => Self::Usual(folders.config_dir().join("armctl").join(FILE_NAME)),
+            (None, Err(_)) => Self::Nowhere,
+        }
+    }
+
+    /// The path, if there is one.
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Self::Named(path) | Self::Usual(path) => Some(path),
+            Self::Nowhere => None,
+        }
+    }
+}
+
+impl Inventory {
+    /// Reads the file. One that is missing from its usual place counts as empty.
+    pub fn load(location: &Location) -> Result<Self, Failure> {
+        let Some(path) = location.path() else { return Ok(Self::default()) };
+        let text = match std::fs::read_to_string(path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound && matches!(location, Location::Usual(_)) => {
+                return Ok(Self { path: Some(path.to_owned()), ..Self::default() });
+            }
+            Err(error) => {
+                return Err(Failure::usage(format!("inventory {}: {error}", path.display()))
+                    .hint("check --config and ARMCTL_CONFIG; `armctl robots add` makes a new file"));
+            }
+        };
+        let mut inventory = Self::parse(&text, &path.display().to_string())?;
+        inventory.path = Some(path.to_owned());
+        Ok(inventory)
+    }
+
+    /// Reads the text of a file called `name` in messages.
+    pub fn parse(text: &str, name: &str) -> Result<Self, Failure> {
+        let at = |span: std::ops::Range<usize>, what: &str| {
+            let (line, column) = line_and_column(text, span.start);
+            Failure::usage(format!("{name}:{line}:{column}: {what}"))
+        };
+        let file: RawFile = toml::from_str(text).map_err(|error| {
+            let failure = at(error.span().unwrap_or_default(), error.message());
+            match suggestion(error.message()) {
+                Some(word) => failure.hint(format!("did you mean `{word}`?")),
+                None => failure.hint("`armctl help inventory` shows the form of the file"),
+            }
+        })?;
+        let mut robots: Vec<Entry> = Vec::with_capacity(file.robot.len());
+        for raw in file.robot {
+            let robot = raw.name.as_ref();
+            if !is_name(robot) {
+                return Err(at(raw.name.span(), &format!("'{robot}' is no robot name"))
+                    .hint("use letters, digits, '-', '_' and '.'"));
+            }
+            if robots.iter().any(|known| known.name == *robot) {
+                return Err(at(raw.name.span(), &format!("a second robot is called '{robot}'"))
+                    .hint("give every robot its own name"));
+            }
+            let mut span = raw.target.span();
+            let target: Target = raw.target.as_ref().parse().map_err(|failure: Failure| {
+                let hint = failure.hint.clone().unwrap_or_default();
+                at(span.clone(), &failure.message).hint(hint)
+            })?;
+            let named = match &raw.family {
+                None => None,
+                Some(family) => {
+                    span = family.span();
+                    Some(family.as_ref().parse::<Family>().map_err(|why| at(span.clone(), &why))?)
+                }
+            };
+            let Some(family) = named.or(target.family()) else {
+                return Err(at(span, "this URL does not tell the family").hint("add family = \"yerc\""));
+            };
+            if !target.reaches(family) {
+                return Err(at(span, &format!("{family} is not reached over {}:", target.scheme()))
+                    .hint("check target and family against each other"));
+            }
+            robots.push(Entry {
+                name: robot.clone(),
+                target,
+                family,
+                options: Options {
+                    timeout: raw.timeout,
+                    retries: raw.retries,
+                    encoding: parsed(raw.encoding, &at)?,
+                    read_only: raw.read_only,
+                    model: parsed(raw.model, &at)?,
+                },
+                tags: raw.tags,
+            });
+        }
+        if let Some(default) = &file.default
+            && !robots.iter().any(|robot| robot.name == *default.as_ref())
+        {
+            return Err(at(default.span(), &format!("there is no robot '{}'", default.as_ref()))
+                .hint("let `default` name one of the robots of this file"));
+        }
+        let defaults = file.defaults;
+        Ok(Self {
+            path: None,
+            default: file.default.map(Spanned::into_inner),
+            defaults: Options {
+                timeout: defaults.timeout,
+                retries: defaults.retries,
+                encoding: parsed(defaults.encoding, &at)?,
+                read_only: defaults.read_only,
+                model: None,
+            },
+            robots,
+        })
+    }
+
+    /// The robots whose name fits `pattern`, in which `*` and `?` stand for others.
+    pub fn matching<'a>(&'a self, pattern: &'a str) -> impl Iterator<Item = &'a Entry> {
+        self.robots.iter().filter(move |robot| fits(pattern, &robot.name))
+    }
+}
+
+/// Whether `name` can be a robot's name: it becomes part of tables, file names and globs.
+pub fn is_name(name: &str) -> bool {
+    let plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
+    !name.is_empty() && name.len() <= 64 && name.chars().all(plain)
+}
+
+/// The nearest of `known` to a mistyped `word`, if it is near enough to be meant.
+pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let scored = known.into_iter().map(|candidate| (strsim::jaro_winkler(word, candidate), candidate));
+    scored.filter(|(score, _)| *score > 0.75).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, candidate)| candidate)
+}
+
+/// Glob match with `*` and `?`.
+fn fits(pattern: &str, name: &str) -> bool {
+    let mut pattern_chars = pattern.chars();
+    match pattern_chars.next() {
+        None => name.is_empty(),
+        Some('*') => {
+            let rest = pattern_chars.as_str();
+            let mut starts = name.char_indices().map(|(index, _)| index).chain([name.len()]);
+            starts.any(|index| fits(rest, &name[index..]))
+        }
+        Some(expected) => {
+            let mut chars = name.chars();
+            chars.next().is_some_and(|c| expected == '?' || expected == c)
+                && fits(pattern_chars.as_str(), chars.as_str())
+        }
+    }
+}
+
+/// Reads a word of the file, with the place of a mistake.
+fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(
+    raw: Option<Spanned<String>>,
+    at: &dyn Fn(std::ops::Range<usize>, &str) -> Failure,
+) -> Result<Option<T>, Failure> {
+    raw.map(|word| word.as_ref().parse::<T>().map_err(|why| at(word.span(), &why.to_string()))).transpose()
+}
+
+/// Line and column, both from 1, of a byte offset.
+fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
+    let before = text.get(..offset).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+}
+
+/// The nearest word in serde's "unknown field `x`, expected one of `a`, `b`".
+fn suggestion(message: &str) -> Option<String> {
+    let (_, rest) = message.split_once("unknown field `")?;
+    let (word, rest) = rest.split_once('`')?;
+    let known = rest.split('`').skip(1).step_by(2);
+    nearest(word, known).map(ToOwned::to_owned)
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawFile {
+    default: Option<Spanned<String>>,
+    #[serde(default)]
+    defaults: RawDefaults,
+    #[serde(default)]
+    robot: Vec<RawRobot>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct RawDefaults {
+    #[serde(default, deserialize_with = "duration::field::deserialize")]
+    timeout: Option<Duration>,
+    retries: Option<u32>,
+    encoding: Option<Spanned<String>>,
+    read_only: Option<bool>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawRobot {
+    name: Spanned<String>,
+    target: Spanned<String>,
+    family: Option<Spanned<String>>,
+    model: Option<Spanned<String>>,
+    read_only: Option<bool>,
+    encoding: Option<Spanned<String>>,
+    #[serde(default, deserialize_with = "duration::field::deserialize")]
+    timeout: Option<Duration>,
+    retries: Option<u32>,
+    #[serde(default)]
+    tags: Vec<String>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_whole_file() {
+        let inventory = Inventory::parse(
+            "default = \"b\"\n[defaults]\ntimeout = \"2s\"\n[[robot]]\nname = \"a\"\ntarget = \"udp://h\"\n\
+             [[robot]]\nname = \"b\"\ntarget = \"sim:\"\nfamily = \"yerc\"\nread_only = true\ntags = [\"x\"]\n",
+            "robots.toml",
+        )
+        .unwrap();
+        assert_eq!(inventory.robots.len(), 2);
+        assert_eq!(inventory.defaults.timeout, Some(Duration::from_secs(2)));
+        assert_eq!(inventory.robots[1].options.read_only, Some(true));
+    }
+
+    #[test]
+    fn mistakes_have_line_and_suggestion() {
+        for (text, place, hint) in [
+            ("[[robot]]\nname = \"a\"\ntagret = \"udp://h\"\n", "robots.toml:3:1", "`target`"),
+            ("[[robot]]\nname = \"a\"\ntarget = \"udp:/h\"\n", "robots.toml:3:10", "udp://"),
+            ("[[robot]]\nname = \"a\"\ntarget = \"sim:\"\n", "robots.toml:3:10", "family"),
+            ("[[robot]]\nname = \"a b\"\ntarget = \"udp://h\"\n", "robots.toml:2:8", "letters"),
+            ("default = \"z\"\n", "robots.toml:1:11", "default"),
+            ("[[robot]\n", "robots.toml:1:", "inventory"),
+            (
+                "[[robot]]\nname=\"a\"\ntarget=\"udp://h\"\n[[robot]]\nname=\"a\"\ntarget=\"udp://h\"\n",
+                ":5:6",
+                "own name",
+            ),
+        ] {
+            let failure = Inventory::parse(text, "robots.toml").unwrap_err();
+            assert!(failure.message.contains(place), "{place}: {}", failure.message);
+            assert!(failure.hint.as_ref().unwrap().contains(hint), "{hint}: {failure:?}");
+        }
+    }
+
+    #[test]
+    fn globs() {
+        assert!(fits("cell*", "cell3") && fits("*3", "cell3") && fits("c?ll3", "cell3") && fits("*", ""));
+        assert!(!fits("cell", "cell3") && !fits("?", ""));
+    }
+}

@@ -1,0 +1,308 @@
+//! Which robots a command is for, and every setting with where it came from.
+//!
+//! Flag > environment > robot > the file's `[defaults]` > built-in.
+
+pub mod duration;
+pub mod inventory;
+pub mod target;
+
+use std::fmt;
+use std::time::Duration;
+
+use crate::controller::text::Encoding;
+use crate::controller::yerc::Model;
+use crate::failure::Failure;
+use inventory::{Entry, Inventory, Options, nearest};
+use target::{Family, Target};
+
+/// Where a setting came from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// A flag of the command line.
+    Flag,
+    /// A variable of the environment.
+    Environment,
+    /// The target URL.
+    Url,
+    /// The robot's entry in the inventory.
+    Robot,
+    /// `[defaults]` of the inventory.
+    Defaults,
+    /// This program.
+    BuiltIn,
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Flag => "flag",
+            Self::Environment => "environment",
+            Self::Url => "target URL",
+            Self::Robot => "robot",
+            Self::Defaults => "defaults",
+            Self::BuiltIn => "built-in",
+        })
+    }
+}
+
+/// A value and where it came from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Setting<T> {
+    /// The value in force.
+    pub value: T,
+    /// Its source.
+    pub origin: Origin,
+}
+
+/// One robot, ready to be talked to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Robot {
+    /// Its name in the inventory, or a short form of the target.
+    pub name: String,
+    /// Its family.
+    pub family: Family,
+    /// Where it is.
+    pub target: Setting<Target>,
+    /// Longest wait for an answer; in a transfer, longest time without progress.
+    pub timeout: Setting<Duration>,
+    /// Repetitions of a read after silence.
+    pub retries: Setting<u32>,
+    /// Encoding of names and texts.
+    pub encoding: Setting<Encoding>,
+    /// Read commands only.
+    pub read_only: Setting<bool>,
+    /// Controller model (yerc).
+    pub model: Setting<Model>,
+    /// Free words to choose by.
+    pub tags: Vec<String>,
+}
+
+impl Robot {
+    /// How messages name it: `cell3 (udp://192.168.1.31)`.
+    pub fn label(&self) -> String {
+        let url = self.target.value.url();
+        if self.name == url { url.to_owned() } else { format!("{} ({url})", self.name) }
+    }
+}
+
+/// What flags and environment say about the choice of robots.
+#[derive(Debug, Clone, Default)]
+pub struct Selection {
+    /// `--sim`.
+    pub sim: bool,
+    /// `--target`.
+    pub target: Option<Target>,
+    /// `--robot`, names or globs.
+    pub robots: Vec<String>,
+    /// `--tag`.
+    pub tags: Vec<String>,
+    /// `--all`.
+    pub all: bool,
+    /// `ARMCTL_TARGET`.
+    pub environment: Option<Target>,
+}
+
+impl Selection {
+    /// Whether the command line can mean several robots, so that the answer is a list.
+    pub fn is_plural(&self) -> bool {
+        self.all
+            || self.robots.len() > 1
+            || !self.tags.is_empty()
+            || self.robots.iter().any(|name| name.contains(['*', '?']))
+    }
+}
+
+/// Everything that settings are made of.
+#[derive(Debug, Default)]
+pub struct Sources {
+    /// The choice of robots.
+    pub selection: Selection,
+    /// Flags.
+    pub flags: Options,
+    /// Variables of the environment.
+    pub environment: Options,
+    /// The file.
+    pub inventory: Inventory,
+}
+
+/// Longest wait for an answer unless set: a controller answers in 5 to 20 ms, a busy one within seconds.
+const TIMEOUT: Duration = Duration::from_secs(3);
+/// Repetitions of a read unless set.
+const RETRIES: u32 = 3;
+
+impl Sources {
+    /// The robots a command of `family` is for (of any family when `None`), at least one.
+    pub fn robots(&self, family: Option<Family>) -> Result<Vec<Robot>, Failure> {
+        let selection = &self.selection;
+        if selection.sim {
+            return Ok(vec![self.unnamed(Target::simulator(), Origin::Flag, family)?]);
+        }
+        if let Some(target) = &selection.target {
+            return Ok(vec![self.unnamed(target.clone(), Origin::Flag, family)?]);
+        }
+        if selection.all || !selection.robots.is_empty() || !selection.tags.is_empty() {
+            return self.named(family);
+        }
+        if let Some(target) = &selection.environment {
+            return Ok(vec![self.unnamed(target.clone(), Origin::Environment, family)?]);
+        }
+        let default = self.inventory.default.as_ref();
+        match default.and_then(|name| self.inventory.robots.iter().find(|robot| robot.name == *name)) {
+            Some(entry) => Ok(vec![self.resolved(entry, family)?]),
+            None => Err(Failure::usage("no robot is named").hint(
+                "use --sim for the built-in simulator, -t udp://HOST for an address, -r NAME for a robot of the \
+                 inventory, or set ARMCTL_TARGET",
+            )),
+        }
+    }
+
+    /// The entry of the inventory with every setting in force.
+    pub fn resolved(&self, entry: &Entry, family: Option<Family>) -> Result<Robot, Failure> {
+        if let Some(family) = family
+            && family != entry.family
+        {
+            return Err(Failure::usage(format!("robot '{}' is a {} robot, not {family}", entry.name, entry.family))
+                .hint(format!("use `armctl {} …` for it", entry.family)));
+        }
+        let target = Setting { value: entry.target.clone(), origin: Origin::Robot };
+        Ok(self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone()))
+    }
+
+    fn unnamed(&self, target: Target, origin: Origin, family: Option<Family>) -> Result<Robot, Failure> {
+        let Some(family) = family.or(target.family()) else {
+            return Err(Failure::usage(format!("target '{target}' does not tell the family"))
+                .hint("name the family: `armctl yerc …`"));
+        };
+        if !target.reaches(family) {
+            return Err(Failure::usage(format!("{family} is not reached over {}:", target.scheme()))
+                .hint("`armctl help targets` lists the URLs of each family"));
+        }
+        let name = target.short_name();
+        Ok(self.robot(name, family, Setting { value: target, origin }, &Options::default(), Vec::new()))
+    }
+
+    fn named(&self, family: Option<Family>) -> Result<Vec<Robot>, Failure> {
+        let selection = &self.selection;
+        let known = || self.inventory.robots.iter().map(|robot| robot.name.as_str());
+        let mut chosen: Vec<&Entry> = Vec::new();
+        for pattern in &selection.robots {
+            let before = chosen.len();
+            for entry in self.inventory.matching(pattern) {
+                if !chosen.iter().any(|other| other.name == entry.name) {
+                    chosen.push(entry);
+                }
+            }
+            if chosen.len() == before && self.inventory.matching(pattern).next().is_none() {
+                let failure = Failure::usage(format!("there is no robot '{pattern}' in the inventory"));
+                return Err(match (nearest(pattern, known()), &self.inventory.path) {
+                    (Some(name), _) => failure.hint(format!("did you mean '{name}'?")),
+                    (None, Some(path)) => {
+                        failure.hint(format!("`armctl robots list` shows those of {}", path.display()))
+                    }
+                    (None, None) => failure.hint("there is no home folder to find robots.toml in; use --config"),
+                });
+            }
+        }
+        if selection.all || (selection.robots.is_empty() && !selection.tags.is_empty()) {
+            chosen = self.inventory.robots.iter().collect();
+        }
+        chosen.retain(|robot| selection.tags.iter().all(|tag| robot.tags.contains(tag)));
+        // A family's command over a mixed fleet is for its own robots.
+        if selection.is_plural()
+            && let Some(family) = family
+        {
+            chosen.retain(|robot| robot.family == family);
+        }
+        if chosen.is_empty() {
+            return Err(
+                Failure::usage("no robot of the inventory fits").hint("`armctl robots list` shows them with tags")
+            );
+        }
+        chosen.into_iter().map(|entry| self.resolved(entry, family)).collect()
+    }
+
+    fn robot(&self, name: String, family: Family, target: Setting<Target>, own: &Options, tags: Vec<String>) -> Robot {
+        let file = &self.inventory.defaults;
+        let (flags, environment) = (&self.flags, &self.environment);
+        let url_model = target.value.traits().model.map(|value| Setting { value, origin: Origin::Url });
+        macro_rules! setting {
+            ($field:ident, $built_in:expr) => {
+                first(
+                    [
+                        (flags.$field, Origin::Flag),
+                        (environment.$field, Origin::Environment),
+                        (own.$field, Origin::Robot),
+                        (file.$field, Origin::Defaults),
+                    ],
+                    $built_in,
+                )
+            };
+        }
+        Robot {
+            name,
+            family,
+            target,
+            timeout: setting!(timeout, TIMEOUT),
+            retries: setting!(retries, RETRIES),
+            encoding: setting!(encoding, Encoding::default()),
+            read_only: setting!(read_only, false),
+            model: url_model.unwrap_or_else(|| setting!(model, Model::Dx200)),
+            tags,
+        }
+    }
+}
+
+/// The first value that is there.
+fn first<T>(candidates: [(Option<T>, Origin); 4], built_in: T) -> Setting<T> {
+    let found = candidates.into_iter().find_map(|(value, origin)| value.map(|value| Setting { value, origin }));
+    found.unwrap_or(Setting { value: built_in, origin: Origin::BuiltIn })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sources(selection: Selection) -> Sources {
+        let text = "default = \"a\"\n[defaults]\nretries = 1\n[[robot]]\nname = \"a\"\ntarget = \"udp://h\"\nretries = 2\n\
+                    [[robot]]\nname = \"b\"\ntarget = \"udp://i\"\ntags = [\"x\"]\n\
+                    [[robot]]\nname = \"s\"\ntarget = \"serial://COM3\"\n";
+        Sources { selection, inventory: Inventory::parse(text, "robots.toml").unwrap(), ..Sources::default() }
+    }
+
+    fn names(selection: Selection) -> Vec<String> {
+        sources(selection).robots(Some(Family::Yerc)).unwrap().into_iter().map(|robot| robot.name).collect()
+    }
+
+    #[test]
+    fn the_nearest_source_wins() {
+        let mut sources = sources(Selection::default());
+        let retries = |sources: &Sources| sources.robots(None).unwrap()[0].retries;
+        assert_eq!(retries(&sources), Setting { value: 2, origin: Origin::Robot });
+        sources.environment.retries = Some(7);
+        assert_eq!(retries(&sources), Setting { value: 7, origin: Origin::Environment });
+        sources.flags.retries = Some(9);
+        assert_eq!(retries(&sources), Setting { value: 9, origin: Origin::Flag });
+    }
+
+    #[test]
+    fn robots_by_name_glob_tag_and_all() {
+        assert_eq!(names(Selection::default()), ["a"]);
+        assert_eq!(names(Selection { robots: vec!["b".into(), "a".into()], ..Selection::default() }), ["b", "a"]);
+        assert_eq!(names(Selection { robots: vec!["*".into()], ..Selection::default() }), ["a", "b"]);
+        assert_eq!(names(Selection { tags: vec!["x".into()], ..Selection::default() }), ["b"]);
+        assert_eq!(names(Selection { all: true, ..Selection::default() }), ["a", "b"]);
+    }
+
+    #[test]
+    fn a_robot_of_another_family_is_refused_by_name() {
+        let selection = Selection { robots: vec!["s".into()], ..Selection::default() };
+        let failure = sources(selection).robots(Some(Family::Yerc)).unwrap_err();
+        assert!(failure.message.contains("toyo"), "{failure:?}");
+    }
+
+    #[test]
+    fn without_any_robot_the_hint_names_sim_first() {
+        let failure = Sources::default().robots(Some(Family::Yerc)).unwrap_err();
+        assert!(failure.hint.unwrap().starts_with("use --sim"));
+    }
+}
