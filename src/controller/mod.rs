@@ -46,6 +46,7 @@ pub trait Session {
     /// Says what to do at `now`. Call until it answers [`Step::Wait`] or [`Step::Done`].
     fn poll(&mut self, now: Now) -> Step<Self::Outcome>;
 
-    /// Takes bytes that arrived from the peer at `now`. Bytes that do not belong here are counted and ignored.
+    /// Takes bytes that arrived from the peer at `now`. Bytes that do not belong here are counted and ignored. Hand
+    /// over one datagram, then poll to the end before the next: what comes in between may be passed over as lost.
     fn handle(&mut self, now: Now, bytes: &[u8]);
 }

@@ -1,0 +1,364 @@
+//! One request, one answer (DX 3.2.1, 3.2.2, 3.2.6).
+
+use std::time::Duration;
+
+use super::super::wire::{AnswerFrame, RequestFrame, Status};
+use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy};
+use crate::controller::{Now, Session, Step};
+
+/// What a controller answered. A refusal is an answer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Reply {
+    /// The result code.
+    pub status: Status,
+    /// The data part, 0 to 479 bytes.
+    pub data: Vec<u8>,
+    /// From the first copy of the request to the answer.
+    pub elapsed: Duration,
+    /// Copies of the request that were sent.
+    pub attempts: u32,
+}
+
+/// How an exchange ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Ended {
+    /// The controller answered; see the status.
+    Answered(Reply),
+    /// No answer to a request that may be repeated without harm.
+    NoAnswer(Counters),
+    /// No answer to a request that changes state: it may or may not have been carried out.
+    OutcomeUnknown(Counters),
+}
+
+/// A request and its answer.
+#[derive(Debug, Clone)]
+pub struct Exchange {
+    inbox: Inbox,
+    pace: Pace,
+    repeatable: bool,
+    started: Option<Now>,
+    attempts: u32,
+    /// The last busy refusal.
+    busy: Option<Reply>,
+    /// Whether the last copy sent was refused as busy and the next one is due later.
+    pausing: bool,
+    ended: Option<Ended>,
+}
+
+impl Exchange {
+    /// Asks `request` under an id drawn from `ids`; the one in `request` is not looked at. With `repeatable`, silence
+    /// makes it ask again.
+    ///
+    /// # Panics
+    /// If the data of `request` is longer than a frame holds.
+    pub fn new(request: &RequestFrame<'_>, repeatable: bool, policy: Policy, ids: &Ids) -> Self {
+        Self {
+            inbox: Inbox::new(request, ids),
+            pace: Pace::new(policy),
+            repeatable,
+            started: None,
+            attempts: 0,
+            busy: None,
+            pausing: false,
+            ended: None,
+        }
+    }
+
+    /// What was seen so far beside the answer.
+    pub fn counters(&self) -> Counters {
+        self.inbox.counters
+    }
+
+    fn send(&mut self, now: Now) -> Step<Ended> {
+        self.attempts = self.attempts.saturating_add(1);
+        self.pace.sent(now, self.repeatable);
+        Step::Send(self.inbox.request.clone())
+    }
+
+    fn again(&mut self, now: Now) -> Step<Ended> {
+        if self.pausing {
+            self.pausing = false;
+            self.inbox.renew();
+        } else {
+            self.pace.repeat();
+            count(&mut self.inbox.counters.repeats);
+        }
+        self.send(now)
+    }
+
+    fn expire(&mut self) -> Ended {
+        let counters = self.inbox.counters;
+        match self.busy.take() {
+            Some(busy) if self.pausing || self.repeatable => Ended::Answered(busy),
+            _ if self.repeatable => Ended::NoAnswer(counters),
+            _ => Ended::OutcomeUnknown(counters),
+        }
+    }
+
+    fn reply(&self, now: Now, answer: &AnswerFrame<'_>) -> Reply {
+        Reply {
+            status: answer.status,
+            data: answer.data.to_vec(),
+            elapsed: now.saturating_sub(self.started.unwrap_or(now)),
+            attempts: self.attempts,
+        }
+    }
+}
+
+impl Session for Exchange {
+    type Outcome = Ended;
+
+    fn poll(&mut self, now: Now) -> Step<Ended> {
+        if let Some(ended) = &self.ended {
+            return Step::Done(ended.clone());
+        }
+        if self.started.is_none() {
+            self.started = Some(now);
+            self.pace.restart(now);
+            return self.send(now);
+        }
+        match self.pace.due(now) {
+            Due::Nothing { before } => Step::Wait(before),
+            Due::Repeat => self.again(now),
+            Due::Expired => {
+                let ended = self.expire();
+                self.ended = Some(ended.clone());
+                Step::Done(ended)
+            }
+        }
+    }
+
+    fn handle(&mut self, now: Now, bytes: &[u8]) {
+        let Some(answer) = self.inbox.answer(bytes) else { return };
+        if self.started.is_none() {
+            return count(&mut self.inbox.counters.foreign);
+        }
+        if self.ended.is_some() {
+            return count(&mut self.inbox.counters.duplicated);
+        }
+        if !is_busy(answer.status) {
+            // Also under a former id: then the network doubled the request, and the other copy was carried out.
+            self.ended = Some(Ended::Answered(self.reply(now, &answer)));
+        } else if answer.id != self.inbox.id {
+            count(&mut self.inbox.counters.late);
+        } else if self.pausing {
+            count(&mut self.inbox.counters.duplicated);
+        } else {
+            count(&mut self.inbox.counters.busy);
+            let reply = self.reply(now, &answer);
+            if self.pace.pause(now) {
+                self.pausing = true;
+                self.busy = Some(reply);
+            } else {
+                self.ended = Some(Ended::Answered(reply));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::wire::{Division, LAST_BLOCK};
+    use super::super::testing::{done, hex, ms, sent, under_id};
+    use super::*;
+
+    const READ: RequestFrame<'static> = RequestFrame {
+        division: Division::Robot,
+        ack: false,
+        id: 0,
+        block: 0,
+        command: 0x72,
+        instance: 1,
+        attribute: 0,
+        service: 0x01,
+        data: &[],
+    };
+    const START: RequestFrame<'static> =
+        RequestFrame { command: 0x86, attribute: 1, service: 0x10, data: &[1, 0, 0, 0], ..READ };
+
+    fn answer(request: &RequestFrame<'_>, id: u8, status: Status, data: &[u8]) -> Vec<u8> {
+        let service = request.service | 0x80;
+        AnswerFrame { division: request.division, ack: true, id, block: LAST_BLOCK, service, status, data }.emit()
+    }
+
+    fn start(request: &RequestFrame<'_>, repeatable: bool) -> Exchange {
+        Exchange::new(request, repeatable, Policy::default(), &Ids::default())
+    }
+
+    #[test]
+    fn delete_as_in_section_3_2_6() {
+        let request = RequestFrame {
+            division: Division::File,
+            command: 0,
+            instance: 0,
+            service: 0x09,
+            data: b"TESTJOB.JBI",
+            ..READ
+        };
+        let mut session = Exchange::new(&request, false, Policy::default(), &Ids::starting_at(0x0B));
+        assert_eq!(
+            sent(&mut session, ms(0)),
+            hex("5945524320000b000302000b0000000039393939393939390000000000090000544553544a4f422e4a4249")
+        );
+        assert_eq!(session.poll(ms(0)), Step::Wait(ms(3000)));
+        session.handle(ms(12), &hex("59455243200000000302010b0000008039393939393939398900000000000000"));
+        let reply = Reply { status: Status::OK, data: vec![], elapsed: ms(12), attempts: 1 };
+        assert_eq!(done(&mut session, ms(12)), Ended::Answered(reply));
+        assert_eq!(session.counters(), Counters::default());
+    }
+
+    #[test]
+    fn a_read_asks_again_under_the_same_id_and_takes_the_answer_to_any_copy() {
+        let mut session = start(&READ, true);
+        let first = sent(&mut session, ms(0));
+        assert_eq!(session.poll(ms(1)), Step::Wait(ms(300)));
+        assert_eq!(sent(&mut session, ms(300)), first);
+        let frame = answer(&READ, 0, Status::OK, &[7; 8]);
+        session.handle(ms(310), &frame);
+        session.handle(ms(311), &frame);
+        let Ended::Answered(reply) = done(&mut session, ms(311)) else { panic!("not answered") };
+        assert_eq!((reply.data, reply.elapsed, reply.attempts), (vec![7; 8], ms(310), 2));
+        assert_eq!(session.counters(), Counters { repeats: 1, duplicated: 1, ..Counters::default() });
+    }
+
+    #[test]
+    fn a_read_without_an_answer_ends_at_its_deadline() {
+        let mut session = start(&READ, true);
+        for at in [0, 300, 900, 2100] {
+            sent(&mut session, ms(at));
+        }
+        assert_eq!(session.poll(ms(2999)), Step::Wait(ms(3000)));
+        let counters = Counters { repeats: 3, ..Counters::default() };
+        assert_eq!(done(&mut session, ms(3000)), Ended::NoAnswer(counters));
+    }
+
+    #[test]
+    fn a_change_leaves_once_and_its_lost_answer_leaves_the_outcome_unknown() {
+        let mut session = start(&START, false);
+        sent(&mut session, ms(0));
+        for at in (0..3000).step_by(100) {
+            assert_eq!(session.poll(ms(at)), Step::Wait(ms(3000)));
+        }
+        assert_eq!(done(&mut session, ms(3000)), Ended::OutcomeUnknown(Counters::default()));
+        session.handle(ms(3001), &answer(&START, 0, Status::OK, &[]));
+        assert_eq!(done(&mut session, ms(3001)), Ended::OutcomeUnknown(Counters::default()));
+    }
+
+    #[test]
+    fn a_refusal_is_an_answer() {
+        let mut session = start(&START, false);
+        sent(&mut session, ms(0));
+        session.handle(ms(9), &answer(&START, 0, Status::refused(0x2010), &[]));
+        let Ended::Answered(reply) = done(&mut session, ms(9)) else { panic!("not answered") };
+        assert_eq!(reply.status, Status::refused(0x2010));
+    }
+
+    #[test]
+    fn busy_is_waited_out_under_a_new_id_that_old_copies_cannot_touch() {
+        let mut session = start(&START, false);
+        let first = sent(&mut session, ms(0));
+        let busy = answer(&START, 0, Status::refused(0xD8FA), &[]);
+        session.handle(ms(10), &busy);
+        session.handle(ms(11), &busy);
+        assert_eq!(session.poll(ms(11)), Step::Wait(ms(110)));
+        let second = sent(&mut session, ms(110));
+        assert_eq!((first[11], second[11]), (0, 1));
+        assert_eq!((&first[..11], &first[12..]), (&second[..11], &second[12..]));
+        // The third copy of the old refusal must not cause a third request.
+        session.handle(ms(111), &busy);
+        assert_eq!(session.poll(ms(111)), Step::Wait(ms(3000)));
+        session.handle(ms(120), &answer(&START, 1, Status::OK, &[]));
+        let Ended::Answered(reply) = done(&mut session, ms(120)) else { panic!("not answered") };
+        assert_eq!((reply.status, reply.attempts), (Status::OK, 2));
+        assert_eq!(session.counters(), Counters { busy: 1, duplicated: 1, late: 1, ..Counters::default() });
+    }
+
+    #[test]
+    fn a_controller_that_stays_busy_is_quoted() {
+        for repeatable in [true, false] {
+            let ids = Ids::default();
+            let mut session = Exchange::new(&START, repeatable, Policy::default(), &ids);
+            let (mut now, mut sends) = (ms(0), 0_u8);
+            let outcome = loop {
+                match session.poll(now) {
+                    Step::Send(frame) => {
+                        assert_eq!(frame[11], sends);
+                        session.handle(now, &answer(&START, sends, Status::refused(0xE444), &[]));
+                        sends += 1;
+                    }
+                    Step::Wait(until) => now = until,
+                    Step::Done(outcome) => break outcome,
+                    other => panic!("{other:?}"),
+                }
+            };
+            // Pauses of 100, 200, 400, 800, 1000 ms; another second would leave no time for an answer.
+            assert_eq!((sends, now), (6, ms(2500)));
+            let Ended::Answered(reply) = outcome else { panic!("not answered") };
+            assert_eq!((reply.status, reply.attempts), (Status::refused(0xE444), 6));
+        }
+    }
+
+    #[test]
+    fn a_change_that_is_sent_again_after_busy_and_then_lost_is_unknown() {
+        let mut session = start(&START, false);
+        sent(&mut session, ms(0));
+        session.handle(ms(10), &answer(&START, 0, Status::refused(0xFFF6), &[]));
+        sent(&mut session, ms(110));
+        assert_eq!(done(&mut session, ms(3000)), Ended::OutcomeUnknown(Counters { busy: 1, ..Counters::default() }));
+    }
+
+    #[test]
+    fn the_other_copy_of_a_doubled_request_ends_the_pause() {
+        let mut session = start(&START, false);
+        sent(&mut session, ms(0));
+        session.handle(ms(10), &answer(&START, 0, Status::refused(0xD8F1), &[]));
+        session.handle(ms(20), &answer(&START, 0, Status::OK, &[]));
+        let Ended::Answered(reply) = done(&mut session, ms(20)) else { panic!("not answered") };
+        assert_eq!((reply.status, reply.attempts), (Status::OK, 1));
+    }
+
+    #[test]
+    fn everything_else_is_counted_by_class() {
+        let ids = Ids::starting_at(40);
+        let mut session = Exchange::new(&READ, true, Policy::default(), &ids);
+        sent(&mut session, ms(0));
+        let good = answer(&READ, 40, Status::OK, &[1; 8]);
+        let changed = |offset: usize, value: u8| {
+            let mut frame = good.clone();
+            frame[offset] = value;
+            frame
+        };
+        let longer = [good.as_slice(), &[0]].concat();
+        let bad = [
+            good[..31].to_vec(),
+            good[..39].to_vec(),
+            longer,
+            vec![0; 512],
+            changed(0, b'X'),
+            changed(4, 0x21),
+            changed(9, 2),
+            changed(10, 0),
+            changed(24, 0x8E),
+            under_id(&good, 41),
+            under_id(&good, 39),
+        ];
+        for frame in &bad {
+            session.handle(ms(5), frame);
+        }
+        assert_eq!(session.poll(ms(5)), Step::Wait(ms(300)));
+        let expected = Counters { truncated: 2, oversized: 2, garbage: 2, foreign: 4, late: 1, ..Counters::default() };
+        assert_eq!(session.counters(), expected);
+        session.handle(ms(6), &good);
+        assert!(matches!(done(&mut session, ms(6)), Ended::Answered(_)));
+    }
+
+    #[test]
+    fn the_block_number_of_an_answer_is_not_enforced() {
+        let mut session = start(&READ, true);
+        sent(&mut session, ms(0));
+        let mut frame = answer(&READ, 0, Status::OK, &[1; 8]);
+        frame[15] = 0;
+        session.handle(ms(6), &frame);
+        assert!(matches!(done(&mut session, ms(6)), Ended::Answered(_)));
+    }
+}

@@ -1,0 +1,395 @@
+//! Conversations with a controller: one request and its answer, a file or list to the PC, a file to the controller.
+//!
+//! Datagrams get lost, doubled, late and damaged, and the manuals say nothing about any of it. The rules here:
+//!
+//! - **Reads repeat, changes do not.** A request that changes state leaves once; without an answer its outcome is
+//!   unknown, and is said to be. The one exception is a busy refusal, which states that nothing was done.
+//! - **A busy refusal is waited out under a new id.** A second copy of the old refusal can then never pass for a refusal
+//!   of the request that followed it, which may well have been carried out.
+//! - **A transfer keeps one id** and is stop-and-wait. Only silence makes a session send its last frame again, never a
+//!   duplicate: two sides that answer every copy with a copy multiply the traffic until the end of the file.
+//! - **Blocks come in order or not at all.** A gap ends a transfer; nothing is guessed.
+//! - Frames that do not belong here are counted by class ([`Counters`]) and ignored.
+//!
+//! Who sent a datagram is the driver's to check: only what comes from the controller's address and port belongs here.
+
+use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::time::Duration;
+
+use super::wire::{ANSWER_BIT, AnswerFrame, RequestFrame, Status, WireError};
+use crate::controller::Now;
+
+mod download;
+mod exchange;
+mod upload;
+
+pub use download::{Download, DownloadEnd, Violation};
+pub use exchange::{Ended, Exchange, Reply};
+pub use upload::{Upload, UploadEnd};
+
+/// Added status codes that say "not now": the request was not carried out and may be sent again (DX chapter 4).
+pub const BUSY: [u32; 4] = [0xD8F1, 0xD8FA, 0xE444, 0xFFF6];
+
+/// The pause after the first busy refusal; it doubles with each, up to [`LONGEST_PAUSE`].
+const FIRST_PAUSE: Duration = Duration::from_millis(100);
+const LONGEST_PAUSE: Duration = Duration::from_secs(1);
+
+/// An id that is this many places behind that of a session belongs to one of its forerunners, and its frame came late.
+const LATE_WINDOW: u8 = 32;
+
+/// Whether a controller refused only because it was busy.
+pub fn is_busy(status: Status) -> bool {
+    !status.is_ok() && BUSY.contains(&status.added)
+}
+
+/// How long to wait and how often to try.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Policy {
+    /// Patience: for an exchange as a whole, for a transfer without progress.
+    pub deadline: Duration,
+    /// Silence before the first repeat; it doubles with each further one.
+    pub attempt: Duration,
+    /// Most repeats of the same frame after silence.
+    pub retries: u32,
+}
+
+impl Default for Policy {
+    /// A controller answers within 20 ms. With these, a frame goes out after 0, 0.3, 0.9 and 2.1 s and is given up
+    /// after 3 s.
+    fn default() -> Self {
+        Self { deadline: Duration::from_secs(3), attempt: Duration::from_millis(300), retries: 3 }
+    }
+}
+
+/// The request ids of a client: 0 to 255, then 0 again. Clones draw from the same sequence.
+#[derive(Debug, Clone, Default)]
+pub struct Ids(Arc<AtomicU8>);
+
+impl Ids {
+    /// Ids that begin with `first`; [`Ids::default`] begins with 0.
+    pub fn starting_at(first: u8) -> Self {
+        Self(Arc::new(AtomicU8::new(first)))
+    }
+
+    /// The id of the next command.
+    pub fn next_id(&self) -> u8 {
+        // Adding to an atomic wraps around, as the ids do.
+        self.0.fetch_add(1, Ordering::Relaxed)
+    }
+}
+
+/// What a session saw and did beside the plain course of things.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counters {
+    /// Frames that answer an earlier request of this client.
+    pub late: u32,
+    /// Frames that answer nothing this client asked: other id, other service, other server, not marked as an answer.
+    pub foreign: u32,
+    /// Second copies of what had been taken before.
+    pub duplicated: u32,
+    /// Datagrams shorter than they say, or than any frame.
+    pub truncated: u32,
+    /// Datagrams longer than they say, or than any frame.
+    pub oversized: u32,
+    /// Datagrams that are no frames for another reason.
+    pub garbage: u32,
+    /// Frames sent again after silence.
+    pub repeats: u32,
+    /// Busy refusals.
+    pub busy: u32,
+}
+
+impl Counters {
+    fn named(&self) -> [(u32, &'static str); 8] {
+        [
+            (self.late, "late"),
+            (self.foreign, "foreign"),
+            (self.duplicated, "duplicated"),
+            (self.truncated, "truncated"),
+            (self.oversized, "oversized"),
+            (self.garbage, "garbage"),
+            (self.repeats, "repeated"),
+            (self.busy, "busy"),
+        ]
+    }
+
+    /// Whether datagrams arrived that were no answer, which tells "something else is there" from "nothing is there".
+    pub fn heard_something(&self) -> bool {
+        self.named().iter().any(|&(count, name)| count > 0 && name != "repeated")
+    }
+}
+
+impl fmt::Display for Counters {
+    /// The counts that are not 0, as in "2 foreign, 1 truncated"; "nothing" if all are.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut separator = "";
+        for (count, name) in self.named().into_iter().filter(|&(count, _)| count > 0) {
+            write!(f, "{separator}{count} {name}")?;
+            separator = ", ";
+        }
+        if separator.is_empty() { f.write_str("nothing") } else { Ok(()) }
+    }
+}
+
+/// A copy of a frame of this client under another id.
+fn with_id(frame: &[u8], id: u8) -> Vec<u8> {
+    let frame = RequestFrame::parse(frame).expect("sessions build their frames with emit");
+    RequestFrame { id, ..frame }.emit()
+}
+
+/// Adds one; a flood must not overflow a counter.
+fn count(counter: &mut u32) {
+    *counter = counter.saturating_add(1);
+}
+
+/// Tells the answers to a request from everything else.
+#[derive(Debug, Clone)]
+struct Inbox {
+    request: Vec<u8>,
+    ids: Ids,
+    id: u8,
+    /// Ids this session used before its present one, youngest last.
+    former: Vec<u8>,
+    counters: Counters,
+}
+
+/// Ids a session remembers of those it used before.
+const FORMER_IDS: usize = 8;
+
+impl Inbox {
+    /// For the answers to `request`, whose id is replaced by one drawn from `ids`.
+    fn new(request: &RequestFrame<'_>, ids: &Ids) -> Self {
+        let id = ids.next_id();
+        let request = RequestFrame { id, ..*request }.emit();
+        Self { request, ids: ids.clone(), id, former: Vec::new(), counters: Counters::default() }
+    }
+
+    fn request(&self) -> RequestFrame<'_> {
+        RequestFrame::parse(&self.request).expect("the inbox built this frame with emit")
+    }
+
+    /// Goes on under a new id; answers to the old one are late from now on.
+    fn renew(&mut self) {
+        if self.former.len() == FORMER_IDS {
+            self.former.remove(0);
+        }
+        self.former.push(self.id);
+        self.id = self.ids.next_id();
+        self.request = with_id(&self.request, self.id);
+    }
+
+    /// The answer in a datagram, if it is one to this session's present or former ids; counts anything else.
+    fn answer<'a>(&mut self, bytes: &'a [u8]) -> Option<AnswerFrame<'a>> {
+        let counters = &mut self.counters;
+        let answer = match AnswerFrame::parse(bytes) {
+            Ok(answer) => answer,
+            Err(error) => {
+                count(match error {
+                    WireError::Truncated { .. } => &mut counters.truncated,
+                    WireError::DataSize { stated, present } if stated > present => &mut counters.truncated,
+                    WireError::Oversized { .. } | WireError::DataSize { .. } => &mut counters.oversized,
+                    _ => &mut counters.garbage,
+                });
+                return None;
+            }
+        };
+        let request = RequestFrame::parse(&self.request).expect("the inbox built this frame with emit");
+        let fits = answer.division == request.division && answer.ack && answer.service == request.service | ANSWER_BIT;
+        let own = answer.id == self.id || self.former.contains(&answer.id);
+        if fits && own {
+            return Some(answer);
+        }
+        let behind = self.id.wrapping_sub(answer.id);
+        let late = answer.ack && (1..=LATE_WINDOW).contains(&behind);
+        count(if late { &mut counters.late } else { &mut counters.foreign });
+        None
+    }
+
+    /// As [`Inbox::answer`], for the present id alone.
+    fn current<'a>(&mut self, bytes: &'a [u8]) -> Option<AnswerFrame<'a>> {
+        let answer = self.answer(bytes)?;
+        if answer.id == self.id {
+            return Some(answer);
+        }
+        count(&mut self.counters.late);
+        None
+    }
+}
+
+/// When a frame goes out again and when patience ends.
+#[derive(Debug, Clone)]
+struct Pace {
+    policy: Policy,
+    deadline: Now,
+    repeat_at: Option<Now>,
+    /// Repeats of the present frame after silence.
+    repeats: u32,
+    pause: Duration,
+}
+
+/// What time it is for a session that waits for an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Due {
+    Nothing { before: Now },
+    Repeat,
+    Expired,
+}
+
+impl Pace {
+    fn new(policy: Policy) -> Self {
+        Self { policy, deadline: Now::ZERO, repeat_at: None, repeats: 0, pause: FIRST_PAUSE }
+    }
+
+    /// Patience starts anew.
+    fn restart(&mut self, now: Now) {
+        self.deadline = now.saturating_add(self.policy.deadline);
+        self.repeat_at = None;
+        self.repeats = 0;
+        self.pause = FIRST_PAUSE;
+    }
+
+    /// A frame left, to be repeated after silence if `repeatable`.
+    fn sent(&mut self, now: Now, repeatable: bool) {
+        let doubled = 1_u32.checked_shl(self.repeats).unwrap_or(u32::MAX);
+        let silence = self.policy.attempt.saturating_mul(doubled);
+        let more = repeatable && self.repeats < self.policy.retries;
+        self.repeat_at = more.then(|| now.saturating_add(silence));
+    }
+
+    /// The last frame is about to leave again because of silence.
+    fn repeat(&mut self) {
+        self.repeats = self.repeats.saturating_add(1);
+    }
+
+    /// Makes room for a pause before the frame goes out again; `false` if patience ends before an answer could come.
+    fn pause(&mut self, now: Now) -> bool {
+        let resume = now.saturating_add(self.pause);
+        if resume.saturating_add(self.policy.attempt) > self.deadline {
+            return false;
+        }
+        self.pause = self.pause.saturating_mul(2).min(LONGEST_PAUSE);
+        self.repeat_at = Some(resume);
+        self.repeats = 0;
+        true
+    }
+
+    fn due(&self, now: Now) -> Due {
+        if now >= self.deadline {
+            return Due::Expired;
+        }
+        match self.repeat_at {
+            Some(at) if at <= now => Due::Repeat,
+            Some(at) => Due::Nothing { before: at.min(self.deadline) },
+            None => Due::Nothing { before: self.deadline },
+        }
+    }
+}
+
+#[cfg(test)]
+mod testing {
+    //! What the tests of the sessions share.
+
+    use super::*;
+    use crate::controller::{Session, Step};
+
+    pub(super) fn hex(text: &str) -> Vec<u8> {
+        assert!(text.len().is_multiple_of(2), "half a byte in {text}");
+        (0..text.len()).step_by(2).map(|i| u8::from_str_radix(&text[i..i + 2], 16).unwrap()).collect()
+    }
+
+    pub(super) const fn ms(millis: u64) -> Now {
+        Duration::from_millis(millis)
+    }
+
+    /// The frame a session sends now.
+    pub(super) fn sent<S: Session<Outcome: fmt::Debug>>(session: &mut S, now: Now) -> Vec<u8> {
+        match session.poll(now) {
+            Step::Send(frame) => frame,
+            other => panic!("expected a frame to send at {now:?}, not {other:?}"),
+        }
+    }
+
+    /// How a session has ended by now.
+    pub(super) fn done<S: Session<Outcome: fmt::Debug>>(session: &mut S, now: Now) -> S::Outcome {
+        match session.poll(now) {
+            Step::Done(outcome) => outcome,
+            other => panic!("expected the end at {now:?}, not {other:?}"),
+        }
+    }
+
+    /// An answer with changed id, for the places where the manual's example raises it within a transfer.
+    pub(super) fn under_id(frame: &[u8], id: u8) -> Vec<u8> {
+        let frame = AnswerFrame::parse(frame).unwrap();
+        AnswerFrame { id, ..frame }.emit()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::testing::ms;
+    use super::*;
+
+    #[test]
+    fn ids_start_at_0_and_wrap() {
+        let ids = Ids::default();
+        assert_eq!(ids.next_id(), 0);
+        let others = ids.clone();
+        for expected in 1..=255 {
+            assert_eq!(others.next_id(), expected);
+        }
+        assert_eq!(ids.next_id(), 0);
+    }
+
+    #[test]
+    fn counters_name_only_what_was_seen() {
+        assert_eq!(Counters::default().to_string(), "nothing");
+        let counters = Counters { foreign: 2, truncated: 1, ..Counters::default() };
+        assert_eq!(counters.to_string(), "2 foreign, 1 truncated");
+        assert!(counters.heard_something());
+        assert!(!Counters { repeats: 3, ..Counters::default() }.heard_something());
+    }
+
+    #[test]
+    fn silence_doubles_and_ends_with_the_deadline() {
+        let mut pace = Pace::new(Policy::default());
+        pace.restart(ms(0));
+        let mut sends = Vec::new();
+        let mut now = ms(0);
+        pace.sent(now, true);
+        loop {
+            match pace.due(now) {
+                Due::Nothing { before } => now = before,
+                Due::Repeat => {
+                    pace.repeat();
+                    pace.sent(now, true);
+                    sends.push(now);
+                }
+                Due::Expired => break,
+            }
+        }
+        assert_eq!(sends, [ms(300), ms(900), ms(2100)]);
+        assert_eq!(now, ms(3000));
+    }
+
+    #[test]
+    fn extreme_policies_neither_overflow_nor_hang() {
+        let policy = Policy { deadline: Duration::MAX, attempt: Duration::MAX, retries: u32::MAX };
+        let mut pace = Pace::new(policy);
+        pace.restart(Duration::MAX);
+        pace.repeats = 40;
+        pace.sent(Duration::MAX, true);
+        assert_eq!(pace.due(Duration::MAX), Due::Expired);
+        assert_eq!(pace.due(ms(0)), Due::Nothing { before: Duration::MAX });
+    }
+
+    #[test]
+    fn only_the_four_codes_beside_a_refusal_are_busy() {
+        for added in [0xD8F1, 0xD8FA, 0xE444, 0xFFF6] {
+            assert!(is_busy(Status::refused(added)));
+        }
+        assert!(!is_busy(Status::refused(0x2100)));
+        assert!(!is_busy(Status { code: 0, added_size: 1, added: 0xD8FA }));
+    }
+}

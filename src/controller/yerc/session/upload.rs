@@ -1,0 +1,471 @@
+//! A file goes to the controller (load 0x15; DX 3.2.4).
+
+use super::super::wire::{LAST_BLOCK, MAX_DATA, RequestFrame, Status};
+use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy};
+use crate::controller::{Now, Session, Step};
+
+/// How an upload ended. `sent` counts the file's bytes in the blocks that left, `taken` those in blocks the controller
+/// acknowledged.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum UploadEnd {
+    /// The controller acknowledged every block up to the last one.
+    Complete {
+        /// Size of the whole.
+        bytes: u64,
+        /// Blocks it went in.
+        blocks: u32,
+    },
+    /// The file has no bytes; nothing was sent. A transfer ends with a block of data that is marked as the last, and
+    /// neither manual knows one without data: the controller would be left with an open transfer or half a file.
+    Empty,
+    /// The file needs more blocks than there are block numbers.
+    TooLong {
+        /// Bytes that left before the numbers ran out.
+        sent: u64,
+    },
+    /// The controller refused, at first or on the way.
+    Refused {
+        /// Its reason. A busy code if it was busy to the end.
+        status: Status,
+        /// Bytes that left.
+        sent: u64,
+        /// Bytes that were acknowledged.
+        taken: u64,
+        /// Whether the refused frame had been sent before without an answer: then that copy may have been taken, and
+        /// if it was the last block, the file may be there in spite of the refusal.
+        repeated: bool,
+    },
+    /// Silence after the request: no data left.
+    NoAnswer(Counters),
+    /// Silence after data left: the controller may hold nothing, a part, or after the last block the whole file.
+    OutcomeUnknown {
+        /// Bytes that left.
+        sent: u64,
+        /// Bytes that were acknowledged.
+        taken: u64,
+        /// What was seen instead of an acknowledgement.
+        counters: Counters,
+    },
+}
+
+/// The frame whose acknowledgement is due.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    /// None: the next block is being gathered.
+    Gather,
+    /// The request.
+    Request,
+    /// The block that was sent last.
+    Block { last: bool },
+}
+
+/// A transfer to the controller. It asks for content with [`Step::Feed`], first of all before anything is sent, so that
+/// a source that is empty or cannot be read costs nothing.
+#[derive(Debug, Clone)]
+pub struct Upload {
+    inbox: Inbox,
+    pace: Pace,
+    block_size: usize,
+    /// What was fed and has yet to leave.
+    buffer: Vec<u8>,
+    source_ended: bool,
+    stage: Stage,
+    /// Whether the request was accepted.
+    accepted: bool,
+    last_sent: Vec<u8>,
+    /// Number of the block that was sent last, 0 before the first.
+    block: u32,
+    sent: u64,
+    taken: u64,
+    /// Whether the last frame sent was sent before and that copy not answered.
+    repeated: bool,
+    /// The busy refusal of the last frame sent; that frame is due again later.
+    busy: Option<Status>,
+    ended: Option<UploadEnd>,
+}
+
+impl Upload {
+    /// Sends `request` (load) under an id drawn from `ids`; the one in `request` is not looked at.
+    ///
+    /// # Panics
+    /// If the data of `request` is longer than a frame holds.
+    pub fn new(request: &RequestFrame<'_>, policy: Policy, ids: &Ids) -> Self {
+        Self {
+            inbox: Inbox::new(request, ids),
+            pace: Pace::new(policy),
+            block_size: MAX_DATA,
+            buffer: Vec::new(),
+            source_ended: false,
+            stage: Stage::Gather,
+            accepted: false,
+            last_sent: Vec::new(),
+            block: 0,
+            sent: 0,
+            taken: 0,
+            repeated: false,
+            busy: None,
+            ended: None,
+        }
+    }
+
+    /// Sends blocks of this many bytes instead of 479. Other clients are known to use 400.
+    ///
+    /// # Panics
+    /// If `size` is not 1 to 479.
+    #[must_use]
+    pub fn with_block_size(mut self, size: usize) -> Self {
+        assert!((1..=MAX_DATA).contains(&size), "blocks have 1 to {MAX_DATA} bytes, not {size}");
+        self.block_size = size;
+        self
+    }
+
+    /// The answer to [`Step::Feed`]: the next piece of the file, of any size, and whether it ends there. The end may
+    /// come with a piece or, empty, after the last one. What is fed after the end is dropped.
+    pub fn feed(&mut self, data: &[u8], last: bool) {
+        if self.source_ended {
+            return;
+        }
+        self.buffer.extend_from_slice(data);
+        self.source_ended = last;
+    }
+
+    /// What was seen so far beside the acknowledgements.
+    pub fn counters(&self) -> Counters {
+        self.inbox.counters
+    }
+
+    /// Bytes the controller has acknowledged so far.
+    pub fn taken(&self) -> u64 {
+        self.taken
+    }
+
+    /// The frame that follows the last acknowledged one, or the need for more content.
+    fn next_frame(&mut self, now: Now) -> Step<UploadEnd> {
+        // Only a further byte shows that a full block is not the last one.
+        if !self.source_ended && self.buffer.len() <= self.block_size {
+            return Step::Feed;
+        }
+        if !self.accepted {
+            if self.buffer.is_empty() {
+                return self.end(UploadEnd::Empty);
+            }
+            self.stage = Stage::Request;
+            self.last_sent.clone_from(&self.inbox.request);
+        } else if self.block == LAST_BLOCK - 1 {
+            return self.end(UploadEnd::TooLong { sent: self.sent });
+        } else {
+            self.cut_block();
+        }
+        self.pace.restart(now);
+        self.repeated = false;
+        self.send(now)
+    }
+
+    fn cut_block(&mut self) {
+        let size = self.buffer.len().min(self.block_size);
+        let last = self.source_ended && size == self.buffer.len();
+        self.block += 1;
+        let block = if last { self.block | LAST_BLOCK } else { self.block };
+        let data = &self.buffer[..size];
+        self.last_sent = RequestFrame { ack: true, block, data, ..self.inbox.request() }.emit();
+        self.buffer.drain(..size);
+        self.sent = self.sent.saturating_add(size as u64);
+        self.stage = Stage::Block { last };
+    }
+
+    fn send(&mut self, now: Now) -> Step<UploadEnd> {
+        self.pace.sent(now, true);
+        Step::Send(self.last_sent.clone())
+    }
+
+    fn again(&mut self, now: Now) -> Step<UploadEnd> {
+        if self.busy.take().is_none() {
+            self.repeated = true;
+            self.pace.repeat();
+            count(&mut self.inbox.counters.repeats);
+        } else if self.stage == Stage::Request {
+            self.inbox.renew();
+            self.last_sent.clone_from(&self.inbox.request);
+        }
+        self.send(now)
+    }
+
+    fn end(&mut self, end: UploadEnd) -> Step<UploadEnd> {
+        self.ended = Some(end.clone());
+        Step::Done(end)
+    }
+
+    fn refused(&self, status: Status) -> UploadEnd {
+        UploadEnd::Refused { status, sent: self.sent, taken: self.taken, repeated: self.repeated }
+    }
+
+    fn expire(&self) -> UploadEnd {
+        let counters = self.inbox.counters;
+        match self.busy {
+            Some(status) => self.refused(status),
+            None if self.stage == Stage::Request => UploadEnd::NoAnswer(counters),
+            None => UploadEnd::OutcomeUnknown { sent: self.sent, taken: self.taken, counters },
+        }
+    }
+
+    fn take_busy(&mut self, now: Now, status: Status) {
+        if self.busy.is_some() || self.stage == Stage::Gather {
+            return count(&mut self.inbox.counters.duplicated);
+        }
+        count(&mut self.inbox.counters.busy);
+        if self.pace.pause(now) {
+            self.busy = Some(status);
+        } else {
+            self.ended = Some(self.refused(status));
+        }
+    }
+
+    fn take_ack(&mut self, block: u32) {
+        // A controller that acknowledges the last block without its mark means the same block all the same.
+        let number = block & !LAST_BLOCK;
+        if number > self.block {
+            return count(&mut self.inbox.counters.foreign);
+        }
+        if number < self.block || self.stage == Stage::Gather {
+            return count(&mut self.inbox.counters.duplicated);
+        }
+        self.busy = None;
+        self.accepted = true;
+        self.taken = self.sent;
+        self.ended = (self.stage == Stage::Block { last: true })
+            .then_some(UploadEnd::Complete { bytes: self.sent, blocks: self.block });
+        self.stage = Stage::Gather;
+    }
+}
+
+impl Session for Upload {
+    type Outcome = UploadEnd;
+
+    fn poll(&mut self, now: Now) -> Step<UploadEnd> {
+        if let Some(ended) = &self.ended {
+            return Step::Done(ended.clone());
+        }
+        if self.stage == Stage::Gather {
+            return self.next_frame(now);
+        }
+        match self.pace.due(now) {
+            Due::Nothing { before } => Step::Wait(before),
+            Due::Repeat => self.again(now),
+            Due::Expired => {
+                let end = self.expire();
+                self.end(end)
+            }
+        }
+    }
+
+    fn handle(&mut self, now: Now, bytes: &[u8]) {
+        let Some(answer) = self.inbox.current(bytes) else { return };
+        if self.last_sent.is_empty() {
+            return count(&mut self.inbox.counters.foreign);
+        }
+        if self.ended.is_some() {
+            return count(&mut self.inbox.counters.duplicated);
+        }
+        let status = answer.status;
+        if is_busy(status) {
+            self.take_busy(now, status);
+        } else if !status.is_ok() || status.added != 0 {
+            // Success with an added status tells of something missing when reading; here it is no acknowledgement.
+            self.ended = Some(self.refused(status));
+        } else {
+            self.take_ack(answer.block);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::wire::{AnswerFrame, Division};
+    use super::super::testing::{done, hex, ms, sent, under_id};
+    use super::super::with_id;
+    use super::*;
+
+    const LOAD: RequestFrame<'static> = RequestFrame {
+        division: Division::File,
+        ack: false,
+        id: 0,
+        block: 0,
+        command: 0,
+        instance: 0,
+        attribute: 0,
+        service: 0x15,
+        data: b"TESTJOB.JBI",
+    };
+
+    fn start(content: &[u8]) -> Upload {
+        let mut session = Upload::new(&LOAD, Policy::default(), &Ids::starting_at(5));
+        assert_eq!(session.poll(ms(0)), Step::Feed);
+        session.feed(content, true);
+        session
+    }
+
+    fn ack(block: u32) -> Vec<u8> {
+        answer(5, block, Status::OK)
+    }
+
+    fn answer(id: u8, block: u32, status: Status) -> Vec<u8> {
+        AnswerFrame { division: Division::File, ack: true, id, block, service: 0x95, status, data: &[] }.emit()
+    }
+
+    #[test]
+    fn load_as_in_section_3_2_4() {
+        // The print raises the id with every block (05, 06, 07); here a transfer keeps its id.
+        let content = [&[0x41; 479][..], b"   END\r\n"].concat();
+        let mut session = start(&content);
+        assert_eq!(
+            sent(&mut session, ms(0)),
+            hex("5945524320000b00030200050000000039393939393939390000000000150000544553544a4f422e4a4249")
+        );
+        session.handle(ms(10), &hex("5945524320000000030201050000000039393939393939399500000000000000"));
+        let head = hex("594552432000df01030201060100000039393939393939390000000000150000");
+        let block = sent(&mut session, ms(10));
+        assert_eq!(block, with_id(&[head, vec![0x41; 479]].concat(), 5));
+        session.handle(ms(20), &under_id(&hex("5945524320000000030201060100000039393939393939399500000000000000"), 5));
+        let block = hex("5945524320000800030201070200008039393939393939390000000000150000202020454e440d0a");
+        assert_eq!(sent(&mut session, ms(20)), with_id(&block, 5));
+        session.handle(ms(30), &under_id(&hex("5945524320000000030201070200008039393939393939399500000000000000"), 5));
+        assert_eq!(done(&mut session, ms(30)), UploadEnd::Complete { bytes: 487, blocks: 2 });
+        assert_eq!(session.counters(), Counters::default());
+    }
+
+    /// The data of every block of a fault-free upload, fed in pieces, with the end apart or with the last piece.
+    fn blocks(length: usize, piece: usize, block_size: usize, end_apart: bool) -> Vec<(u32, usize)> {
+        let content = vec![9; length];
+        let mut session = Upload::new(&LOAD, Policy::default(), &Ids::starting_at(5)).with_block_size(block_size);
+        let mut pieces = content.chunks(piece).peekable();
+        let mut blocks = Vec::new();
+        loop {
+            match session.poll(ms(0)) {
+                Step::Feed => match pieces.next() {
+                    Some(data) => session.feed(data, pieces.peek().is_none() && !end_apart),
+                    None => session.feed(&[], true),
+                },
+                Step::Send(frame) => {
+                    let frame = RequestFrame::parse(&frame).unwrap();
+                    if frame.ack {
+                        blocks.push((frame.block, frame.data.len()));
+                    }
+                    session.handle(ms(0), &ack(frame.block));
+                }
+                Step::Done(UploadEnd::Complete { bytes, .. }) => {
+                    assert_eq!(bytes, length as u64);
+                    return blocks;
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn blocks_are_full_and_the_last_one_is_marked_however_the_file_is_fed() {
+        for piece in [1, 100, 479, 480, 8192] {
+            for end_apart in [true, false] {
+                assert_eq!(blocks(478, piece, 479, end_apart), [(0x8000_0001, 478)]);
+                assert_eq!(blocks(479, piece, 479, end_apart), [(0x8000_0001, 479)]);
+                assert_eq!(blocks(480, piece, 479, end_apart), [(1, 479), (0x8000_0002, 1)]);
+                assert_eq!(blocks(958, piece, 479, end_apart), [(1, 479), (0x8000_0002, 479)]);
+                assert_eq!(blocks(900, piece, 400, end_apart), [(1, 400), (2, 400), (0x8000_0003, 100)]);
+            }
+        }
+    }
+
+    #[test]
+    fn an_empty_file_is_refused_before_anything_is_sent() {
+        let mut session = start(&[]);
+        assert_eq!(done(&mut session, ms(0)), UploadEnd::Empty);
+    }
+
+    #[test]
+    fn silence_repeats_the_same_block_and_other_acks_change_nothing() {
+        let mut session = start(&[1; 1000]);
+        let request = sent(&mut session, ms(0));
+        assert_eq!(sent(&mut session, ms(300)), request);
+        session.handle(ms(310), &ack(0));
+        let first = sent(&mut session, ms(310));
+        session.handle(ms(320), &ack(0));
+        session.handle(ms(330), &ack(2));
+        assert_eq!(session.poll(ms(330)), Step::Wait(ms(610)));
+        assert_eq!(sent(&mut session, ms(610)), first);
+        session.handle(ms(620), &ack(1));
+        assert_eq!(sent(&mut session, ms(620))[12..16], [2, 0, 0, 0]);
+        session.handle(ms(630), &ack(1));
+        assert_eq!(session.poll(ms(630)), Step::Wait(ms(920)));
+        let expected = Counters { repeats: 2, duplicated: 2, foreign: 1, ..Counters::default() };
+        assert_eq!((session.counters(), session.taken()), (expected, 479));
+    }
+
+    #[test]
+    fn silence_is_no_answer_before_the_first_block_and_unknown_after_it() {
+        let mut session = start(&[1; 1000]);
+        sent(&mut session, ms(0));
+        let end = done(&mut session, ms(3000));
+        assert!(matches!(end, UploadEnd::NoAnswer(_)), "{end:?}");
+
+        let mut session = start(&[1; 479]);
+        sent(&mut session, ms(0));
+        session.handle(ms(10), &ack(0));
+        sent(&mut session, ms(10));
+        let end = done(&mut session, ms(3010));
+        assert!(matches!(end, UploadEnd::OutcomeUnknown { sent: 479, taken: 0, .. }), "{end:?}");
+    }
+
+    #[test]
+    fn a_refusal_says_how_far_it_went_and_whether_a_copy_is_out() {
+        let status = Status::refused(0xE4A1);
+        for repeated in [false, true] {
+            let mut session = start(&[1; 958]);
+            sent(&mut session, ms(0));
+            session.handle(ms(10), &ack(0));
+            sent(&mut session, ms(10));
+            session.handle(ms(20), &ack(1));
+            sent(&mut session, ms(20));
+            if repeated {
+                sent(&mut session, ms(320));
+            }
+            session.handle(ms(330), &answer(5, 0x8000_0002, status));
+            assert_eq!(done(&mut session, ms(330)), UploadEnd::Refused { status, sent: 958, taken: 479, repeated });
+        }
+    }
+
+    #[test]
+    fn a_refused_request_sends_nothing() {
+        let status = Status::refused(0x2110);
+        let mut session = start(&[1; 958]);
+        sent(&mut session, ms(0));
+        session.handle(ms(10), &answer(5, 0x8000_0000, status));
+        let end = UploadEnd::Refused { status, sent: 0, taken: 0, repeated: false };
+        assert_eq!(done(&mut session, ms(10)), end);
+    }
+
+    #[test]
+    fn success_with_an_added_status_is_no_acknowledgement() {
+        let status = Status { code: 0, added_size: 1, added: 0xE29C };
+        let mut session = start(&[1; 9]);
+        sent(&mut session, ms(0));
+        session.handle(ms(10), &answer(5, 0, status));
+        assert!(matches!(done(&mut session, ms(10)), UploadEnd::Refused { .. }));
+    }
+
+    #[test]
+    fn busy_is_waited_out_with_a_new_id_for_the_request_alone() {
+        let busy = Status::refused(0xFFF6);
+        let mut session = start(&[1; 9]);
+        sent(&mut session, ms(0));
+        session.handle(ms(10), &answer(5, 0, busy));
+        assert_eq!(session.poll(ms(10)), Step::Wait(ms(110)));
+        assert_eq!(sent(&mut session, ms(110))[11], 6);
+        session.handle(ms(120), &answer(6, 0, Status::OK));
+        let block = sent(&mut session, ms(120));
+        session.handle(ms(130), &answer(6, 0x8000_0001, busy));
+        assert_eq!(session.poll(ms(130)), Step::Wait(ms(230)));
+        assert_eq!(sent(&mut session, ms(230)), block);
+        session.handle(ms(240), &answer(6, 0x8000_0001, Status::OK));
+        assert_eq!(done(&mut session, ms(240)), UploadEnd::Complete { bytes: 9, blocks: 1 });
+        assert_eq!(session.counters(), Counters { busy: 2, ..Counters::default() });
+    }
+}
