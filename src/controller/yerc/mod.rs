@@ -4,6 +4,7 @@
 //! HW1481031, DX = DX200 manual HW1481977; section numbers are the same in both unless told otherwise.
 
 pub mod status;
+pub mod subcode;
 pub mod wire;
 
 /// The controller a robot hangs on: number ranges, string sizes and move layouts differ.
