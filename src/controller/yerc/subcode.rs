@@ -84,8 +84,8 @@ enum Form {
     Unknown,
 }
 
-/// Names of a robot's axes in the order of their data (DX 3.3.5).
-const ROBOT_AXES: &[&str] = &["S", "L", "U", "R", "B", "T", "E", "W"];
+/// Names of a robot's axes in the order of their data (DX 3.3.5; an eighth is not named).
+const ROBOT_AXES: &[&str] = &["S", "L", "U", "R", "B", "T", "E"];
 const SPACE_AXES: &[&str] = &["X", "Y", "Z"];
 const POSE_AXES: &[&str] = &["X", "Y", "Z", "Rx", "Ry", "Rz"];
 
@@ -223,7 +223,7 @@ mod tests {
     #[test]
     fn subsets_name_their_members() {
         assert_eq!(dx200(3, 0b10_0101).0, "[SUT]");
-        assert_eq!(dx200(3, 0xC0).0, "[EW]");
+        assert_eq!(dx200(3, 0x41).0, "[SE]");
         assert_eq!(dx200(5, 0b01_0010).0, "[YRy]");
         assert_eq!(dx200(2, 0xA5).0, "[1010_0101]");
         assert_eq!(dx200(3, 0).0, "");
