@@ -5,6 +5,7 @@
 
 pub mod status;
 pub mod session;
+pub mod subcode;
 pub mod wire;
 
 /// The controller a robot hangs on: number ranges, string sizes and move layouts differ.

@@ -1,0 +1,288 @@
+//! Alarm sub-codes: a 32-bit value whose meaning depends on the alarm type beside it (FS and DX 3.3.1, 3.3.2, 3.3.37).
+//!
+//! The manuals print the types and how the pendant shows each of them, but not how the bits are laid out. How far a
+//! rendering can be trusted is therefore part of it:
+//!
+//! | types | trust | because |
+//! |---|---|---|
+//! | 0, 1, 2, 6, 9, 10 | [`Trust::Printed`] | numbers and bit patterns whose width and sign the manuals print |
+//! | 3, 4, 5 | [`Trust::Inferred`] | a set of named axes; that bit 0 is the first name is our inference |
+//! | 8, 11, 12 | [`Trust::Inferred`] | a set of groups; that the robots begin at bit 0 is inference, where stations and bases begin is unknown, so their bits are shown by number |
+//! | 20-25, 27 | [`Trust::Raw`] | several fields in one word, in an order that no source gives; a guess could send a technician to the wrong axis |
+//! | others | [`Trust::Raw`] | not in the manuals (7, 13-19, 26) |
+//!
+//! A value that does not fit its type's form is shown raw. Controllers that have 0x30A and 0x30B send the pendant's own
+//! text for every type, which is better than anything here.
+
+use std::fmt;
+
+use super::Model;
+
+/// How far a rendering can be trusted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Trust {
+    /// The manuals print all that the rendering needs.
+    Printed,
+    /// The form is printed; the place of the bits is inferred.
+    Inferred,
+    /// Not interpreted.
+    Raw,
+}
+
+impl Trust {
+    /// The name in JSON.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Printed => "printed",
+            Self::Inferred => "inferred",
+            Self::Raw => "raw",
+        }
+    }
+}
+
+/// A sub-code in words. [`Display`](fmt::Display) adds the raw value wherever the text is not certain.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SubCode {
+    /// The alarm type received.
+    pub alarm_type: u32,
+    /// The sub-code received.
+    pub data: u32,
+    /// What the type says the sub-code holds.
+    pub type_name: &'static str,
+    /// The form the pendant shows, such as `[1]` or `[SLU]`; the bytes in hexadecimal, lowest first, if
+    /// [`trust`](Self::trust) is raw; empty if there is no sub-code.
+    pub text: String,
+    /// How far to trust the text.
+    pub trust: Trust,
+}
+
+/// Renders the sub-code `data` of an alarm of type `alarm_type`. The model bounds the number of robots. Never fails:
+/// unknown types and values that do not fit come through raw.
+pub fn render(alarm_type: u32, data: u32, model: Model) -> SubCode {
+    let row = TYPES.iter().find(|(number, ..)| *number == alarm_type);
+    let (type_name, form) = row.map_or(("undocumented type", Form::Unknown), |(_, name, form)| (*name, *form));
+    let (text, trust) = form.render(data, model).unwrap_or_else(|| (bytes(data), Trust::Raw));
+    SubCode { alarm_type, data, type_name, text, trust }
+}
+
+/// What is known of a type's form.
+#[derive(Debug, Clone, Copy)]
+enum Form {
+    /// There is no sub-code.
+    Empty,
+    /// A number of 16 bits without sign.
+    Unsigned16,
+    /// A number of 16 bits with sign.
+    Signed16,
+    /// This many bits, four to a group.
+    Bits(u32),
+    /// A set of axes, bit 0 first.
+    Axes(&'static [&'static str]),
+    /// A set of control groups, robots first.
+    Groups,
+    /// Fields in an unpublished order.
+    Unknown,
+}
+
+/// Names of a robot's axes in the order of their data (DX 3.3.5; an eighth is not named).
+const ROBOT_AXES: &[&str] = &["S", "L", "U", "R", "B", "T", "E"];
+const SPACE_AXES: &[&str] = &["X", "Y", "Z"];
+const POSE_AXES: &[&str] = &["X", "Y", "Z", "Rx", "Ry", "Rz"];
+
+/// The types of FS and DX 3.3.1, ascending. FS prints type 27 as `[R1: 1]`; DX repeats the example of type 25 there.
+const TYPES: [(u32, &str, Form); 19] = [
+    (0, "no sub-code", Form::Empty),
+    (1, "number", Form::Unsigned16),
+    (2, "8-bit pattern", Form::Bits(8)),
+    (3, "axes of the robot", Form::Axes(ROBOT_AXES)),
+    (4, "directions in space", Form::Axes(SPACE_AXES)),
+    (5, "directions of the robot's coordinates", Form::Axes(POSE_AXES)),
+    (6, "conveyor characteristic file", Form::Unsigned16),
+    (8, "control groups: robots and stations", Form::Groups),
+    (9, "signed number", Form::Signed16),
+    (10, "16-bit pattern", Form::Bits(16)),
+    (11, "control groups: robots", Form::Groups),
+    (12, "control groups: robots, stations, bases", Form::Groups),
+    (20, "control group with its LOW and HIGH axes", Form::Unknown),
+    (21, "control group with its MIN and MAX axes", Form::Unknown),
+    (22, "control group with its MIN and MAX directions in space", Form::Unknown),
+    (23, "two control groups with their axes", Form::Unknown),
+    (24, "control group with two sets of axes", Form::Unknown),
+    (25, "control group with its axes and a number", Form::Unknown),
+    (27, "control group and a number", Form::Unknown),
+];
+
+impl Form {
+    /// The text of a value of this form; `None` if the value is none.
+    fn render(self, data: u32, model: Model) -> Option<(String, Trust)> {
+        match self {
+            Self::Empty => (data == 0).then(|| (String::new(), Trust::Printed)),
+            Self::Unsigned16 => {
+                let number = u16::try_from(data).ok()?;
+                Some((format!("[{number}]"), Trust::Printed))
+            }
+            Self::Signed16 => {
+                // -1 may arrive as 0x0000FFFF or extended to 0xFFFFFFFF.
+                let number = u16::try_from(data).map(u16::cast_signed);
+                let number = number.or_else(|_| i16::try_from(data.cast_signed())).ok()?;
+                Some((format!("[{number}]"), Trust::Printed))
+            }
+            Self::Bits(width) => (data >> width == 0).then(|| (pattern(data, width), Trust::Printed)),
+            Self::Axes(names) => {
+                let count = u32::try_from(names.len()).ok()?;
+                let set: String =
+                    names.iter().zip(0..).filter(|(_, bit)| is_set(data, *bit)).map(|(n, _)| *n).collect();
+                (data >> count == 0).then(|| (bracketed(&set), Trust::Inferred))
+            }
+            Self::Groups => {
+                let robots = match model {
+                    Model::Fs100 => 2,
+                    Model::Dx200 => 8,
+                };
+                let name = |bit| if bit < robots { format!("R{}", bit + 1) } else { format!("(bit {bit})") };
+                let set: String = (0..u32::BITS).filter(|bit| is_set(data, *bit)).map(name).collect();
+                Some((bracketed(&set), Trust::Inferred))
+            }
+            Self::Unknown => (data == 0).then(|| (String::new(), Trust::Raw)),
+        }
+    }
+}
+
+impl fmt::Display for SubCode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { data, text, trust, .. } = self;
+        match trust {
+            _ if text.is_empty() => Ok(()),
+            Trust::Printed => f.write_str(text),
+            Trust::Inferred => write!(f, "{text}? ({data} = {data:#x})"),
+            Trust::Raw => write!(f, "{data} = {data:#x} (not decoded; bytes {text})"),
+        }
+    }
+}
+
+fn is_set(data: u32, bit: u32) -> bool {
+    data >> bit & 1 == 1
+}
+
+/// `[…]`, or nothing if the set is empty: then the pendant shows no sub-code.
+fn bracketed(set: &str) -> String {
+    if set.is_empty() { String::new() } else { format!("[{set}]") }
+}
+
+/// Bits as the pendant shows them, highest first: `[0000_0001]`.
+fn pattern(data: u32, width: u32) -> String {
+    let mut text = String::from("[");
+    for bit in (0..width).rev() {
+        text.push(if is_set(data, bit) { '1' } else { '0' });
+        if bit > 0 && bit % 4 == 0 {
+            text.push('_');
+        }
+    }
+    text.push(']');
+    text
+}
+
+/// The bytes as they arrive, lowest first.
+fn bytes(data: u32) -> String {
+    let [a, b, c, d] = data.to_le_bytes();
+    format!("{a:02x} {b:02x} {c:02x} {d:02x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn dx200(alarm_type: u32, data: u32) -> (String, Trust) {
+        let found = render(alarm_type, data, Model::Dx200);
+        assert_eq!((found.alarm_type, found.data), (alarm_type, data));
+        (found.text, found.trust)
+    }
+
+    #[test]
+    fn the_examples_that_the_manuals_print() {
+        for (alarm_type, data, text) in [
+            (0, 0, ""),
+            (1, 1, "[1]"),
+            (2, 1, "[0000_0001]"),
+            (6, 123, "[123]"),
+            (9, 0xFFFF, "[-1]"),
+            (9, 0xFFFF_FFFF, "[-1]"),
+            (10, 1, "[0000_0000_0000_0001]"),
+        ] {
+            assert_eq!(dx200(alarm_type, data), (text.to_owned(), Trust::Printed), "type {alarm_type}");
+        }
+        for (alarm_type, data, text) in
+            [(3, 0x3F, "[SLURBT]"), (4, 0x07, "[XYZ]"), (5, 0x3F, "[XYZRxRyRz]"), (11, 1, "[R1]")]
+        {
+            assert_eq!(dx200(alarm_type, data), (text.to_owned(), Trust::Inferred), "type {alarm_type}");
+        }
+    }
+
+    #[test]
+    fn subsets_name_their_members() {
+        assert_eq!(dx200(3, 0b10_0101).0, "[SUT]");
+        assert_eq!(dx200(3, 0x41).0, "[SE]");
+        assert_eq!(dx200(5, 0b01_0010).0, "[YRy]");
+        assert_eq!(dx200(2, 0xA5).0, "[1010_0101]");
+        assert_eq!(dx200(3, 0).0, "");
+    }
+
+    #[test]
+    fn groups_past_the_robots_keep_their_bit_number() {
+        assert_eq!(dx200(8, 0x0101).0, "[R1(bit 8)]");
+        assert_eq!(render(8, 0b111, Model::Fs100).text, "[R1R2(bit 2)]");
+        assert_eq!(dx200(12, 0x8000_0000).0, "[(bit 31)]");
+    }
+
+    #[test]
+    fn composed_types_stay_raw() {
+        for alarm_type in [20, 21, 22, 23, 24, 25, 27] {
+            assert_eq!(dx200(alarm_type, 0x0003_3F01), ("01 3f 03 00".to_owned(), Trust::Raw));
+            assert_ne!(render(alarm_type, 0, Model::Dx200).type_name, "undocumented type");
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_comes_through_raw() {
+        for (alarm_type, data) in [
+            (0, 5),
+            (1, 0x1_0000),
+            (2, 0x100),
+            (3, 0x100),
+            (4, 8),
+            (5, 0x40),
+            (6, 0x1_0000),
+            (9, 0x8000_0000),
+            (10, 0x1_0000),
+        ] {
+            assert_eq!(dx200(alarm_type, data), (bytes(data), Trust::Raw), "type {alarm_type}");
+        }
+        assert_eq!(render(26, 7, Model::Dx200).type_name, "undocumented type");
+    }
+
+    #[test]
+    fn uncertain_text_shows_the_raw_value_too() {
+        let shown = |alarm_type, data| render(alarm_type, data, Model::Dx200).to_string();
+        assert_eq!(shown(1, 3), "[3]");
+        assert_eq!(shown(3, 3), "[SL]? (3 = 0x3)");
+        assert_eq!(shown(20, 0x3F01), "16129 = 0x3f01 (not decoded; bytes 01 3f 00 00)");
+        assert_eq!(shown(0, 0), "");
+    }
+
+    #[test]
+    fn nineteen_types_ascending() {
+        assert!(TYPES.is_sorted_by(|a, b| a.0 < b.0));
+    }
+
+    proptest! {
+        #[test]
+        fn any_value_is_shown(alarm_type in 0_u32..40, data: u32) {
+            let found = render(alarm_type, data, Model::Dx200);
+            prop_assert!(found.text.is_ascii());
+            prop_assert_eq!(found.text.is_empty(), found.to_string().is_empty());
+            prop_assert!(data == 0 || !found.text.is_empty());
+        }
+    }
+}
