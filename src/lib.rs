@@ -5,5 +5,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`controller`] | what each controller understands: tables, codecs, sessions, simulators; no sockets, no clock, no clap |
+//! | [`transport`] | moves bytes and knows no meaning |
 
 pub mod controller;
+pub mod transport;
