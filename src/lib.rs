@@ -7,6 +7,7 @@
 //! | [`settings`] | which robots, and every setting with where it came from; target URLs; the inventory |
 //! | [`gate`] | what stands between a typed command and a machine |
 //! | [`controller`] | what each controller understands: tables, codecs, sessions, simulators; no sockets, no clock, no clap |
+//! | [`transport`] | moves bytes or images, knows no meaning |
 //! | [`output`] | the only writer to stdout and stderr; text made harmless for terminals |
 //! | [`failure`] | how a command can fail, and the only place with exit numbers |
 //!
@@ -18,3 +19,4 @@ pub mod failure;
 pub mod gate;
 pub mod output;
 pub mod settings;
+pub mod transport;

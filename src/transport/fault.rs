@@ -1,0 +1,478 @@
+//! A seeded injector of datagram faults, without sockets and without a clock.
+//!
+//! It is handed datagrams and says when which bytes arrive, if at all. The same seed and the same datagrams give the same
+//! faults on every machine.
+//!
+//! What `corrupt` does is limited on purpose. UDP's checksum stops nearly all damage on the way; what still gets through
+//! comes from broken stacks, wrong senders and wrong ports. So a corrupt datagram is cut, extended, zeroed, changed in
+//! its first eight bytes (where protocols keep identifiers and sizes) or replaced by noise. It is never a whole datagram
+//! with a changed payload: a protocol without a checksum of its own cannot tell that from a true one, so a test that did
+//! it would only show what is known.
+
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+use std::time::Duration;
+
+use fastrand::Rng;
+use thiserror::Error;
+
+/// Most bytes of noise in place of a datagram.
+const MOST_NOISE: usize = 600;
+/// Most bytes added to a datagram.
+const MOST_EXTRA: usize = 32;
+/// The first bytes of a datagram, one of which may be changed.
+const HEAD: usize = 8;
+/// How long a reordered datagram is held back beyond its delay: longer than a quick answer takes, and at most longer
+/// than the usual wait before a repeat, so that it meets both the next exchange and its own repeat.
+const HOLD: RangeInclusive<Duration> = Duration::from_millis(20)..=Duration::from_millis(400);
+/// Longest delay that can be asked for.
+const LONGEST_DELAY: Duration = Duration::from_secs(60);
+
+/// A share of datagrams, in steps of 0.01 %.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub struct Share(u16);
+
+impl Share {
+    /// None.
+    pub const NONE: Self = Self(0);
+    /// Every one.
+    pub const ALL: Self = Self(10_000);
+
+    /// Of 10,000 datagrams, as many as this.
+    pub const fn per_10_000(self) -> u16 {
+        self.0
+    }
+
+    fn hits(self, rng: &mut Rng) -> bool {
+        rng.u16(0..Self::ALL.0) < self.0
+    }
+
+    /// Reads "5%" or "0.25%".
+    fn parse(text: &str) -> Option<Self> {
+        let number = text.strip_suffix('%')?;
+        let (whole, fraction) = number.split_once('.').unwrap_or((number, "0"));
+        let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+        if !digits(whole) || !digits(fraction) || fraction.len() > 2 {
+            return None;
+        }
+        let hundredths: u16 = format!("{fraction:0<2}").parse().ok()?;
+        let share = whole.parse::<u16>().ok()?.checked_mul(100)?.checked_add(hundredths)?;
+        (share <= Self::ALL.0).then_some(Self(share))
+    }
+}
+
+impl fmt::Display for Share {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.0 / 100, self.0 % 100) {
+            (whole, 0) => write!(f, "{whole}%"),
+            (whole, hundredths) if hundredths % 10 == 0 => write!(f, "{whole}.{}%", hundredths / 10),
+            (whole, hundredths) => write!(f, "{whole}.{hundredths:02}%"),
+        }
+    }
+}
+
+/// Which faults, how often. Written `drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7`, every part
+/// optional.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FaultSpec {
+    /// Datagrams that never arrive.
+    pub drop: Share,
+    /// Datagrams that arrive twice, the second copy after a delay of its own.
+    pub dup: Share,
+    /// How long a datagram travels. A delay alone keeps the order.
+    pub delay: RangeInclusive<Duration>,
+    /// Datagrams that are held back, so that what is sent meanwhile overtakes them.
+    pub reorder: Share,
+    /// Datagrams that arrive damaged.
+    pub corrupt: Share,
+    /// Requests that a simulated controller refuses as busy. Only carried here: it takes a protocol to do it.
+    pub busy: Share,
+    /// Start of the random sequence.
+    pub seed: u64,
+}
+
+impl Default for FaultSpec {
+    /// No faults at all.
+    fn default() -> Self {
+        Self {
+            drop: Share::NONE,
+            dup: Share::NONE,
+            delay: Duration::ZERO..=Duration::ZERO,
+            reorder: Share::NONE,
+            corrupt: Share::NONE,
+            busy: Share::NONE,
+            seed: 0,
+        }
+    }
+}
+
+/// Why a text is no [`FaultSpec`].
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum FaultSpecError {
+    /// A part without a value.
+    #[error("'{part}' is not of the form key=value, as in drop=5%")]
+    NoValue {
+        /// The part.
+        part: String,
+    },
+    /// A key there is not.
+    #[error("unknown key '{key}'; there are drop, dup, delay, reorder, corrupt, busy and seed")]
+    UnknownKey {
+        /// The key.
+        key: String,
+    },
+    /// A key given twice.
+    #[error("{key} is given twice")]
+    Twice {
+        /// The key.
+        key: &'static str,
+    },
+    /// A value its key does not take.
+    #[error("{key}: '{value}' is not {form}")]
+    Value {
+        /// The key.
+        key: &'static str,
+        /// The value.
+        value: String,
+        /// What it takes.
+        form: &'static str,
+    },
+}
+
+const SHARE_FORM: &str = "a share of 0% to 100% with at most two decimals, as in 2.5%";
+const DELAY_FORM: &str = "a time or range of up to 60s in us, ms or s, as in 20ms or 0..50ms";
+const SEED_FORM: &str = "a whole number of 0 to 18446744073709551615";
+
+/// Puts the value of a key in its place; `None` if the key does not take it.
+type Setter = fn(&mut FaultSpec, &str) -> Option<()>;
+
+/// Every key with the form of its value.
+const KEYS: [(&str, &str, Setter); 7] = [
+    ("drop", SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.drop = share)),
+    ("dup", SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.dup = share)),
+    ("delay", DELAY_FORM, |spec, text| delay(text).map(|delay| spec.delay = delay)),
+    ("reorder", SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.reorder = share)),
+    ("corrupt", SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.corrupt = share)),
+    ("busy", SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.busy = share)),
+    ("seed", SEED_FORM, |spec, text| text.parse().ok().map(|seed| spec.seed = seed)),
+];
+
+impl FromStr for FaultSpec {
+    type Err = FaultSpecError;
+
+    fn from_str(text: &str) -> Result<Self, FaultSpecError> {
+        let mut spec = Self::default();
+        let mut seen = [false; KEYS.len()];
+        for part in text.split(',').map(str::trim) {
+            let (name, value) =
+                part.split_once('=').ok_or_else(|| FaultSpecError::NoValue { part: part.to_owned() })?;
+            let (position, &(key, form, set)) = KEYS
+                .iter()
+                .enumerate()
+                .find(|(_, (key, ..))| *key == name)
+                .ok_or_else(|| FaultSpecError::UnknownKey { key: name.to_owned() })?;
+            if std::mem::replace(&mut seen[position], true) {
+                return Err(FaultSpecError::Twice { key });
+            }
+            set(&mut spec, value).ok_or_else(|| FaultSpecError::Value { key, value: value.to_owned(), form })?;
+        }
+        Ok(spec)
+    }
+}
+
+impl fmt::Display for FaultSpec {
+    /// The parts that are not 0, and the seed in any case; reads back as the same value.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shares = |f: &mut fmt::Formatter<'_>, shares: &[(&str, Share)]| {
+            shares
+                .iter()
+                .filter(|(_, share)| *share != Share::NONE)
+                .try_for_each(|(key, share)| write!(f, "{key}={share},"))
+        };
+        shares(f, &[("drop", self.drop), ("dup", self.dup)])?;
+        let (least, most) = (self.delay.start(), self.delay.end());
+        if least == most && !most.is_zero() {
+            write!(f, "delay={},", Time(*most))?;
+        } else if least != most {
+            write!(f, "delay={}..{},", Time(*least), Time(*most))?;
+        }
+        shares(f, &[("reorder", self.reorder), ("corrupt", self.corrupt), ("busy", self.busy)])?;
+        write!(f, "seed={}", self.seed)
+    }
+}
+
+/// A time in the largest unit that shows it exactly; finer than microseconds cannot be asked for.
+struct Time(Duration);
+
+impl fmt::Display for Time {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let micros = self.0.as_micros();
+        match UNITS.iter().rev().find(|(_, unit)| micros.is_multiple_of(u128::from(*unit))) {
+            Some((name, unit)) if micros > 0 => write!(f, "{}{name}", micros / u128::from(*unit)),
+            _ => f.write_str("0ms"),
+        }
+    }
+}
+
+/// Units of time in microseconds, small to large.
+const UNITS: [(&str, u64); 3] = [("us", 1), ("ms", 1_000), ("s", 1_000_000)];
+
+/// Reads "20ms", "0..50ms" or "500us..2ms"; a lower end without a unit has that of the upper end.
+fn delay(text: &str) -> Option<RangeInclusive<Duration>> {
+    let Some((least, most)) = text.split_once("..") else {
+        let (number, unit) = number_and_unit(text);
+        let fixed = time(number, unit)?;
+        return Some(fixed..=fixed);
+    };
+    let (most_number, most_unit) = number_and_unit(most);
+    let (least_number, least_unit) = number_and_unit(least);
+    let least = time(least_number, if least_unit.is_empty() { most_unit } else { least_unit })?;
+    let most = time(most_number, most_unit)?;
+    (least <= most).then_some(least..=most)
+}
+
+fn number_and_unit(text: &str) -> (&str, &str) {
+    text.split_at(text.bytes().take_while(u8::is_ascii_digit).count())
+}
+
+fn time(number: &str, unit: &str) -> Option<Duration> {
+    let (_, micros) = UNITS.iter().find(|(name, _)| *name == unit)?;
+    let time = Duration::from_micros(number.parse::<u64>().ok()?.checked_mul(*micros)?);
+    (time <= LONGEST_DELAY).then_some(time)
+}
+
+/// One direction of a faulty link.
+#[derive(Debug, Clone)]
+pub struct Faults {
+    spec: FaultSpec,
+    rng: Rng,
+    /// When the last datagram arrives that was not reordered.
+    last: Duration,
+}
+
+impl Faults {
+    /// A direction with the faults of `spec`.
+    pub fn new(spec: FaultSpec) -> Self {
+        let rng = Rng::with_seed(spec.seed);
+        Self { spec, rng, last: Duration::ZERO }
+    }
+
+    /// Both directions of a link, each with a random sequence of its own.
+    pub fn pair(spec: FaultSpec) -> (Self, Self) {
+        let there = Self::new(spec);
+        let mut back = there.clone();
+        back.rng = back.rng.fork();
+        (there, back)
+    }
+
+    /// What becomes of a datagram that is sent at `now`: for each copy that arrives, the moment and the bytes, in no
+    /// particular order. Moments count from the origin of `now`.
+    pub fn pass(&mut self, now: Duration, bytes: &[u8]) -> Vec<(Duration, Vec<u8>)> {
+        if self.spec.drop.hits(&mut self.rng) {
+            return Vec::new();
+        }
+        let mut copies = Vec::with_capacity(2);
+        let at = now.saturating_add(self.travel());
+        if self.spec.reorder.hits(&mut self.rng) {
+            let hold = between(&mut self.rng, &HOLD);
+            copies.push((at.saturating_add(hold), self.content(bytes)));
+        } else {
+            self.last = self.last.max(at);
+            copies.push((self.last, self.content(bytes)));
+        }
+        if self.spec.dup.hits(&mut self.rng) {
+            let at = at.saturating_add(self.travel());
+            copies.push((at, self.content(bytes)));
+        }
+        copies
+    }
+
+    fn travel(&mut self) -> Duration {
+        between(&mut self.rng, &self.spec.delay)
+    }
+
+    fn content(&mut self, bytes: &[u8]) -> Vec<u8> {
+        if self.spec.corrupt.hits(&mut self.rng) { damaged(&mut self.rng, bytes) } else { bytes.to_vec() }
+    }
+}
+
+/// A way to damage a datagram.
+type Damage = fn(&mut Rng, Vec<u8>) -> Vec<u8>;
+
+/// Each leaves a datagram different in length or in its first bytes.
+const DAMAGES: [Damage; 5] = [
+    |rng, mut bytes| {
+        bytes.truncate(rng.usize(..bytes.len().max(1)));
+        bytes
+    },
+    |rng, mut bytes| {
+        let extra = rng.usize(1..=MOST_EXTRA);
+        bytes.extend(noise(rng, extra));
+        bytes
+    },
+    |_, bytes| vec![0; bytes.len()],
+    |rng, mut bytes| {
+        let at = rng.usize(..bytes.len().clamp(1, HEAD));
+        if let Some(byte) = bytes.get_mut(at) {
+            *byte ^= rng.u8(1..);
+        }
+        bytes
+    },
+    |rng, _| {
+        let length = rng.usize(..=MOST_NOISE);
+        noise(rng, length)
+    },
+];
+
+fn damaged(rng: &mut Rng, bytes: &[u8]) -> Vec<u8> {
+    let damage = DAMAGES[rng.usize(..DAMAGES.len())];
+    damage(rng, bytes.to_vec())
+}
+
+fn noise(rng: &mut Rng, length: usize) -> Vec<u8> {
+    let mut bytes = vec![0; length];
+    rng.fill(&mut bytes);
+    bytes
+}
+
+fn between(rng: &mut Rng, range: &RangeInclusive<Duration>) -> Duration {
+    let micros = |time: &Duration| u64::try_from(time.as_micros()).unwrap_or(u64::MAX);
+    let (least, most) = (micros(range.start()), micros(range.end()));
+    // A spec that was built by hand may have its ends the wrong way round.
+    Duration::from_micros(if least < most { rng.u64(least..=most) } else { least })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spec(text: &str) -> FaultSpec {
+        text.parse().unwrap_or_else(|error| panic!("{text}: {error}"))
+    }
+
+    fn ms(millis: u64) -> Duration {
+        Duration::from_millis(millis)
+    }
+
+    #[test]
+    fn every_key_is_read_and_shown_again() {
+        let text = "drop=5%,dup=2%,delay=0ms..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7";
+        let expected = FaultSpec {
+            drop: Share(500),
+            dup: Share(200),
+            delay: ms(0)..=ms(50),
+            reorder: Share(300),
+            corrupt: Share(100),
+            busy: Share(400),
+            seed: 7,
+        };
+        assert_eq!(spec("drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7"), expected);
+        assert_eq!(expected.to_string(), text);
+        assert_eq!(spec(text), expected);
+    }
+
+    #[test]
+    fn display_and_parse_agree() {
+        for text in [
+            "seed=0",
+            "drop=0.5%,seed=18446744073709551615",
+            "dup=12.34%,seed=1",
+            "corrupt=0.05%,seed=1",
+            "drop=100%,delay=20ms,seed=3",
+            "delay=1500us..2ms,seed=3",
+            "delay=1s..60s,seed=3",
+        ] {
+            assert_eq!(spec(text).to_string(), text);
+        }
+        assert_eq!(spec("drop=0%"), FaultSpec::default());
+        assert_eq!(spec("drop=2.50%, dup=1%").to_string(), "drop=2.5%,dup=1%,seed=0");
+    }
+
+    #[test]
+    fn errors_name_the_key_and_the_form() {
+        let share = "a share of 0% to 100% with at most two decimals, as in 2.5%";
+        let time = "a time or range of up to 60s in us, ms or s, as in 20ms or 0..50ms";
+        let cases = [
+            ("", "'' is not of the form key=value, as in drop=5%"),
+            ("drop", "'drop' is not of the form key=value, as in drop=5%"),
+            ("drop=5%,", "'' is not of the form key=value, as in drop=5%"),
+            ("lose=5%", "unknown key 'lose'; there are drop, dup, delay, reorder, corrupt, busy and seed"),
+            ("drop=1%,drop=2%", "drop is given twice"),
+            ("drop=5", &format!("drop: '5' is not {share}")),
+            ("dup=101%", &format!("dup: '101%' is not {share}")),
+            ("dup=-1%", &format!("dup: '-1%' is not {share}")),
+            ("busy=1.234%", &format!("busy: '1.234%' is not {share}")),
+            ("busy=.%", &format!("busy: '.%' is not {share}")),
+            ("delay=5", &format!("delay: '5' is not {time}")),
+            ("delay=50..20ms", &format!("delay: '50..20ms' is not {time}")),
+            ("delay=61s", &format!("delay: '61s' is not {time}")),
+            ("delay=ä..é", &format!("delay: 'ä..é' is not {time}")),
+            ("seed=-1", "seed: '-1' is not a whole number of 0 to 18446744073709551615"),
+        ];
+        for (text, message) in cases {
+            assert_eq!(text.parse::<FaultSpec>().unwrap_err().to_string(), message, "{text}");
+        }
+    }
+
+    #[test]
+    fn without_faults_everything_arrives_once_at_once() {
+        let mut faults = Faults::new(FaultSpec::default());
+        for at in 0..100 {
+            assert_eq!(faults.pass(ms(at), &[1, 2, 3]), [(ms(at), vec![1, 2, 3])]);
+        }
+    }
+
+    #[test]
+    fn the_seed_decides_and_the_directions_differ() {
+        let run = |faults: &mut Faults| (0..200).map(|at| faults.pass(ms(at), &[7; 40])).collect::<Vec<_>>();
+        let text = "drop=20%,dup=20%,delay=0..50ms,reorder=20%,corrupt=20%";
+        let (mut there, mut back) = Faults::pair(spec(&format!("{text},seed=1")));
+        let one = run(&mut there);
+        assert!(one == run(&mut Faults::new(spec(&format!("{text},seed=1")))), "the same seed, other faults");
+        assert!(one != run(&mut back), "both directions have the same faults");
+        assert!(one != run(&mut Faults::new(spec(&format!("{text},seed=2")))), "another seed, the same faults");
+    }
+
+    #[test]
+    fn shares_are_met() {
+        let (mut lost, mut doubled) = (0, 0);
+        let mut faults = Faults::new(spec("drop=10%,dup=10%,seed=5"));
+        for _ in 0..10_000 {
+            match faults.pass(ms(0), &[0]).len() {
+                0 => lost += 1,
+                2 => doubled += 1,
+                _ => {}
+            }
+        }
+        assert!((900..1100).contains(&lost) && (810..1000).contains(&doubled), "{lost} lost, {doubled} doubled");
+        assert!(Faults::new(spec("drop=100%")).pass(ms(0), &[0]).is_empty());
+    }
+
+    #[test]
+    fn delay_keeps_the_order_and_reordering_breaks_it() {
+        let arrivals = |text: &str| {
+            let mut faults = Faults::new(spec(text));
+            (0..200).map(|at| faults.pass(ms(at), &[0])[0].0).collect::<Vec<_>>()
+        };
+        let delayed = arrivals("delay=10..50ms,seed=3");
+        assert!(delayed.is_sorted());
+        assert!((0..).zip(&delayed).all(|(sent, at)| (ms(sent + 10)..=ms(sent + 50)).contains(at)), "{delayed:?}");
+        assert!(!arrivals("reorder=10%,seed=3").is_sorted());
+    }
+
+    #[test]
+    fn damage_never_leaves_a_whole_datagram_with_another_payload() {
+        let mut rng = Rng::with_seed(9);
+        let whole: Vec<u8> = (1..=48).collect();
+        for _ in 0..10_000 {
+            let bytes = damaged(&mut rng, &whole);
+            assert!(bytes.len() != whole.len() || bytes[..HEAD] != whole[..HEAD], "{bytes:?}");
+        }
+        for bytes in [&[][..], &[1]] {
+            for _ in 0..100 {
+                damaged(&mut rng, bytes);
+            }
+        }
+    }
+}

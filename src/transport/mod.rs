@@ -1,0 +1,5 @@
+//! Moves bytes or images, and knows no meaning.
+//!
+//! Nothing in here knows a controller's protocol, and no controller knows what is in here.
+
+pub mod fault;
