@@ -3,9 +3,17 @@
 //! UDP, little-endian, one frame a datagram. Sources, by short name in the docs of this folder: FS = FS100 manual
 //! HW1481031, DX = DX200 manual HW1481977; section numbers are the same in both unless told otherwise.
 
-pub mod status;
+pub mod files;
+pub mod group;
+pub mod payload;
+pub mod query;
+pub mod request;
 pub mod session;
+pub mod status;
 pub mod subcode;
+pub mod table;
+pub mod units;
+pub mod variables;
 pub mod wire;
 
 /// The controller a robot hangs on: number ranges, string sizes and move layouts differ.

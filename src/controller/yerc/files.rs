@@ -1,0 +1,317 @@
+//! File services: names, lists, and the frames of a transfer (FS and DX 3.4, 3.2.3 to 3.2.6).
+
+use std::fmt;
+use std::str::FromStr;
+
+use thiserror::Error;
+
+use super::request::Request;
+use super::table::{BATCH_BACKUP_PATH, service};
+use super::wire::{Division, MAX_DATA, RequestFrame};
+
+/// Most bytes of the part of a job's file name before `.JBI`.
+pub const MAX_JOB_NAME: usize = 32;
+
+/// The kinds of files a controller holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum FileType {
+    /// Jobs.
+    Jbi,
+    /// Data: tools, variables, user coordinates.
+    Dat,
+    /// Conditions.
+    Cnd,
+    /// Parameters.
+    Prm,
+    /// System data.
+    Sys,
+    /// Lists: I/O ladder and the like.
+    Lst,
+}
+
+impl FileType {
+    /// Every type, in the order of the manual.
+    pub const ALL: [Self; 6] = [Self::Jbi, Self::Dat, Self::Cnd, Self::Prm, Self::Sys, Self::Lst];
+
+    /// The extension without a point.
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Jbi => "JBI",
+            Self::Dat => "DAT",
+            Self::Cnd => "CND",
+            Self::Prm => "PRM",
+            Self::Sys => "SYS",
+            Self::Lst => "LST",
+        }
+    }
+
+    /// What a list request asks for, e.g. `*.JBI`.
+    pub fn filter(self) -> String {
+        format!("*.{}", self.extension())
+    }
+
+    /// The type of a file name, by its extension.
+    pub fn of(name: &[u8]) -> Option<Self> {
+        let point = name.iter().rposition(|&byte| byte == b'.')?;
+        Self::ALL.into_iter().find(|kind| name[point + 1..].eq_ignore_ascii_case(kind.extension().as_bytes()))
+    }
+}
+
+impl FromStr for FileType {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::ALL
+            .into_iter()
+            .find(|kind| kind.extension().eq_ignore_ascii_case(text))
+            .ok_or_else(|| format!("unknown file type '{text}'; there are jbi, dat, cnd, prm, sys and lst"))
+    }
+}
+
+impl fmt::Display for FileType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.extension())
+    }
+}
+
+/// A file name or filter that must not be sent.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum FileNameError {
+    /// Nothing at all, or only an extension.
+    #[error("the file name is empty")]
+    Empty,
+    /// Longer than a frame.
+    #[error("the file name has {len} bytes; at most {MAX_DATA} fit a frame")]
+    TooLong {
+        /// Bytes given.
+        len: usize,
+    },
+    /// Names are sent without a NUL; controllers refuse one (E49D).
+    #[error("the file name '{name}' contains a NUL byte")]
+    Nul {
+        /// The name, escaped.
+        name: String,
+    },
+    /// A folder, which controllers do not have.
+    #[error("the file name '{name}' contains a path separator")]
+    Separator {
+        /// The name, escaped.
+        name: String,
+    },
+    /// A CR or LF would tear lists apart, other control characters cannot be typed on a pendant.
+    #[error("the file name '{name}' contains a control character")]
+    Control {
+        /// The name, escaped.
+        name: String,
+    },
+    /// Not one of the six extensions.
+    #[error("the file name '{name}' needs an extension out of JBI, DAT, CND, PRM, SYS, LST")]
+    Extension {
+        /// The name, escaped.
+        name: String,
+    },
+    /// A job name longer than 32 bytes.
+    #[error("the job name '{name}' has {len} bytes in the controller's encoding; at most {MAX_JOB_NAME} fit")]
+    JobName {
+        /// The name, escaped.
+        name: String,
+        /// Bytes before the extension.
+        len: usize,
+    },
+    /// Not one of the manual's filters.
+    #[error("the filter '{filter}' is unknown; there are nothing, *.*, *.JBI, *.DAT, *.CND, *.PRM, *.SYS, *.LST")]
+    Filter {
+        /// The filter, escaped.
+        filter: String,
+    },
+}
+
+/// The name of a file on a controller, in the controller's encoding.
+#[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct FileName(Vec<u8>);
+
+impl FileName {
+    /// Takes a name that follows the rules.
+    pub fn new(name: impl Into<Vec<u8>>) -> Result<Self, FileNameError> {
+        let name = name.into();
+        if name == BATCH_BACKUP_PATH {
+            return Err(FileNameError::Separator { name: name.escape_ascii().to_string() });
+        }
+        check_name(&name)?;
+        Ok(Self(name))
+    }
+
+    /// The bytes as sent.
+    pub fn as_bytes(&self) -> &[u8] {
+        &self.0
+    }
+
+    /// By its extension.
+    #[expect(clippy::missing_panics_doc, reason = "names are built with a known extension")]
+    pub fn file_type(&self) -> FileType {
+        FileType::of(&self.0).expect("a file name has a known extension by construction")
+    }
+
+    /// Deletes it.
+    pub fn delete(&self) -> Request {
+        Request::file(service::DELETE, self.0.clone())
+    }
+
+    /// Begins to send it to the controller.
+    pub fn load(&self) -> Request {
+        Request::file(service::LOAD, self.0.clone())
+    }
+
+    /// Begins to fetch it from the controller.
+    pub fn save(&self) -> Request {
+        Request::file(service::SAVE, self.0.clone())
+    }
+}
+
+impl fmt::Debug for FileName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "\"{}\"", self.0.escape_ascii())
+    }
+}
+
+/// Asks for the names of one type.
+pub fn list(kind: FileType) -> Request {
+    Request::file(service::LIST, kind.filter())
+}
+
+/// Makes the controller write its batch backup, which takes about ten minutes; the same request fetches the file.
+pub fn batch_backup() -> Request {
+    Request::file(service::SAVE, BATCH_BACKUP_PATH)
+}
+
+/// A block of a file on its way to the controller: ACK form with data.
+///
+/// # Panics
+/// If `data` is longer than 479 bytes.
+pub fn data_frame(id: u8, block: u32, data: &[u8]) -> Vec<u8> {
+    transfer_frame(id, service::LOAD, block, data)
+}
+
+/// Acknowledges a block from the controller; `block` as received, with its last-block bit.
+pub fn ack_frame(id: u8, service: u8, block: u32) -> Vec<u8> {
+    transfer_frame(id, service, block, &[])
+}
+
+fn transfer_frame(id: u8, service: u8, block: u32, data: &[u8]) -> Vec<u8> {
+    RequestFrame {
+        division: Division::File,
+        ack: true,
+        id,
+        block,
+        command: 0,
+        instance: 0,
+        attribute: 0,
+        service,
+        data,
+    }
+    .emit()
+}
+
+/// Splits the joined data of a list at CR LF. A lone CR or LF stays part of its name.
+pub fn split_list(data: &[u8]) -> Vec<&[u8]> {
+    let mut names = Vec::new();
+    let mut rest = data;
+    while let Some(end) = rest.windows(2).position(|pair| pair == b"\r\n") {
+        names.push(&rest[..end]);
+        rest = &rest[end + 2..];
+    }
+    names.push(rest);
+    names.retain(|name| !name.is_empty());
+    names
+}
+
+/// The rules for names in requests; the path of the batch backup passes.
+pub fn check_name(name: &[u8]) -> Result<(), FileNameError> {
+    if name == BATCH_BACKUP_PATH {
+        return Ok(());
+    }
+    if name.len() > MAX_DATA {
+        return Err(FileNameError::TooLong { len: name.len() });
+    }
+    let shown = || name.escape_ascii().to_string();
+    if name.contains(&0) {
+        return Err(FileNameError::Nul { name: shown() });
+    }
+    if has_separator(name) {
+        return Err(FileNameError::Separator { name: shown() });
+    }
+    if name.iter().any(u8::is_ascii_control) {
+        return Err(FileNameError::Control { name: shown() });
+    }
+    let stem = name.iter().rposition(|&byte| byte == b'.').unwrap_or(name.len());
+    if stem == 0 {
+        return Err(FileNameError::Empty);
+    }
+    match FileType::of(name) {
+        None => Err(FileNameError::Extension { name: shown() }),
+        Some(FileType::Jbi) if stem > MAX_JOB_NAME => {
+            Err(FileNameError::JobName { name: name[..stem].escape_ascii().to_string(), len: stem })
+        }
+        Some(_) => Ok(()),
+    }
+}
+
+/// The filters that the manuals list (3.4.4).
+pub fn check_filter(filter: &[u8]) -> Result<(), FileNameError> {
+    let known = filter.is_empty()
+        || filter == b"*.*"
+        || FileType::ALL.into_iter().any(|kind| kind.filter().as_bytes().eq_ignore_ascii_case(filter));
+    if known { Ok(()) } else { Err(FileNameError::Filter { filter: filter.escape_ascii().to_string() }) }
+}
+
+/// `/`, or a backslash that is not the second byte of a full-width character: `ソ` is 83 5C in `Shift_JIS`.
+fn has_separator(name: &[u8]) -> bool {
+    let mut bytes = name.iter();
+    while let Some(&byte) = bytes.next() {
+        match byte {
+            b'/' | b'\\' => return true,
+            0x81..=0x9F | 0xE0..=0xFC => match bytes.clone().next() {
+                Some(b'/') | None => {}
+                Some(_) => {
+                    bytes.next();
+                }
+            },
+            _ => {}
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_may_and_may_not_be_sent() {
+        assert!(check_name(b"TESTJOB.JBI").is_ok());
+        assert!(check_name(b"\x83\x5c.JBI").is_ok());
+        assert!(check_name(b"/SPDRV/CMOSBK.BIN").is_ok());
+        assert!(FileName::new(*b"/SPDRV/CMOSBK.BIN").is_err());
+        assert!(check_name(&[b'A'; 32].iter().copied().chain(*b".JBI").collect::<Vec<_>>()).is_ok());
+        assert!(matches!(
+            check_name(&[b'A'; 33].iter().copied().chain(*b".JBI").collect::<Vec<_>>()),
+            Err(FileNameError::JobName { len: 33, .. })
+        ));
+        assert_eq!(check_name(b""), Err(FileNameError::Empty));
+        assert_eq!(check_name(b".JBI"), Err(FileNameError::Empty));
+        assert!(matches!(check_name(b"A.JBI\0"), Err(FileNameError::Nul { .. })));
+        assert!(matches!(check_name(b"../A.JBI"), Err(FileNameError::Separator { .. })));
+        assert!(matches!(check_name(b"\x83/A.JBI"), Err(FileNameError::Separator { .. })));
+        assert!(matches!(check_name(b"C:\\A.JBI"), Err(FileNameError::Separator { .. })));
+        assert!(matches!(check_name(b"A\r\n.JBI"), Err(FileNameError::Control { .. })));
+        assert!(matches!(check_name(b"A.EXE"), Err(FileNameError::Extension { .. })));
+        assert!(matches!(check_name(&[b'A'; 480]), Err(FileNameError::TooLong { len: 480 })));
+    }
+
+    #[test]
+    fn lists_split_at_cr_lf_only() {
+        assert_eq!(split_list(b"1.JBI\r\n22.JBI\r\n"), [&b"1.JBI"[..], b"22.JBI"]);
+        assert_eq!(split_list(b"A\rB.JBI\r\nC.JBI"), [&b"A\rB.JBI"[..], b"C.JBI"]);
+        assert!(split_list(b"").is_empty());
+    }
+}

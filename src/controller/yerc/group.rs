@@ -1,0 +1,106 @@
+//! Control groups: robots, bases, stations.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::Model;
+
+/// A control group, numbered from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Group {
+    /// R1 to R2 on FS100, to R8 on DX200.
+    Robot(u8),
+    /// B1 to B2 on FS100, to B8 on DX200.
+    Base(u8),
+    /// S1 to S3 on FS100, to S24 on DX200.
+    Station(u8),
+}
+
+impl Group {
+    /// The first robot.
+    pub const R1: Self = Self::Robot(1);
+
+    /// The instance that reads its pulses, torque and position error: 1, 11 or 21 for the first.
+    pub const fn instance(self) -> u16 {
+        match self {
+            Self::Robot(number) => number as u16,
+            Self::Base(number) => 10 + number as u16,
+            Self::Station(number) => 20 + number as u16,
+        }
+    }
+
+    /// The instance that reads it in cartesian coordinates, which stations do not have: 101 or 111 for the first.
+    pub const fn cartesian_instance(self) -> Option<u16> {
+        match self {
+            Self::Robot(_) | Self::Base(_) => Some(100 + self.instance()),
+            Self::Station(_) => None,
+        }
+    }
+
+    /// Whether a controller of this model can have it.
+    pub const fn exists_on(self, model: Model) -> bool {
+        let (robots, bases, stations) = Self::counts(model);
+        match self {
+            Self::Robot(number) => 1 <= number && number <= robots,
+            Self::Base(number) => 1 <= number && number <= bases,
+            Self::Station(number) => 1 <= number && number <= stations,
+        }
+    }
+
+    /// Most robots, bases and stations.
+    pub const fn counts(model: Model) -> (u8, u8, u8) {
+        match model {
+            Model::Fs100 => (2, 2, 3),
+            Model::Dx200 => (8, 8, 24),
+        }
+    }
+}
+
+impl fmt::Display for Group {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Robot(number) => write!(f, "R{number}"),
+            Self::Base(number) => write!(f, "B{number}"),
+            Self::Station(number) => write!(f, "S{number}"),
+        }
+    }
+}
+
+impl FromStr for Group {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("'{text}' is no control group; there are R1 to R8, B1 to B8, S1 to S24");
+        let mut chars = text.chars();
+        let letter = chars.next().ok_or_else(wrong)?;
+        let digits = chars.as_str();
+        if digits.is_empty() || digits.len() > 2 || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
+            return Err(wrong());
+        }
+        let number = digits.parse().map_err(|_| wrong())?;
+        let group = match letter {
+            'R' | 'r' => Self::Robot(number),
+            'B' | 'b' => Self::Base(number),
+            'S' | 's' => Self::Station(number),
+            _ => return Err(wrong()),
+        };
+        if group.exists_on(Model::Dx200) { Ok(group) } else { Err(wrong()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_and_instances() {
+        assert_eq!("r1".parse(), Ok(Group::R1));
+        assert_eq!("S24".parse(), Ok(Group::Station(24)));
+        for junk in ["", "R", "R0", "R9", "S25", "X1", "R+1", "R01x", "B999"] {
+            assert!(junk.parse::<Group>().is_err(), "{junk}");
+        }
+        assert_eq!(Group::Station(3).instance(), 23);
+        assert_eq!(Group::Base(2).cartesian_instance(), Some(112));
+        assert!(!Group::Station(4).exists_on(Model::Fs100));
+    }
+}

@@ -1,0 +1,98 @@
+//! Values and names by axis.
+
+use std::fmt;
+
+use super::{PayloadError, Reader, Text, push_words};
+
+/// Most axes of a control group.
+pub const MAX_AXES: usize = 8;
+
+/// One signed word for each axis that the controller answered; real controllers send only the axes fitted.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Axes {
+    values: [i32; MAX_AXES],
+    count: usize,
+}
+
+impl Axes {
+    /// All eight axes.
+    pub const fn full(values: [i32; MAX_AXES]) -> Self {
+        Self { values, count: MAX_AXES }
+    }
+
+    /// The first axes of a group; `None` for more than eight.
+    pub fn new(values: &[i32]) -> Option<Self> {
+        let mut axes = Self { values: [0; MAX_AXES], count: values.len() };
+        axes.values.get_mut(..values.len())?.copy_from_slice(values);
+        Some(axes)
+    }
+
+    /// Reads as many whole words as there are, at most eight (torque 3.3.8, position error 3.3.7).
+    pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
+        if data.len() < 4 {
+            return Err(PayloadError::Short { what: "axis values", needed: 4, found: data.len() });
+        }
+        Ok(Self::take(data))
+    }
+
+    /// The whole words of `data`, none included.
+    pub(super) fn take(data: &[u8]) -> Self {
+        let mut axes = Self::default();
+        let mut reader = Reader::new("axis values", data);
+        while axes.count < MAX_AXES {
+            let Ok(value) = reader.i32() else { break };
+            axes.values[axes.count] = value;
+            axes.count += 1;
+        }
+        axes
+    }
+
+    /// The words that are there.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = Vec::with_capacity(4 * self.count);
+        push_words(&mut out, self.as_slice().iter().copied());
+        out
+    }
+
+    /// The values that are there.
+    pub fn as_slice(&self) -> &[i32] {
+        &self.values[..self.count]
+    }
+
+    /// Eight values, zero where the controller sent none.
+    pub const fn padded(&self) -> [i32; MAX_AXES] {
+        self.values
+    }
+}
+
+impl fmt::Debug for Axes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.as_slice().fmt(f)
+    }
+}
+
+/// The name of each axis; unused ones are empty (FS and DX 3.3.5).
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
+pub struct AxisNames {
+    /// Up to four bytes each.
+    pub names: [Text<4>; MAX_AXES],
+}
+
+impl AxisNames {
+    /// Reads eight names; a shorter answer leaves the rest empty.
+    pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
+        if data.len() < 4 {
+            return Err(PayloadError::Short { what: "axis names", needed: 4, found: data.len() });
+        }
+        let mut names = Self::default();
+        for (name, field) in names.names.iter_mut().zip(data.chunks_exact(4)) {
+            *name = Text::cut(field);
+        }
+        Ok(names)
+    }
+
+    /// The 32 bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        self.names.iter().flat_map(Text::emit).collect()
+    }
+}

@@ -1,0 +1,130 @@
+//! Job, management time, system information (FS and DX 3.3.4, 3.3.25, 3.3.26).
+
+use super::{PayloadError, Reader, Text, push_u32s};
+
+/// The job a task executes.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
+pub struct JobInfo {
+    /// Without `.JBI`.
+    pub name: Text<32>,
+    /// 0 to 9999.
+    pub line: u32,
+    /// 1 to 9998; 0 when none is executed.
+    pub step: u32,
+    /// In 0.01 %.
+    pub speed_override: u32,
+}
+
+impl JobInfo {
+    /// Bytes of an answer.
+    pub const SIZE: usize = 44;
+
+    /// Reads 44 bytes or more.
+    pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
+        let mut reader = Reader::new("job information", data);
+        Ok(Self { name: reader.text()?, line: reader.u32()?, step: reader.u32()?, speed_override: reader.u32()? })
+    }
+
+    /// The 44 bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = self.name.emit().to_vec();
+        push_u32s(&mut out, [self.line, self.step, self.speed_override]);
+        out
+    }
+}
+
+/// A running-time counter.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
+pub struct ManagementTime {
+    /// When counting began, `YYYY/MM/DD HH:MM`.
+    pub start: Text<16>,
+    /// `000123:45'06`, or unpadded as `18:19'02`.
+    pub elapsed: Text<12>,
+}
+
+impl ManagementTime {
+    /// Bytes of an answer.
+    pub const SIZE: usize = 28;
+
+    /// Reads 28 bytes or more.
+    pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
+        let mut reader = Reader::new("management time", data);
+        Ok(Self { start: reader.text()?, elapsed: reader.text()? })
+    }
+
+    /// The 28 bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = self.start.emit().to_vec();
+        out.extend_from_slice(&self.elapsed.emit());
+        out
+    }
+
+    /// The elapsed time in seconds; `None` when the text is in no known form.
+    pub fn seconds(&self) -> Option<u64> {
+        elapsed_seconds(self.elapsed.as_bytes())
+    }
+}
+
+/// Reads `H:MM'SS` with any number of hour digits and surrounding blanks; seconds may be missing, or stand after a colon.
+pub fn elapsed_seconds(text: &[u8]) -> Option<u64> {
+    let text = std::str::from_utf8(text).ok()?.trim();
+    let mut parts = text.split([':', '\'']).map(|part| {
+        let part = part.trim();
+        part.bytes().all(|byte| byte.is_ascii_digit()).then(|| part.parse::<u64>().ok())?
+    });
+    let hours = parts.next()??;
+    let minutes = parts.next()?.filter(|&minutes| minutes < 60)?;
+    let seconds = match parts.next() {
+        Some(seconds) => seconds.filter(|&seconds| seconds < 60)?,
+        None => 0,
+    };
+    if parts.next().is_some() {
+        return None;
+    }
+    hours.checked_mul(3600)?.checked_add(minutes * 60 + seconds)
+}
+
+/// Versions and names.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
+pub struct SystemInfo {
+    /// System software version; the same for every instance.
+    pub version: Text<24>,
+    /// Robot model, or application name.
+    pub name: Text<16>,
+    /// Parameter version; robots only.
+    pub parameters: Text<8>,
+}
+
+impl SystemInfo {
+    /// Bytes of an answer.
+    pub const SIZE: usize = 48;
+
+    /// Reads 48 bytes or more.
+    pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
+        let mut reader = Reader::new("system information", data);
+        Ok(Self { version: reader.text()?, name: reader.text()?, parameters: reader.text()? })
+    }
+
+    /// The 48 bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = self.version.emit().to_vec();
+        out.extend_from_slice(&self.name.emit());
+        out.extend_from_slice(&self.parameters.emit());
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elapsed_time_in_every_known_form() {
+        assert_eq!(elapsed_seconds(b"000123:45'06"), Some(123 * 3600 + 45 * 60 + 6));
+        assert_eq!(elapsed_seconds(b"18:19'02"), Some(18 * 3600 + 19 * 60 + 2));
+        assert_eq!(elapsed_seconds(b" 1:00"), Some(3600));
+        for junk in [&b""[..], b":", b"1", b"1:60'00", b"1:00'60", b"1:00'00'00", b"-1:00'00", b"\xff:1'2", b"::"] {
+            assert_eq!(elapsed_seconds(junk), None, "{:?}", junk.escape_ascii().to_string());
+        }
+    }
+}

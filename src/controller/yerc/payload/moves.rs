@@ -1,0 +1,186 @@
+//! The data of move instructions (FS and DX 3.3.39, 3.3.40).
+
+use super::{ExtendedForm, Form, PayloadError, PositionKind, Reader, push_u32s, push_words};
+
+/// What the speed word counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SpeedClass {
+    /// 0.01 % of the greatest speed; link moves.
+    Percent,
+    /// 0.1 mm/s; straight moves.
+    Linear,
+    /// 0.1 degree/s; straight moves by rotation.
+    Angular,
+    /// A number that the manuals do not define.
+    Other(u32),
+}
+
+impl SpeedClass {
+    /// Any word has a class.
+    pub const fn from_word(word: u32) -> Self {
+        match word {
+            0 => Self::Percent,
+            1 => Self::Linear,
+            2 => Self::Angular,
+            other => Self::Other(other),
+        }
+    }
+
+    /// The word on the wire.
+    pub const fn word(self) -> u32 {
+        match self {
+            Self::Percent => 0,
+            Self::Linear => 1,
+            Self::Angular => 2,
+            Self::Other(word) => word,
+        }
+    }
+}
+
+/// How many words a cartesian move has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum MoveLayout {
+    /// 26 words with two reserved: printed for DX200, and what is known to have been run on an FS100.
+    #[default]
+    Words26,
+    /// 25 words with one reserved: printed for FS100.
+    Words25,
+}
+
+impl MoveLayout {
+    /// Bytes of the data.
+    pub const fn size(self) -> usize {
+        match self {
+            Self::Words26 => 104,
+            Self::Words25 => 100,
+        }
+    }
+}
+
+/// A move to cartesian coordinates, as it travels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct CartesianMove {
+    /// 25 or 26 words.
+    pub layout: MoveLayout,
+    /// Robot number from 1, or 0 when a station moves.
+    pub robot: u32,
+    /// Station number from 1, or 0 when a robot moves.
+    pub station: u32,
+    /// What `speed` counts.
+    pub class: SpeedClass,
+    /// By class in 0.01 %, 0.1 mm/s or 0.1 degree/s.
+    pub speed: u32,
+    /// Base, robot, user or tool.
+    pub coordinate: PositionKind,
+    /// X, Y, Z in 0.001 mm, then Tx, Ty, Tz in 0.0001 degree.
+    pub target: [i32; 6],
+    /// Reserved, 0; the 25-word layout has only the first.
+    pub reserved: [i32; 2],
+    /// The arm's form.
+    pub form: Form,
+    /// The rest of the form.
+    pub extended: ExtendedForm,
+    /// 0 to 63.
+    pub tool: u32,
+    /// 1 to 63 with user coordinates, 0 otherwise.
+    pub user: u32,
+    /// Base axes in 0.001 mm.
+    pub base: [i32; 3],
+    /// Station axes in pulses.
+    pub station_axes: [i32; 6],
+}
+
+impl CartesianMove {
+    /// Reads either layout, told apart by size.
+    pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
+        let layout = if data.len() < MoveLayout::Words26.size() { MoveLayout::Words25 } else { MoveLayout::Words26 };
+        let mut reader = Reader::new("cartesian move", data);
+        Ok(Self {
+            layout,
+            robot: reader.u32()?,
+            station: reader.u32()?,
+            class: SpeedClass::from_word(reader.u32()?),
+            speed: reader.u32()?,
+            coordinate: PositionKind::from_word(reader.u32()?),
+            target: reader.words()?,
+            reserved: match layout {
+                MoveLayout::Words26 => reader.words()?,
+                MoveLayout::Words25 => [reader.i32()?, 0],
+            },
+            form: Form(reader.u32()?),
+            extended: ExtendedForm(reader.u32()?),
+            tool: reader.u32()?,
+            user: reader.u32()?,
+            base: reader.words()?,
+            station_axes: reader.words()?,
+        })
+    }
+
+    /// 100 or 104 bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = Vec::with_capacity(self.layout.size());
+        push_u32s(&mut out, [self.robot, self.station, self.class.word(), self.speed, self.coordinate.word()]);
+        push_words(&mut out, self.target);
+        let reserved = match self.layout {
+            MoveLayout::Words26 => &self.reserved[..],
+            MoveLayout::Words25 => &self.reserved[..1],
+        };
+        push_words(&mut out, reserved.iter().copied());
+        push_u32s(&mut out, [self.form.0, self.extended.0, self.tool, self.user]);
+        push_words(&mut out, self.base);
+        push_words(&mut out, self.station_axes);
+        out
+    }
+}
+
+/// A move to pulses, as it travels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct PulseMove {
+    /// Robot number from 1, or 0 when a station moves.
+    pub robot: u32,
+    /// Station number from 1, or 0 when a robot moves.
+    pub station: u32,
+    /// What `speed` counts.
+    pub class: SpeedClass,
+    /// By class in 0.01 %, 0.1 mm/s or 0.1 degree/s.
+    pub speed: u32,
+    /// Robot axes.
+    pub axes: [i32; 8],
+    /// 0 to 63.
+    pub tool: u32,
+    /// Base axes.
+    pub base: [i32; 3],
+    /// Station axes.
+    pub station_axes: [i32; 6],
+}
+
+impl PulseMove {
+    /// Bytes of the data: 22 words.
+    pub const SIZE: usize = 88;
+
+    /// Reads 88 bytes or more.
+    pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
+        let mut reader = Reader::new("pulse move", data);
+        Ok(Self {
+            robot: reader.u32()?,
+            station: reader.u32()?,
+            class: SpeedClass::from_word(reader.u32()?),
+            speed: reader.u32()?,
+            axes: reader.words()?,
+            tool: reader.u32()?,
+            base: reader.words()?,
+            station_axes: reader.words()?,
+        })
+    }
+
+    /// The 88 bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = Vec::with_capacity(Self::SIZE);
+        push_u32s(&mut out, [self.robot, self.station, self.class.word(), self.speed]);
+        push_words(&mut out, self.axes);
+        push_u32s(&mut out, [self.tool]);
+        push_words(&mut out, self.base);
+        push_words(&mut out, self.station_axes);
+        out
+    }
+}

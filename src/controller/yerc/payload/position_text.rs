@@ -1,0 +1,373 @@
+//! Positions as text: `base:x=100.000,y=0.000,z=0.000,rx=180.0000,ry=0.0000,rz=0.0000,tool=1,user=0,form=back+upper+flip`
+//! and `pulse:s=0,l=0,u=0,r=0,b=0,t=0`. Safe to type in a shell without quotes.
+
+use std::fmt;
+use std::str::FromStr;
+
+use thiserror::Error;
+
+use super::position::{EXTENDED_FORM_BITS, FORM_BITS};
+use super::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, MAX_AXES, Position, PositionKind};
+use crate::controller::yerc::table::Bit;
+use crate::controller::yerc::units::{self, Unit, UnitError};
+
+const PULSE_AXES: [&str; MAX_AXES] = ["s", "l", "u", "r", "b", "t", "e", "8"];
+const CARTESIAN_AXES: [&str; MAX_AXES] = ["x", "y", "z", "rx", "ry", "rz", "re", "8"];
+const NUMBERED_AXES: [&str; MAX_AXES] = ["1", "2", "3", "4", "5", "6", "7", "8"];
+/// The axes that a robot position must name, so that a forgotten one does not become 0.
+const REQUIRED_AXES: usize = 6;
+
+/// A text that is no position.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum PositionTextError {
+    /// No colon after the kind.
+    #[error("a position begins with its kind and a colon, e.g. 'base:x=...' or 'pulse:s=...'")]
+    NoKind,
+    /// Not a kind this variable has.
+    #[error("'{found}' is no kind of position here; there are {allowed}")]
+    Kind {
+        /// What was given.
+        found: String,
+        /// The kinds there are.
+        allowed: String,
+    },
+    /// Not `key=value`.
+    #[error("'{found}' is not of the form key=value")]
+    Pair {
+        /// What was given.
+        found: String,
+    },
+    /// Not a key of this kind.
+    #[error("'{found}' is no part of this position; there are {allowed}")]
+    Key {
+        /// What was given.
+        found: String,
+        /// The keys there are.
+        allowed: String,
+    },
+    /// Twice the same key.
+    #[error("'{key}' is given twice")]
+    Twice {
+        /// The key.
+        key: String,
+    },
+    /// An axis left out.
+    #[error("axis '{axis}' is missing")]
+    Missing {
+        /// Its key.
+        axis: &'static str,
+    },
+    /// An axis with a value that cannot be sent.
+    #[error("{key}: {error}")]
+    Axis {
+        /// The key.
+        key: String,
+        /// What is wrong with it.
+        error: UnitError,
+    },
+    /// A tool, user coordinate or form with a value that cannot be sent.
+    #[error("{key}: '{found}' is not {expected}")]
+    Value {
+        /// The key.
+        key: &'static str,
+        /// What was given.
+        found: String,
+        /// What is possible.
+        expected: String,
+    },
+}
+
+impl FromStr for Position {
+    type Err = PositionTextError;
+
+    fn from_str(text: &str) -> Result<Self, PositionTextError> {
+        let (kind, rest) = split_kind(text, &PositionKind::ALL)?;
+        let mut parts = Parts::new(axis_names(kind), &["tool", "user", "form", "ext"]);
+        parts.read(rest, |axis| kind.unit(axis))?;
+        let axes = parts.axes(REQUIRED_AXES)?;
+        Ok(Self {
+            kind,
+            form: Form(flags("form", parts.other("form"), &FORM_BITS)?),
+            tool: number("tool", parts.other("tool"))?,
+            user: number("user", parts.other("user"))?,
+            extended: ExtendedForm(flags("ext", parts.other("ext"), &EXTENDED_FORM_BITS)?),
+            axes,
+        })
+    }
+}
+
+impl fmt::Display for Position {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (names, axes) = (axis_names(self.kind), self.axes.padded());
+        let shown = shown_axes(&axes, REQUIRED_AXES);
+        write_kind(f, self.kind, &PositionKind::ALL)?;
+        write_axes(f, &names, &axes[..shown], |axis| self.kind.unit(axis))?;
+        write!(f, ",tool={},user={}", self.tool, self.user)?;
+        if self.kind != PositionKind::Pulse || self.form.0 != 0 {
+            write_flags(f, "form", self.form.0, &FORM_BITS, 3)?;
+        }
+        if self.extended.0 != 0 {
+            write_flags(f, "ext", self.extended.0, &EXTENDED_FORM_BITS, 0)?;
+        }
+        Ok(())
+    }
+}
+
+macro_rules! nine_word_text {
+    ($name:ident, $kinds:expr, $units:expr) => {
+        impl FromStr for $name {
+            type Err = PositionTextError;
+
+            fn from_str(text: &str) -> Result<Self, PositionTextError> {
+                let (kind, rest) = split_kind(text, $kinds)?;
+                let mut parts = Parts::new(group_axis_names(kind), &[]);
+                parts.read(rest, |_| $units(kind))?;
+                Ok(Self { kind, axes: parts.axes(1)? })
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                let (names, axes) = (group_axis_names(self.kind), self.axes.padded());
+                let shown = shown_axes(&axes, if self.kind == PositionKind::Base { 3 } else { 1 });
+                write_kind(f, self.kind, $kinds)?;
+                write_axes(f, &names, &axes[..shown], |_| $units(self.kind))
+            }
+        }
+    };
+}
+
+nine_word_text!(BasePosition, &[PositionKind::ALL[0], PositionKind::ALL[1]], base_unit);
+nine_word_text!(ExternalPosition, &[PositionKind::ALL[0]], pulse_unit);
+
+fn base_unit(kind: PositionKind) -> Unit {
+    if kind == PositionKind::Base { units::MILLIMETRE } else { units::PULSE }
+}
+
+const fn pulse_unit(_: PositionKind) -> Unit {
+    units::PULSE
+}
+
+fn axis_names(kind: PositionKind) -> [&'static str; MAX_AXES] {
+    match kind {
+        PositionKind::Pulse => PULSE_AXES,
+        PositionKind::Other(_) => NUMBERED_AXES,
+        _ => CARTESIAN_AXES,
+    }
+}
+
+/// Bases and external axes have no S, L, U; a base has X, Y, Z in base coordinates.
+fn group_axis_names(kind: PositionKind) -> [&'static str; MAX_AXES] {
+    match kind {
+        PositionKind::Base => ["x", "y", "z", "4", "5", "6", "7", "8"],
+        _ => NUMBERED_AXES,
+    }
+}
+
+/// Kinds without a name travel as `type7:`.
+fn split_kind<'a>(
+    text: &'a str,
+    kinds: &[(PositionKind, u32, &str)],
+) -> Result<(PositionKind, &'a str), PositionTextError> {
+    let (name, rest) = text.split_once(':').ok_or(PositionTextError::NoKind)?;
+    let name = name.trim();
+    if let Some(row) = kinds.iter().find(|row| row.2.eq_ignore_ascii_case(name)) {
+        return Ok((row.0, rest));
+    }
+    let number = name.strip_prefix("type").filter(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()));
+    match number.and_then(|digits| digits.parse().ok()).map(PositionKind::from_word) {
+        Some(kind) if kinds.iter().all(|row| row.0 != kind) => Ok((kind, rest)),
+        _ => Err(PositionTextError::Kind {
+            found: name.to_owned(),
+            allowed: kinds.iter().map(|row| row.2).collect::<Vec<_>>().join(", "),
+        }),
+    }
+}
+
+/// What has been read so far.
+struct Parts<'a> {
+    names: [&'static str; MAX_AXES],
+    axes: [Option<i32>; MAX_AXES],
+    others: Vec<(&'static str, Option<&'a str>)>,
+}
+
+impl<'a> Parts<'a> {
+    fn new(names: [&'static str; MAX_AXES], others: &[&'static str]) -> Self {
+        Self { names, axes: [None; MAX_AXES], others: others.iter().map(|&key| (key, None)).collect() }
+    }
+
+    fn read(&mut self, text: &'a str, unit: impl Fn(usize) -> Unit) -> Result<(), PositionTextError> {
+        for pair in text.split(',').map(str::trim) {
+            let (key, value) =
+                pair.split_once('=').ok_or_else(|| PositionTextError::Pair { found: pair.to_owned() })?;
+            let (key, value) = (key.trim().to_ascii_lowercase(), value.trim());
+            let by_number = key.parse::<usize>().ok().filter(|number| (1..=MAX_AXES).contains(number));
+            let axis = self.names.iter().position(|name| *name == key).or(by_number.map(|number| number - 1));
+            if let Some(axis) = axis {
+                let parsed =
+                    unit(axis).parse(value).map_err(|error| PositionTextError::Axis { key: key.clone(), error })?;
+                if self.axes[axis].replace(parsed).is_some() {
+                    return Err(PositionTextError::Twice { key });
+                }
+            } else if let Some(slot) = self.others.iter_mut().find(|slot| slot.0 == key) {
+                if slot.1.replace(value).is_some() {
+                    return Err(PositionTextError::Twice { key });
+                }
+            } else {
+                let keys = self.names.into_iter().chain(self.others.iter().map(|slot| slot.0));
+                let allowed = keys.collect::<Vec<_>>().join(", ");
+                return Err(PositionTextError::Key { found: key, allowed });
+            }
+        }
+        Ok(())
+    }
+
+    /// All eight axes; the first `required` must be named, and none left out before the last.
+    fn axes(&self, required: usize) -> Result<Axes, PositionTextError> {
+        let named = self.axes.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+        let mut values = [0; MAX_AXES];
+        for (axis, value) in self.axes.iter().enumerate() {
+            match value {
+                Some(value) => values[axis] = *value,
+                // The axes after the sixth are extras that few robots have; each stands for itself.
+                None if axis < required || axis < named.min(REQUIRED_AXES) => {
+                    return Err(PositionTextError::Missing { axis: self.names[axis] });
+                }
+                None => {}
+            }
+        }
+        Ok(Axes::full(values))
+    }
+
+    fn other(&self, key: &str) -> Option<&'a str> {
+        self.others.iter().find(|slot| slot.0 == key).and_then(|slot| slot.1)
+    }
+}
+
+fn number(key: &'static str, text: Option<&str>) -> Result<u32, PositionTextError> {
+    let Some(text) = text else { return Ok(0) };
+    let digits = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    digits.then(|| text.parse().ok()).flatten().ok_or_else(|| PositionTextError::Value {
+        key,
+        found: text.to_owned(),
+        expected: "a whole number".to_owned(),
+    })
+}
+
+/// Words joined by `+`; bits without a name as one hexadecimal number.
+fn flags(key: &'static str, text: Option<&str>, bits: &[Bit]) -> Result<u32, PositionTextError> {
+    let (mut value, mut given) = (0_u32, 0_u32);
+    for word in text.into_iter().flat_map(|text| text.split('+')).map(str::trim) {
+        let wrong = || PositionTextError::Value {
+            key,
+            found: word.to_owned(),
+            expected: bits.iter().map(|bit| format!("{}|{}", bit.clear, bit.set)).collect::<Vec<_>>().join(" + "),
+        };
+        let (mask, set) = if let Some(digits) = word.strip_prefix("0x") {
+            let mask = u32::from_str_radix(digits, 16).map_err(|_| wrong())?;
+            (mask, mask)
+        } else {
+            let bit = bits
+                .iter()
+                .find(|bit| bit.set.eq_ignore_ascii_case(word) || bit.clear.eq_ignore_ascii_case(word))
+                .ok_or_else(wrong)?;
+            let mask = 1 << bit.bit;
+            (mask, if bit.set.eq_ignore_ascii_case(word) { mask } else { 0 })
+        };
+        if given & mask != 0 {
+            return Err(PositionTextError::Twice { key: word.to_owned() });
+        }
+        given |= mask;
+        value |= set;
+    }
+    Ok(value)
+}
+
+/// At least so many axes, and up to the last that is not 0.
+fn shown_axes(axes: &[i32; MAX_AXES], least: usize) -> usize {
+    axes.iter().rposition(|&value| value != 0).map_or(0, |last| last + 1).max(least)
+}
+
+fn write_kind(f: &mut fmt::Formatter<'_>, kind: PositionKind, kinds: &[(PositionKind, u32, &str)]) -> fmt::Result {
+    match kinds.iter().find(|row| row.0 == kind) {
+        Some(row) => write!(f, "{}:", row.2),
+        None => write!(f, "type{}:", kind.word()),
+    }
+}
+
+fn write_axes(
+    f: &mut fmt::Formatter<'_>,
+    names: &[&str; MAX_AXES],
+    axes: &[i32],
+    unit: impl Fn(usize) -> Unit,
+) -> fmt::Result {
+    for (axis, (name, value)) in names.iter().zip(axes).enumerate() {
+        let comma = if axis == 0 { "" } else { "," };
+        write!(f, "{comma}{name}={}", unit(axis).show(*value))?;
+    }
+    Ok(())
+}
+
+/// The first `always` bits in words whatever they are, the others when set.
+fn write_flags(f: &mut fmt::Formatter<'_>, key: &str, value: u32, bits: &[Bit], always: usize) -> fmt::Result {
+    let known = bits.iter().fold(0, |mask, bit| mask | 1 << bit.bit);
+    let mut words: Vec<String> = bits
+        .iter()
+        .enumerate()
+        .filter(|(index, bit)| *index < always || value >> bit.bit & 1 == 1)
+        .map(|(_, bit)| bit.word(value).to_owned())
+        .collect();
+    if value & !known != 0 {
+        words.push(format!("{:#x}", value & !known));
+    }
+    write!(f, ",{key}={}", words.join("+"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base_position_reads_and_shows_exactly() {
+        let text =
+            "base:x=100.000,y=-0.001,z=0.000,rx=180.0000,ry=0.0000,rz=-90.0000,tool=1,user=0,form=back+upper+flip";
+        let position: Position = text.parse().unwrap();
+        assert_eq!(position.axes.padded(), [100_000, -1, 0, 1_800_000, 0, -900_000, 0, 0]);
+        assert_eq!((position.form, position.tool), (Form(1), 1));
+        assert_eq!(position.to_string(), text);
+    }
+
+    #[test]
+    fn pulses_by_letter_or_number() {
+        let position: Position = "pulse:s=1,l=2,3=3,r=4,b=5,t=6".parse().unwrap();
+        assert_eq!(position.axes.padded(), [1, 2, 3, 4, 5, 6, 0, 0]);
+        assert_eq!(position.to_string(), "pulse:s=1,l=2,u=3,r=4,b=5,t=6,tool=0,user=0");
+    }
+
+    #[test]
+    fn nothing_is_guessed() {
+        let error = |text: &str| text.parse::<Position>().unwrap_err();
+        assert_eq!(error("base:x=1,y=2"), PositionTextError::Missing { axis: "z" });
+        assert_eq!(error("x=1"), PositionTextError::NoKind);
+        assert!(matches!(error("best:x=1"), PositionTextError::Kind { .. }));
+        assert!(matches!(error("pulse:s=1,s=2"), PositionTextError::Twice { .. }));
+        assert!(matches!(error("pulse:s=1,1=2"), PositionTextError::Twice { .. }));
+        assert!(matches!(error("pulse:s=1.5"), PositionTextError::Axis { .. }));
+        assert!(matches!(error("pulse:x=1"), PositionTextError::Key { .. }));
+        assert!(matches!(error("pulse:s"), PositionTextError::Pair { .. }));
+        let full = "base:x=1,y=1,z=1,rx=1,ry=1,rz=1";
+        assert!(matches!(error(&format!("{full},form=back+front")), PositionTextError::Twice { .. }));
+        assert!(matches!(error(&format!("{full},form=up")), PositionTextError::Value { key: "form", .. }));
+        assert!(matches!(error(&format!("{full},tool=-1")), PositionTextError::Value { key: "tool", .. }));
+    }
+
+    #[test]
+    fn bases_and_external_axes() {
+        let base: BasePosition = "base:x=1.500,y=-2.500,z=3.500".parse().unwrap();
+        assert_eq!(base.axes.padded(), [1500, -2500, 3500, 0, 0, 0, 0, 0]);
+        assert_eq!(base.to_string(), "base:x=1.500,y=-2.500,z=3.500");
+        let external: ExternalPosition = "pulse:1=100,2=200".parse().unwrap();
+        assert_eq!(external.to_string(), "pulse:1=100,2=200");
+        assert!("base:x=1".parse::<ExternalPosition>().is_err());
+    }
+}

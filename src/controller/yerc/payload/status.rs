@@ -1,0 +1,196 @@
+//! Controller status, two words of bits (FS and DX 3.3.3).
+
+use super::{PayloadError, Reader};
+use crate::controller::yerc::table::Bit;
+
+/// One condition of the controller.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum StatusBit {
+    /// Step mode.
+    Step,
+    /// One-cycle mode.
+    OneCycle,
+    /// Continuous (automatic) mode.
+    Continuous,
+    /// A job is running.
+    Running,
+    /// In-guard safe operation.
+    Guarded,
+    /// Teach mode.
+    Teach,
+    /// Play mode.
+    Play,
+    /// Command remote.
+    CommandRemote,
+    /// Held from the programming pendant.
+    HoldPendant,
+    /// Held by an external signal.
+    HoldExternal,
+    /// Held by command.
+    HoldCommand,
+    /// An alarm is present.
+    Alarm,
+    /// An error is present.
+    Error,
+    /// Servo power is on.
+    ServoOn,
+}
+
+use StatusBit as S;
+
+/// Word, bit and name of every condition.
+const BITS: [(StatusBit, usize, u8, &str); 14] = [
+    (S::Step, 0, 0, "step mode"),
+    (S::OneCycle, 0, 1, "one-cycle mode"),
+    (S::Continuous, 0, 2, "continuous mode"),
+    (S::Running, 0, 3, "running"),
+    (S::Guarded, 0, 4, "in-guard safe operation"),
+    (S::Teach, 0, 5, "teach mode"),
+    (S::Play, 0, 6, "play mode"),
+    (S::CommandRemote, 0, 7, "command remote"),
+    (S::HoldPendant, 1, 1, "hold by pendant"),
+    (S::HoldExternal, 1, 2, "hold by external signal"),
+    (S::HoldCommand, 1, 3, "hold by command"),
+    (S::Alarm, 1, 4, "alarm"),
+    (S::Error, 1, 5, "error"),
+    (S::ServoOn, 1, 6, "servo on"),
+];
+
+/// The bits of word 1 for the table.
+pub(in crate::controller::yerc) const DATA_1_BITS: [Bit; 8] = table_bits::<8>(0);
+/// The bits of word 2 for the table.
+pub(in crate::controller::yerc) const DATA_2_BITS: [Bit; 6] = table_bits::<6>(8);
+
+const fn table_bits<const N: usize>(from: usize) -> [Bit; N] {
+    let mut out = [Bit { bit: 0, clear: "", set: "" }; N];
+    let mut i = 0;
+    while i < N {
+        out[i] = Bit { bit: BITS[from + i].2, clear: "", set: BITS[from + i].3 };
+        i += 1;
+    }
+    out
+}
+
+impl StatusBit {
+    /// Every condition, in the order of the manual.
+    pub fn all() -> impl Iterator<Item = Self> {
+        BITS.iter().map(|row| row.0)
+    }
+
+    /// The name, e.g. `servo on`.
+    pub fn name(self) -> &'static str {
+        self.row().3
+    }
+
+    fn row(self) -> &'static (Self, usize, u8, &'static str) {
+        &BITS[self as usize]
+    }
+}
+
+/// The cycle switch, as set by 0x84 (FS and DX 3.3.21).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum CycleMode {
+    /// One step at a time.
+    Step,
+    /// One cycle, then stop.
+    Once,
+    /// Again and again.
+    Continuous,
+}
+
+impl CycleMode {
+    /// The data word of 0x84.
+    pub const fn word(self) -> u32 {
+        match self {
+            Self::Step => 1,
+            Self::Once => 2,
+            Self::Continuous => 3,
+        }
+    }
+}
+
+/// Both status words as they travel; bits without a meaning are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct ControllerStatus {
+    /// Data 1 and data 2.
+    pub words: [u32; 2],
+}
+
+impl ControllerStatus {
+    /// Reads 8 bytes or more.
+    pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
+        let mut reader = Reader::new("controller status", data);
+        Ok(Self { words: [reader.u32()?, reader.u32()?] })
+    }
+
+    /// The 8 bytes.
+    pub fn emit(self) -> Vec<u8> {
+        let mut out = Vec::with_capacity(8);
+        super::push_u32s(&mut out, self.words);
+        out
+    }
+
+    /// Whether a condition holds.
+    pub fn has(self, bit: StatusBit) -> bool {
+        let &(_, word, bit, _) = bit.row();
+        self.words[word] >> bit & 1 == 1
+    }
+
+    /// Sets or clears a condition.
+    #[must_use]
+    pub fn with(mut self, bit: StatusBit, on: bool) -> Self {
+        let &(_, word, bit, _) = bit.row();
+        self.words[word] = self.words[word] & !(1 << bit) | u32::from(on) << bit;
+        self
+    }
+
+    /// Whether a job is running.
+    pub fn running(self) -> bool {
+        self.has(S::Running)
+    }
+
+    /// Whether servo power is on.
+    pub fn servo_on(self) -> bool {
+        self.has(S::ServoOn)
+    }
+
+    /// Whether an alarm is present.
+    pub fn alarm(self) -> bool {
+        self.has(S::Alarm)
+    }
+
+    /// Whether an error is present.
+    pub fn error(self) -> bool {
+        self.has(S::Error)
+    }
+
+    /// Whether anything holds the robot.
+    pub fn held(self) -> bool {
+        [S::HoldPendant, S::HoldExternal, S::HoldCommand].into_iter().any(|bit| self.has(bit))
+    }
+
+    /// The cycle mode, when exactly one of its three bits is set.
+    pub fn cycle(self) -> Option<CycleMode> {
+        match self.words[0] & 0b111 {
+            0b001 => Some(CycleMode::Step),
+            0b010 => Some(CycleMode::Once),
+            0b100 => Some(CycleMode::Continuous),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_stand_at_their_bit() {
+        for (index, bit) in StatusBit::all().enumerate() {
+            assert_eq!(bit as usize, index);
+            assert!(ControllerStatus::default().with(bit, true).has(bit));
+        }
+        assert_eq!(DATA_1_BITS[7].set, "command remote");
+        assert_eq!(DATA_2_BITS[5], Bit { bit: 6, clear: "", set: "servo on" });
+    }
+}

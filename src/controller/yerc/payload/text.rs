@@ -1,0 +1,85 @@
+//! Text fields: bytes in the pendant's language, zero filled.
+
+use std::fmt;
+
+use thiserror::Error;
+
+/// A text of at most `N` bytes without NUL; its encoding is the pendant's, so it stays bytes here.
+#[derive(Clone, PartialEq, Eq, Hash, Default)]
+pub struct Text<const N: usize>(Vec<u8>);
+
+/// Bytes that do not fit a text field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum TextError {
+    /// Longer than the field.
+    #[error("the text has {len} bytes in the controller's encoding; at most {most} fit")]
+    TooLong {
+        /// Bytes given.
+        len: usize,
+        /// Bytes that fit.
+        most: usize,
+    },
+    /// A NUL would end the text early.
+    #[error("the text contains a NUL byte at position {at}")]
+    Nul {
+        /// Offset of the first NUL.
+        at: usize,
+    },
+}
+
+impl<const N: usize> Text<N> {
+    /// Takes bytes that fit the field whole.
+    pub fn new(bytes: &[u8]) -> Result<Self, TextError> {
+        if bytes.len() > N {
+            return Err(TextError::TooLong { len: bytes.len(), most: N });
+        }
+        match bytes.iter().position(|&byte| byte == 0) {
+            Some(at) => Err(TextError::Nul { at }),
+            None => Ok(Self(bytes.to_vec())),
+        }
+    }
+
+    /// Reads a field: up to the first NUL, or the whole width where there is none.
+    pub fn cut(field: &[u8]) -> Self {
+        let field = &field[..field.len().min(N)];
+        let end = field.iter().position(|&byte| byte == 0).unwrap_or(field.len());
+        Self(field[..end].to_vec())
+    }
+
+    /// The bytes before the fill.
+    pub fn as_bytes(&self) -> &[u8] {
+        &self.0
+    }
+
+    /// Whether the field is all zero.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The field of `N` bytes, zero filled.
+    pub fn emit(&self) -> [u8; N] {
+        let mut field = [0; N];
+        field[..self.0.len()].copy_from_slice(&self.0);
+        field
+    }
+}
+
+impl<const N: usize> fmt::Debug for Text<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "\"{}\"", self.0.escape_ascii())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cuts_at_the_first_nul_and_fills_with_zeros() {
+        assert_eq!(Text::<8>::cut(b"AB\0CD\0\0\0").as_bytes(), b"AB");
+        assert_eq!(Text::<4>::cut(b"ABCD").as_bytes(), b"ABCD");
+        assert_eq!(Text::<4>::new(b"AB").unwrap().emit(), *b"AB\0\0");
+        assert_eq!(Text::<2>::new(b"ABC"), Err(TextError::TooLong { len: 3, most: 2 }));
+        assert_eq!(Text::<4>::new(b"A\0B"), Err(TextError::Nul { at: 1 }));
+    }
+}

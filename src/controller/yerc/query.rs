@@ -1,0 +1,202 @@
+//! Typed questions and orders: each builds its request and reads its answer.
+//!
+//! A query cannot be built with numbers that the controller's model does not have, except extended variables, whose
+//! count is a parameter of the controller.
+
+mod control;
+mod read;
+mod signals;
+mod variable;
+
+pub use control::{
+    CancelError, Hlock, Hold, MoveCartesian, MoveKind, MovePulse, ResetAlarm, Say, SelectJob, Selection, Servo,
+    SetCycle, StartJob,
+};
+pub use read::{
+    AlarmClass, Coordinates, ReadAlarm, ReadAlarmHistory, ReadAxes, ReadField, ReadJob, ReadManagementTime,
+    ReadPosition, ReadPositionError, ReadStatus, ReadSystemInfo, ReadTorque, SystemPart, TimeCounter,
+};
+pub use signals::{
+    ReadIo, ReadIoGroups, ReadRegister, ReadRegisters, WriteIo, WriteIoGroups, WriteRegister, WriteRegisters,
+};
+pub use variable::{ReadVariable, ReadVariables, WriteField, WriteVariable, WriteVariables};
+
+use thiserror::Error;
+
+use super::Model;
+use super::group::Group;
+use super::payload::{PayloadError, Reader, TextError};
+use super::request::{Request, RequestError};
+use super::table::service;
+use crate::controller::Risk;
+
+/// One exchange with the robot server.
+pub trait Query {
+    /// What the controller answers.
+    type Answer;
+
+    /// The request; it passes [`Request::check`] for the model the query was built for.
+    fn request(&self) -> Request;
+
+    /// Reads the data of a successful answer.
+    fn decode(&self, data: &[u8]) -> Result<Self::Answer, PayloadError>;
+
+    /// What it does to the world.
+    fn risk(&self) -> Risk {
+        self.request().risk()
+    }
+}
+
+/// A query that cannot be built.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum QueryError {
+    /// No such control group.
+    #[error("{group} does not exist on a {model}; there are R1-R{robots}, B1-B{bases}, S1-S{stations}",
+        robots = Group::counts(*.model).0, bases = Group::counts(*.model).1, stations = Group::counts(*.model).2)]
+    Group {
+        /// The group given.
+        group: Group,
+        /// The controller.
+        model: Model,
+    },
+    /// A control group that this query does not take.
+    #[error("{group} cannot be used here: {reason}")]
+    GroupKind {
+        /// The group given.
+        group: Group,
+        /// Why not.
+        reason: &'static str,
+    },
+    /// No such task.
+    #[error("task {task} does not exist on a {model}; there are 0 (master) to {last}")]
+    Task {
+        /// The task given.
+        task: u8,
+        /// The controller.
+        model: Model,
+        /// The last task.
+        last: u8,
+    },
+    /// A number outside its range.
+    #[error("{what} is {found}; allowed: {first} to {last}")]
+    Range {
+        /// What is out of range.
+        what: &'static str,
+        /// The number given.
+        found: u32,
+        /// Least.
+        first: u32,
+        /// Greatest.
+        last: u32,
+    },
+    /// A text that does not fit.
+    #[error("{what}: {error}")]
+    Text {
+        /// Which text.
+        what: &'static str,
+        /// Why.
+        error: TextError,
+    },
+    /// A name without which nothing can be done.
+    #[error("{what} is empty")]
+    Empty {
+        /// Which text.
+        what: &'static str,
+    },
+    /// A speed that does not go with the way of moving.
+    #[error("a {motion} move takes its speed in {expected}")]
+    SpeedClass {
+        /// Link or straight.
+        motion: &'static str,
+        /// The classes possible.
+        expected: &'static str,
+    },
+    /// Coordinates that a move cannot be given in.
+    #[error("a cartesian move takes base, robot, user or tool coordinates")]
+    Coordinate,
+    /// Bits that the manuals reserve.
+    #[error("{what} has reserved bits set: {bits:#x}")]
+    Reserved {
+        /// Which word.
+        what: &'static str,
+        /// The bits.
+        bits: u32,
+    },
+    /// Values of different kinds in one plural write.
+    #[error("a plural write takes values of one kind, and at least one")]
+    MixedKinds,
+    /// What the table does not allow.
+    #[error(transparent)]
+    Request(#[from] RequestError),
+}
+
+/// A query whose request the table allows for this model.
+fn checked<Q: Query>(model: Model, query: Q) -> Result<Q, QueryError> {
+    query.request().check(model)?;
+    Ok(query)
+}
+
+/// A request without data.
+fn reading(command: u16, instance: u16, attribute: u8, service: u8) -> Request {
+    Request { command, instance, attribute, service, data: Vec::new() }
+}
+
+/// Reads every field of an instance.
+fn read_all(command: u16, instance: u16) -> Request {
+    reading(command, instance, 0, service::GET_ALL)
+}
+
+/// Writes the only field of an instance.
+fn write_one(command: u16, instance: u16, data: impl Into<Vec<u8>>) -> Request {
+    Request { command, instance, attribute: 1, service: service::SET_SINGLE, data: data.into() }
+}
+
+fn read_plural(command: u16, first: u16, count: u16) -> Request {
+    let data = u32::from(count).to_le_bytes().to_vec();
+    Request { command, instance: first, attribute: 0, service: service::READ_PLURAL, data }
+}
+
+/// `elements` are `count` elements, one after the other.
+fn write_plural(command: u16, first: u16, count: usize, elements: impl IntoIterator<Item = u8>) -> Request {
+    // A count that large is refused by the check that follows every construction.
+    let mut data = u32::try_from(count).unwrap_or(u32::MAX).to_le_bytes().to_vec();
+    data.extend(elements);
+    Request { command, instance: first, attribute: 0, service: service::WRITE_PLURAL, data }
+}
+
+/// The elements of a plural answer, which must be as many as asked for.
+fn elements<'a>(
+    what: &'static str,
+    data: &'a [u8],
+    asked: u16,
+    size: usize,
+) -> Result<impl Iterator<Item = &'a [u8]>, PayloadError> {
+    let mut reader = Reader::new(what, data);
+    let answered = reader.u32()?;
+    if answered != u32::from(asked) {
+        return Err(PayloadError::Count { what, asked: asked.into(), answered });
+    }
+    Ok(reader.bytes(size.saturating_mul(usize::from(asked)))?.chunks_exact(size))
+}
+
+/// Refuses a group that the model does not have.
+fn known_group(model: Model, group: Group) -> Result<Group, QueryError> {
+    if group.exists_on(model) { Ok(group) } else { Err(QueryError::Group { group, model }) }
+}
+
+/// The last task, 0 being the master.
+const fn last_task(model: Model) -> u8 {
+    match model {
+        Model::Fs100 => 5,
+        Model::Dx200 => 15,
+    }
+}
+
+fn known_task(model: Model, task: u8) -> Result<u8, QueryError> {
+    let last = last_task(model);
+    if task <= last { Ok(task) } else { Err(QueryError::Task { task, model, last }) }
+}
+
+fn in_range(what: &'static str, found: u32, first: u32, last: u32) -> Result<u32, QueryError> {
+    if (first..=last).contains(&found) { Ok(found) } else { Err(QueryError::Range { what, found, first, last }) }
+}

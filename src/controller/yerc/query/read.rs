@@ -1,0 +1,396 @@
+//! Queries that only read.
+
+use super::{Query, QueryError, checked, in_range, known_group, known_task, read_all, reading};
+use crate::controller::yerc::Model;
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::{
+    Alarm, Axes, AxisNames, ControllerStatus, JobInfo, ManagementTime, PayloadError, Position, SystemInfo,
+};
+use crate::controller::yerc::request::Request;
+use crate::controller::yerc::table::{Row, service, total};
+
+/// Both status words (0x72).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ReadStatus;
+
+impl Query for ReadStatus {
+    type Answer = ControllerStatus;
+
+    fn request(&self) -> Request {
+        read_all(0x72, 1)
+    }
+
+    fn decode(&self, data: &[u8]) -> Result<ControllerStatus, PayloadError> {
+        ControllerStatus::parse(data)
+    }
+}
+
+/// One of the up to four present alarms (0x70, with texts 0x30A).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ReadAlarm {
+    slot: u8,
+    texts: bool,
+}
+
+impl ReadAlarm {
+    /// Slot 1 is the latest alarm, 4 the fourth latest. Texts need a DX200 or FS1.14.
+    pub fn new(slot: u8, texts: bool) -> Result<Self, QueryError> {
+        in_range("alarm slot", slot.into(), 1, 4)?;
+        Ok(Self { slot, texts })
+    }
+}
+
+impl Query for ReadAlarm {
+    type Answer = Alarm;
+
+    fn request(&self) -> Request {
+        read_all(if self.texts { 0x30A } else { 0x70 }, self.slot.into())
+    }
+
+    fn decode(&self, data: &[u8]) -> Result<Alarm, PayloadError> {
+        if self.texts { Alarm::parse_with_texts(data) } else { Alarm::parse(data) }
+    }
+}
+
+/// The lists of past alarms (3.3.2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum AlarmClass {
+    /// Major failures.
+    Major,
+    /// Monitor alarms.
+    Monitor,
+    /// User alarms of the system.
+    UserSystem,
+    /// User alarms of the user.
+    User,
+    /// Off-line alarms.
+    OffLine,
+}
+
+impl AlarmClass {
+    /// Every class with the name for commands, in the order of the manual.
+    pub const ALL: [(Self, &'static str); 5] = [
+        (Self::Major, "major"),
+        (Self::Monitor, "monitor"),
+        (Self::UserSystem, "user-system"),
+        (Self::User, "user"),
+        (Self::OffLine, "off-line"),
+    ];
+
+    const fn base(self) -> u16 {
+        match self {
+            Self::Major => 0,
+            Self::Monitor => 1000,
+            Self::UserSystem => 2000,
+            Self::User => 3000,
+            Self::OffLine => 4000,
+        }
+    }
+}
+
+/// A past alarm (0x71, with texts 0x30B).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ReadAlarmHistory {
+    class: AlarmClass,
+    number: u8,
+    texts: bool,
+}
+
+impl ReadAlarmHistory {
+    /// Number 1 to 100. Texts need a DX200 or FS1.14.
+    pub fn new(class: AlarmClass, number: u8, texts: bool) -> Result<Self, QueryError> {
+        in_range("alarm number", number.into(), 1, 100)?;
+        Ok(Self { class, number, texts })
+    }
+}
+
+impl Query for ReadAlarmHistory {
+    type Answer = Alarm;
+
+    fn request(&self) -> Request {
+        read_all(if self.texts { 0x30B } else { 0x71 }, self.class.base() + u16::from(self.number))
+    }
+
+    fn decode(&self, data: &[u8]) -> Result<Alarm, PayloadError> {
+        if self.texts { Alarm::parse_with_texts(data) } else { Alarm::parse(data) }
+    }
+}
+
+/// The job that a task executes (0x73).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ReadJob {
+    task: u8,
+}
+
+impl ReadJob {
+    /// Task 0 is the master; sub tasks go to 5 on FS100, to 15 on DX200.
+    pub fn new(model: Model, task: u8) -> Result<Self, QueryError> {
+        Ok(Self { task: known_task(model, task)? })
+    }
+}
+
+impl Query for ReadJob {
+    type Answer = JobInfo;
+
+    fn request(&self) -> Request {
+        read_all(0x73, u16::from(self.task) + 1)
+    }
+
+    fn decode(&self, data: &[u8]) -> Result<JobInfo, PayloadError> {
+        JobInfo::parse(data)
+    }
+}
+
+/// Pulses, or cartesian coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Coordinates {
+    /// By axis.
+    Pulse,
+    /// X Y Z Rx Ry Rz in base coordinates.
+    Base,
+}
+
+/// The instance of a group in the wanted coordinates.
+fn instance(model: Model, group: Group, coordinates: Coordinates) -> Result<u16, QueryError> {
+    known_group(model, group)?;
+    match coordinates {
+        Coordinates::Pulse => Ok(group.instance()),
+        Coordinates::Base => {
+            group.cartesian_instance().ok_or(QueryError::GroupKind { group, reason: "a station has pulses only" })
+        }
+    }
+}
+
+/// The names of a group's axes (0x74).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ReadAxes {
+    instance: u16,
+}
+
+impl ReadAxes {
+    /// A robot or base in either coordinates, or a station in pulses.
+    pub fn new(model: Model, group: Group, coordinates: Coordinates) -> Result<Self, QueryError> {
+        Ok(Self { instance: instance(model, group, coordinates)? })
+    }
+}
+
+impl Query for ReadAxes {
+    type Answer = AxisNames;
+
+    fn request(&self) -> Request {
+        read_all(0x74, self.instance)
+    }
+
+    fn decode(&self, data: &[u8]) -> Result<AxisNames, PayloadError> {
+        AxisNames::parse(data)
+    }
+}
+
+/// Where a group stands (0x75).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ReadPosition {
+    instance: u16,
+}
+
+impl ReadPosition {
+    /// Any group in pulses, a robot in base coordinates.
+    pub fn new(model: Model, group: Group, coordinates: Coordinates) -> Result<Self, QueryError> {
+        let instance = instance(model, group, coordinates)?;
+        match (group, coordinates) {
+            (Group::Base(_), Coordinates::Base) => {
+                Err(QueryError::GroupKind { group, reason: "a base can be read in pulses only" })
+            }
+            _ => Ok(Self { instance }),
+        }
+    }
+}
+
+impl Query for ReadPosition {
+    type Answer = Position;
+
+    fn request(&self) -> Request {
+        read_all(0x75, self.instance)
+    }
+
+    fn decode(&self, data: &[u8]) -> Result<Position, PayloadError> {
+        Position::parse(data)
+    }
+}
+
+macro_rules! read_axes {
+    ($(#[$doc:meta])* $name:ident, $command:literal) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub struct $name {
+            group: Group,
+        }
+
+        impl $name {
+            /// Any group of the model.
+            pub fn new(model: Model, group: Group) -> Result<Self, QueryError> {
+                Ok(Self { group: known_group(model, group)? })
+            }
+        }
+
+        impl Query for $name {
+            type Answer = Axes;
+
+            fn request(&self) -> Request {
+                read_all($command, self.group.instance())
+            }
+
+            fn decode(&self, data: &[u8]) -> Result<Axes, PayloadError> {
+                Axes::parse(data)
+            }
+        }
+    };
+}
+
+read_axes! {
+    /// How far the axes are from where they should be, in pulses (0x76).
+    ReadPositionError, 0x76
+}
+read_axes! {
+    /// The torque of each axis, in a unit that the manuals do not print (0x77).
+    ReadTorque, 0x77
+}
+
+/// What a running-time counter counts (3.3.25).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum TimeCounter {
+    /// Control power on.
+    ControlPower,
+    /// Servo power on; of a robot or station, or in total.
+    Servo(Option<Group>),
+    /// Playback; likewise.
+    Playback(Option<Group>),
+    /// Motion; likewise.
+    Motion(Option<Group>),
+    /// Operation of an application, 1 to 8.
+    Application(u8),
+}
+
+/// A running-time counter (0x88).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ReadManagementTime {
+    instance: u16,
+}
+
+impl ReadManagementTime {
+    /// Bases have no counters.
+    pub fn new(model: Model, counter: TimeCounter) -> Result<Self, QueryError> {
+        let of = |base: u16, group: Option<Group>| match group {
+            None => Ok(base + 10),
+            Some(group @ Group::Base(_)) => {
+                Err(QueryError::GroupKind { group, reason: "bases have no running-time counters" })
+            }
+            Some(group) => Ok(base + counter_offset(known_group(model, group)?)),
+        };
+        let instance = match counter {
+            TimeCounter::ControlPower => 1,
+            TimeCounter::Servo(group) => of(0, group)?,
+            TimeCounter::Playback(group) => of(100, group)?,
+            TimeCounter::Motion(group) => of(200, group)?,
+            TimeCounter::Application(number) => {
+                in_range("application", number.into(), 1, 8)?;
+                300 + u16::from(number)
+            }
+        };
+        checked(model, Self { instance })
+    }
+}
+
+impl Query for ReadManagementTime {
+    type Answer = ManagementTime;
+
+    fn request(&self) -> Request {
+        read_all(0x88, self.instance)
+    }
+
+    fn decode(&self, data: &[u8]) -> Result<ManagementTime, PayloadError> {
+        ManagementTime::parse(data)
+    }
+}
+
+/// What system information is about (3.3.26).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SystemPart {
+    /// A robot or station.
+    Group(Group),
+    /// An application from 1: one on FS100, eight on DX200.
+    Application(u8),
+}
+
+/// Versions and names (0x89).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ReadSystemInfo {
+    instance: u16,
+}
+
+impl ReadSystemInfo {
+    /// Bases have no entry.
+    pub fn new(model: Model, part: SystemPart) -> Result<Self, QueryError> {
+        let instance = match part {
+            SystemPart::Group(group @ Group::Base(_)) => {
+                return Err(QueryError::GroupKind { group, reason: "there is no information about bases" });
+            }
+            SystemPart::Group(group) => counter_offset(known_group(model, group)?),
+            SystemPart::Application(number) => 100 + u16::from(number),
+        };
+        checked(model, Self { instance })
+    }
+}
+
+impl Query for ReadSystemInfo {
+    type Answer = SystemInfo;
+
+    fn request(&self) -> Request {
+        read_all(0x89, self.instance)
+    }
+
+    fn decode(&self, data: &[u8]) -> Result<SystemInfo, PayloadError> {
+        SystemInfo::parse(data)
+    }
+}
+
+/// Counters and versions number robots from 11 and stations from 21.
+const fn counter_offset(group: Group) -> u16 {
+    match group {
+        Group::Robot(number) => 10 + number as u16,
+        _ => group.instance(),
+    }
+}
+
+/// One field of something readable, as bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ReadField {
+    command: u16,
+    instance: u16,
+    attribute: u8,
+    size: usize,
+}
+
+impl ReadField {
+    /// Attribute counts from 1 as in the table.
+    pub fn new(model: Model, command: u16, instance: u16, attribute: u8) -> Result<Self, QueryError> {
+        let request = reading(command, instance, attribute, service::GET_SINGLE);
+        request.check(model)?;
+        let size = Row::of(command)
+            .and_then(|row| Some(total(row.fields_of(row.service(service::GET_SINGLE)?, attribute))))
+            .unwrap_or_default();
+        Ok(Self { command, instance, attribute, size })
+    }
+}
+
+impl Query for ReadField {
+    type Answer = Vec<u8>;
+
+    fn request(&self) -> Request {
+        reading(self.command, self.instance, self.attribute, service::GET_SINGLE)
+    }
+
+    fn decode(&self, data: &[u8]) -> Result<Vec<u8>, PayloadError> {
+        let short = PayloadError::Short { what: "field", needed: self.size, found: data.len() };
+        Ok(data.get(..self.size).ok_or(short)?.to_vec())
+    }
+}

@@ -1,0 +1,121 @@
+//! I/O groups of eight signals, and registers (0x78, 0x79, 0x300, 0x301).
+
+use super::{Query, QueryError, checked, elements, read_plural, reading, write_one, write_plural};
+use crate::controller::yerc::Model;
+use crate::controller::yerc::payload::{PayloadError, Reader};
+use crate::controller::yerc::request::Request;
+use crate::controller::yerc::table::service;
+
+macro_rules! signals {
+    ($what:literal, $value:ty, $single:literal, $plural:literal,
+        $read:ident, $read_many:ident, $write:ident, $write_many:ident) => {
+        #[doc = concat!("Reads one ", $what, ".")]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub struct $read {
+            number: u16,
+        }
+
+        impl $read {
+            /// A number that exists on the model.
+            pub fn new(model: Model, number: u16) -> Result<Self, QueryError> {
+                checked(model, Self { number })
+            }
+        }
+
+        impl Query for $read {
+            type Answer = $value;
+
+            fn request(&self) -> Request {
+                reading($single, self.number, 1, service::GET_SINGLE)
+            }
+
+            fn decode(&self, data: &[u8]) -> Result<$value, PayloadError> {
+                Reader::new($what, data).array().map(<$value>::from_le_bytes)
+            }
+        }
+
+        #[doc = concat!("Reads several of ", $what, ", one after the other.")]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub struct $read_many {
+            first: u16,
+            count: u16,
+        }
+
+        impl $read_many {
+            /// A run inside one range of the model, as many as a frame holds.
+            pub fn new(model: Model, first: u16, count: u16) -> Result<Self, QueryError> {
+                checked(model, Self { first, count })
+            }
+        }
+
+        impl Query for $read_many {
+            type Answer = Vec<$value>;
+
+            fn request(&self) -> Request {
+                read_plural($plural, self.first, self.count)
+            }
+
+            fn decode(&self, data: &[u8]) -> Result<Vec<$value>, PayloadError> {
+                elements($what, data, self.count, size_of::<$value>())?
+                    .map(|bytes| Reader::new($what, bytes).array().map(<$value>::from_le_bytes))
+                    .collect()
+            }
+        }
+
+        #[doc = concat!("Writes one ", $what, ".")]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub struct $write {
+            number: u16,
+            value: $value,
+        }
+
+        impl $write {
+            /// A number that is writable on the model.
+            pub fn new(model: Model, number: u16, value: $value) -> Result<Self, QueryError> {
+                checked(model, Self { number, value })
+            }
+        }
+
+        impl Query for $write {
+            type Answer = ();
+
+            fn request(&self) -> Request {
+                write_one($single, self.number, self.value.to_le_bytes())
+            }
+
+            fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
+                Ok(())
+            }
+        }
+
+        #[doc = concat!("Writes several of ", $what, ", one after the other.")]
+        #[derive(Debug, Clone, PartialEq, Eq, Hash)]
+        pub struct $write_many {
+            first: u16,
+            values: Vec<$value>,
+        }
+
+        impl $write_many {
+            /// A run inside one writable range of the model, as many as a frame holds.
+            pub fn new(model: Model, first: u16, values: Vec<$value>) -> Result<Self, QueryError> {
+                checked(model, Self { first, values })
+            }
+        }
+
+        impl Query for $write_many {
+            type Answer = ();
+
+            fn request(&self) -> Request {
+                let bytes = self.values.iter().flat_map(|value| value.to_le_bytes());
+                write_plural($plural, self.first, self.values.len(), bytes)
+            }
+
+            fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
+                Ok(())
+            }
+        }
+    };
+}
+
+signals!("I/O group", u8, 0x78, 0x300, ReadIo, ReadIoGroups, WriteIo, WriteIoGroups);
+signals!("register", u16, 0x79, 0x301, ReadRegister, ReadRegisters, WriteRegister, WriteRegisters);

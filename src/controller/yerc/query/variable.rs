@@ -1,0 +1,163 @@
+//! Variables, one or several (0x7A to 0x81, 0x8C, 0x302 to 0x309, 0x30C).
+
+use super::{Query, QueryError, checked, elements, read_all, read_plural, reading, write_one, write_plural};
+use crate::controller::yerc::Model;
+use crate::controller::yerc::payload::PayloadError;
+use crate::controller::yerc::request::Request;
+use crate::controller::yerc::table::service;
+use crate::controller::yerc::variables::{Value, VariableKind};
+
+/// Reads one variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ReadVariable {
+    kind: VariableKind,
+    number: u16,
+}
+
+impl ReadVariable {
+    /// Any number; those beyond the standard exist where the controller's parameters say so.
+    pub const fn new(kind: VariableKind, number: u16) -> Self {
+        Self { kind, number }
+    }
+}
+
+impl Query for ReadVariable {
+    type Answer = Value;
+
+    fn request(&self) -> Request {
+        let command = self.kind.command();
+        if self.kind.is_position() {
+            read_all(command, self.number)
+        } else {
+            reading(command, self.number, 1, service::GET_SINGLE)
+        }
+    }
+
+    fn decode(&self, data: &[u8]) -> Result<Value, PayloadError> {
+        Value::parse(self.kind, data)
+    }
+}
+
+/// Reads several variables of a kind, one after the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ReadVariables {
+    kind: VariableKind,
+    first: u16,
+    count: u16,
+}
+
+impl ReadVariables {
+    /// As many as a frame holds; an even count of B variables. Standard and extended numbers may follow each other.
+    pub fn new(kind: VariableKind, first: u16, count: u16) -> Result<Self, QueryError> {
+        checked(Model::Dx200, Self { kind, first, count })
+    }
+}
+
+impl Query for ReadVariables {
+    type Answer = Vec<Value>;
+
+    fn request(&self) -> Request {
+        read_plural(self.kind.plural_command(), self.first, self.count)
+    }
+
+    fn decode(&self, data: &[u8]) -> Result<Vec<Value>, PayloadError> {
+        elements("variables", data, self.count, self.kind.size())?.map(|bytes| Value::parse(self.kind, bytes)).collect()
+    }
+}
+
+/// Writes one variable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WriteVariable {
+    number: u16,
+    value: Value,
+}
+
+impl WriteVariable {
+    /// The value's kind is the variable's.
+    pub fn new(number: u16, value: Value) -> Result<Self, QueryError> {
+        checked(Model::Dx200, Self { number, value })
+    }
+}
+
+impl Query for WriteVariable {
+    type Answer = ();
+
+    fn request(&self) -> Request {
+        let (kind, data) = (self.value.kind(), self.value.emit());
+        if kind.is_position() {
+            Request { command: kind.command(), instance: self.number, attribute: 0, service: service::SET_ALL, data }
+        } else {
+            write_one(kind.command(), self.number, data)
+        }
+    }
+
+    fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
+        Ok(())
+    }
+}
+
+/// Writes several variables of a kind, one after the other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WriteVariables {
+    kind: VariableKind,
+    first: u16,
+    values: Vec<Value>,
+}
+
+impl WriteVariables {
+    /// As many as a frame holds; an even count of B variables.
+    pub fn new(first: u16, values: Vec<Value>) -> Result<Self, QueryError> {
+        let kind = values.first().map(Value::kind).ok_or(QueryError::MixedKinds)?;
+        if values.iter().any(|value| value.kind() != kind) {
+            return Err(QueryError::MixedKinds);
+        }
+        checked(Model::Dx200, Self { kind, first, values })
+    }
+}
+
+impl Query for WriteVariables {
+    type Answer = ();
+
+    fn request(&self) -> Request {
+        let bytes = self.values.iter().flat_map(Value::emit);
+        write_plural(self.kind.plural_command(), self.first, self.values.len(), bytes)
+    }
+
+    fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
+        Ok(())
+    }
+}
+
+/// Writes one word of a position variable and keeps the others (3.3.16 to 3.3.18, service 0x10).
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct WriteField {
+    kind: VariableKind,
+    number: u16,
+    attribute: u8,
+    word: [u8; 4],
+}
+
+impl WriteField {
+    /// Attribute counts from 1 as in the table: 1 is the data type.
+    pub fn new(kind: VariableKind, number: u16, attribute: u8, word: [u8; 4]) -> Result<Self, QueryError> {
+        checked(Model::Dx200, Self { kind, number, attribute, word })
+    }
+}
+
+impl Query for WriteField {
+    type Answer = ();
+
+    fn request(&self) -> Request {
+        Request {
+            command: self.kind.command(),
+            instance: self.number,
+            attribute: self.attribute,
+            service: service::SET_SINGLE,
+            data: self.word.to_vec(),
+        }
+    }
+
+    fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
+        Ok(())
+    }
+}

@@ -1,0 +1,402 @@
+//! A request, and what the table says about it.
+
+use thiserror::Error;
+
+use super::Model;
+use super::files::{self, FileNameError};
+use super::table::{Action, Field, Kind, Plural, RiskRule, Row, Service, service, total};
+use super::wire::{Division, MAX_DATA, RequestFrame};
+use crate::controller::Risk;
+
+/// One request, complete but for its id.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Request {
+    /// Command number; 0 for files.
+    pub command: u16,
+    /// Which of the things the command addresses.
+    pub instance: u16,
+    /// Which field of it.
+    pub attribute: u8,
+    /// What to do with it.
+    pub service: u8,
+    /// At most 479 bytes.
+    pub data: Vec<u8>,
+}
+
+/// A request that the manuals do not allow.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum RequestError {
+    /// No such command.
+    #[error("command {command:#06x} does not exist; there are 0x70 to 0x8c and 0x300 to 0x30c")]
+    Command {
+        /// The number given.
+        command: u16,
+    },
+    /// No such file service.
+    #[error("file service {found:#04x} does not exist; there are 0x09, 0x15, 0x16 and 0x32")]
+    FileService {
+        /// The number given.
+        found: u8,
+    },
+    /// Not on this model.
+    #[error("command {command:#06x} ({name}) does not exist on a {model}")]
+    Model {
+        /// The number given.
+        command: u16,
+        /// Its name.
+        name: &'static str,
+        /// The controller.
+        model: Model,
+    },
+    /// Not one of the command's services.
+    #[error("service {found:#04x} is not one of command {command:#06x} ({name}); allowed: {allowed}")]
+    Service {
+        /// The command.
+        command: u16,
+        /// Its name.
+        name: &'static str,
+        /// The service given.
+        found: u8,
+        /// The services there are.
+        allowed: String,
+    },
+    /// Addresses nothing.
+    #[error("instance {found} is outside {name} on a {model}; allowed: {allowed}")]
+    Instance {
+        /// The command's name.
+        name: &'static str,
+        /// The instance given.
+        found: u16,
+        /// The controller.
+        model: Model,
+        /// The ranges there are.
+        allowed: String,
+    },
+    /// Addresses something that can only be read.
+    #[error("instance {found} ({class}) can only be read on a {model}; writable: {allowed}")]
+    ReadOnly {
+        /// The instance given.
+        found: u16,
+        /// What it is.
+        class: &'static str,
+        /// The controller.
+        model: Model,
+        /// The writable ranges.
+        allowed: String,
+    },
+    /// Names no field.
+    #[error("attribute {found} is not allowed for {name} with service {service:#04x}; allowed: {allowed}")]
+    Attribute {
+        /// The command's name.
+        name: &'static str,
+        /// The attribute given.
+        found: u8,
+        /// The service.
+        service: u8,
+        /// The attributes there are.
+        allowed: String,
+    },
+    /// Too little or too much data.
+    #[error("{name} with service {service:#04x} takes {allowed} data bytes, not {found}")]
+    DataSize {
+        /// The command's name.
+        name: &'static str,
+        /// The service.
+        service: u8,
+        /// Bytes given.
+        found: usize,
+        /// Bytes taken.
+        allowed: String,
+    },
+    /// A word with a value that is not defined.
+    #[error("{field} of {name} is {found}; allowed: {allowed}")]
+    Value {
+        /// The command's name.
+        name: &'static str,
+        /// The field.
+        field: &'static str,
+        /// The value given.
+        found: u32,
+        /// The values there are.
+        allowed: String,
+    },
+    /// Too few or too many elements.
+    #[error("{name}: count {found} is outside 1 to {max}")]
+    Count {
+        /// The command's name.
+        name: &'static str,
+        /// The count given.
+        found: u32,
+        /// The largest count.
+        max: u16,
+    },
+    /// An odd count where only even ones are valid.
+    #[error("{name}: count {found} is odd; allowed: even counts from 2 to {max}")]
+    OddCount {
+        /// The command's name.
+        name: &'static str,
+        /// The count given.
+        found: u32,
+        /// The largest count.
+        max: u16,
+    },
+    /// Elements beyond the range of the first one.
+    #[error("{name}: {count} elements from {first} on reach past {last}")]
+    Overrun {
+        /// The command's name.
+        name: &'static str,
+        /// The instance.
+        first: u16,
+        /// Elements wanted.
+        count: u32,
+        /// Last instance of the range.
+        last: u16,
+    },
+    /// A file name or filter that cannot be sent.
+    #[error(transparent)]
+    FileName(#[from] FileNameError),
+}
+
+impl Request {
+    /// A request to the file server.
+    pub fn file(service: u8, data: impl Into<Vec<u8>>) -> Self {
+        Self { command: 0, instance: 0, attribute: 0, service, data: data.into() }
+    }
+
+    /// Which server it is for; command 0 is no robot command.
+    pub const fn division(&self) -> Division {
+        if self.command == 0 { Division::File } else { Division::Robot }
+    }
+
+    /// The datagram.
+    ///
+    /// # Panics
+    /// If there are more than 479 data bytes; [`Request::check`] says so beforehand.
+    pub fn frame(&self, id: u8) -> Vec<u8> {
+        RequestFrame {
+            division: self.division(),
+            ack: false,
+            id,
+            block: 0,
+            command: self.command,
+            instance: self.instance,
+            attribute: self.attribute,
+            service: self.service,
+            data: &self.data,
+        }
+        .emit()
+    }
+
+    /// The row of the table.
+    pub fn row(&self) -> Option<&'static Row> {
+        match self.division() {
+            Division::Robot => Row::of(self.command),
+            Division::File => Row::of_file(self.service, &self.data),
+        }
+    }
+
+    /// What it does to the world; what the table does not know counts as motion.
+    pub fn risk(&self) -> Risk {
+        let Some(service) = self.row().and_then(|row| row.service(self.service)) else { return Risk::Motion };
+        match service.risk {
+            RiskRule::Always(risk) => risk,
+            RiskRule::Switches => match (self.instance, self.data.as_slice()) {
+                (1 | 3, _) | (2, [2, 0, 0, 0]) => Risk::Write,
+                _ => Risk::Motion,
+            },
+        }
+    }
+
+    /// Whether the manuals allow it for this controller.
+    pub fn check(&self, model: Model) -> Result<(), RequestError> {
+        let row = self.row().ok_or(match self.division() {
+            Division::Robot => RequestError::Command { command: self.command },
+            Division::File => RequestError::FileService { found: self.service },
+        })?;
+        if !row.availability.on(model) {
+            return Err(RequestError::Model { command: self.command, name: row.name, model });
+        }
+        let service = row.service(self.service).ok_or_else(|| RequestError::Service {
+            command: self.command,
+            name: row.name,
+            found: self.service,
+            allowed: listed(row.services.iter().map(|service| format!("{:#04x}", service.number))),
+        })?;
+        let last = self.check_instance(row, service, model)?;
+        if !service.takes(self.attribute, row.fields.len()) {
+            return Err(RequestError::Attribute {
+                name: row.name,
+                found: self.attribute,
+                service: self.service,
+                allowed: service.attributes(row.fields.len()),
+            });
+        }
+        match (row.division, row.plural) {
+            (Division::File, _) => self.check_file(),
+            (Division::Robot, Some(plural)) => self.check_plural(row, plural, last),
+            (Division::Robot, None) => self.check_data(row, service),
+        }
+    }
+
+    /// The last instance that a request starting here can reach.
+    fn check_instance(&self, row: &Row, service: &Service, model: Model) -> Result<u16, RequestError> {
+        let span = row.instances.find(model, self.instance).ok_or_else(|| RequestError::Instance {
+            name: row.name,
+            found: self.instance,
+            model,
+            allowed: row.instances.ranges(model, false),
+        })?;
+        let writing = service.action == Action::Write;
+        row.instances.reach(model, self.instance, writing).ok_or_else(|| RequestError::ReadOnly {
+            found: self.instance,
+            class: span.meaning,
+            model,
+            allowed: row.instances.ranges(model, true),
+        })
+    }
+
+    fn check_file(&self) -> Result<(), RequestError> {
+        match self.service {
+            service::LIST => files::check_filter(&self.data)?,
+            _ => files::check_name(&self.data)?,
+        }
+        Ok(())
+    }
+
+    fn check_plural(&self, row: &Row, plural: Plural, last: u16) -> Result<(), RequestError> {
+        let Plural { max, even } = plural;
+        let size_error = |allowed: String| RequestError::DataSize {
+            name: row.name,
+            service: self.service,
+            found: self.data.len(),
+            allowed,
+        };
+        let (count, elements) = self.data.split_first_chunk::<4>().ok_or_else(|| size_error("4 or more".to_owned()))?;
+        let count = u32::from_le_bytes(*count);
+        if count == 0 || count > u32::from(max) {
+            return Err(RequestError::Count { name: row.name, found: count, max });
+        }
+        if even && count % 2 == 1 {
+            return Err(RequestError::OddCount { name: row.name, found: count, max });
+        }
+        if u32::from(self.instance) + count - 1 > u32::from(last) {
+            return Err(RequestError::Overrun { name: row.name, first: self.instance, count, last });
+        }
+        // At most 479 by the check above, so both conversions and the product are in range.
+        let expected = if self.service == service::WRITE_PLURAL {
+            usize::try_from(count).unwrap_or(MAX_DATA).saturating_mul(row.size())
+        } else {
+            0
+        };
+        if elements.len() != expected {
+            return Err(size_error((4 + expected).to_string()));
+        }
+        check_values(row, row.fields, elements)
+    }
+
+    fn check_data(&self, row: &Row, service: &Service) -> Result<(), RequestError> {
+        let wrong = |allowed: String| {
+            Err(RequestError::DataSize { name: row.name, service: self.service, found: self.data.len(), allowed })
+        };
+        if service.action == Action::Read {
+            return if self.data.is_empty() { Ok(()) } else { wrong("0".to_owned()) };
+        }
+        let fields = row.fields_of(service, self.attribute);
+        let layouts = [Some(fields), row.alternative];
+        match layouts.into_iter().flatten().find(|fields| total(fields) == self.data.len()) {
+            Some(fields) => check_values(row, fields, &self.data),
+            None => wrong(listed(layouts.into_iter().flatten().map(|fields| total(fields).to_string()))),
+        }
+    }
+}
+
+/// Words of which only some values are defined hold one of them; `data` is any number of elements.
+fn check_values(row: &Row, fields: &[Field], data: &[u8]) -> Result<(), RequestError> {
+    let size = total(fields);
+    if size == 0 {
+        return Ok(());
+    }
+    for element in data.chunks_exact(size) {
+        let mut rest = element;
+        for field in fields {
+            let Some((bytes, tail)) = rest.split_at_checked(field.size()) else { break };
+            rest = tail;
+            let (Kind::Choice(choices), Ok(word)) = (field.kind, bytes.try_into()) else { continue };
+            let found = u32::from_le_bytes(word);
+            if !choices.iter().any(|(number, _)| *number == found) {
+                let allowed = listed(choices.iter().map(|(number, meaning)| format!("{number} ({meaning})")));
+                return Err(RequestError::Value { name: row.name, field: field.name, found, allowed });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn listed(items: impl Iterator<Item = String>) -> String {
+    items.collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn request(command: u16, instance: u16, attribute: u8, service: u8, data: &[u8]) -> Request {
+        Request { command, instance, attribute, service, data: data.to_vec() }
+    }
+
+    #[test]
+    fn risk_sees_the_data() {
+        assert_eq!(request(0x83, 2, 1, 0x10, &[1, 0, 0, 0]).risk(), Risk::Motion);
+        assert_eq!(request(0x83, 2, 1, 0x10, &[2, 0, 0, 0]).risk(), Risk::Write);
+        assert_eq!(request(0x83, 2, 1, 0x10, &[2]).risk(), Risk::Motion);
+        assert_eq!(request(0x83, 1, 1, 0x10, &[1, 0, 0, 0]).risk(), Risk::Write);
+        assert_eq!(request(0x83, 9, 1, 0x10, &[2, 0, 0, 0]).risk(), Risk::Motion);
+        assert_eq!(request(0x72, 1, 0, 0x01, &[]).risk(), Risk::Read);
+        assert_eq!(request(0x72, 1, 0, 0x10, &[]).risk(), Risk::Motion);
+        assert_eq!(request(0x8D, 1, 0, 0x01, &[]).risk(), Risk::Motion);
+        assert_eq!(request(0x86, 1, 1, 0x10, &[1, 0, 0, 0]).risk(), Risk::Motion);
+        assert_eq!(request(0x87, 1, 0, 0x02, &[0; 36]).risk(), Risk::Write);
+        assert_eq!(Request::file(0x16, *b"A.JBI").risk(), Risk::Read);
+        assert_eq!(Request::file(0x09, *b"A.JBI").risk(), Risk::Write);
+        assert_eq!(Request::file(0x16, *b"/SPDRV/CMOSBK.BIN").risk(), Risk::Write);
+        assert_eq!(Request::file(0x77, *b"").risk(), Risk::Motion);
+    }
+
+    #[test]
+    fn the_error_names_field_value_and_range() {
+        let text = |request: Request, model| request.check(model).unwrap_err().to_string();
+        assert_eq!(
+            text(request(0x78, 1001, 1, 0x10, &[1]), Model::Dx200),
+            "instance 1001 (robot user output) can only be read on a dx200; writable: 2701-2956"
+        );
+        assert_eq!(
+            text(request(0x73, 7, 0, 0x01, &[]), Model::Fs100),
+            "instance 7 is outside executing job read on a fs100; allowed: 1, 2-6"
+        );
+        assert_eq!(
+            text(request(0x302, 0, 0, 0x33, &[3, 0, 0, 0]), Model::Fs100),
+            "plural byte variable (B): count 3 is odd; allowed: even counts from 2 to 474"
+        );
+        assert_eq!(
+            text(request(0x8C, 0, 1, 0x0E, &[]), Model::Fs100),
+            "command 0x008c (string variable (S, 32 bytes) read and write) does not exist on a fs100"
+        );
+        assert_eq!(
+            text(request(0x83, 2, 1, 0x10, &[3, 0, 0, 0]), Model::Fs100),
+            "switch of hold, servo power and hlock is 3; allowed: 1 (on), 2 (off)"
+        );
+        assert_eq!(
+            text(request(0x8A, 1, 1, 0x02, &[0; 99]), Model::Dx200),
+            "cartesian move with service 0x02 takes 104, 100 data bytes, not 99"
+        );
+    }
+
+    #[test]
+    fn counts_stay_inside_the_span() {
+        assert_eq!(request(0x301, 990, 0, 0x33, &[10, 0, 0, 0]).check(Model::Dx200), Ok(()));
+        assert!(matches!(
+            request(0x301, 990, 0, 0x33, &[11, 0, 0, 0]).check(Model::Dx200),
+            Err(RequestError::Overrun { last: 999, .. })
+        ));
+    }
+}

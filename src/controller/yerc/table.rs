@@ -1,0 +1,279 @@
+//! The table of commands: everything the manuals say about numbers, ranges, sizes and permissions (FS and DX table 3-1,
+//! sections 3.3 and 3.4).
+//!
+//! Requests are checked, frames explained and simulated by these rows; there is no second list. Ranges and sizes that the
+//! manuals misprint are given corrected; the golden frames hold the evidence.
+
+mod fields;
+mod rows;
+mod spans;
+
+pub use fields::{ALARM_KINDS, Bit, Field, Kind};
+pub use rows::ROWS;
+pub use spans::{Instances, Span};
+
+use super::Model;
+use super::wire::Division;
+use crate::controller::Risk;
+
+/// Service numbers (FS and DX 3.3, 3.4).
+pub mod service {
+    /// Read every field.
+    pub const GET_ALL: u8 = 0x01;
+    /// Write every field.
+    pub const SET_ALL: u8 = 0x02;
+    /// Delete a file.
+    pub const DELETE: u8 = 0x09;
+    /// Read one field.
+    pub const GET_SINGLE: u8 = 0x0E;
+    /// Write one field.
+    pub const SET_SINGLE: u8 = 0x10;
+    /// Send a file to the controller.
+    pub const LOAD: u8 = 0x15;
+    /// Fetch a file from the controller; with the path of the batch backup, make one.
+    pub const SAVE: u8 = 0x16;
+    /// List files.
+    pub const LIST: u8 = 0x32;
+    /// Read several elements.
+    pub const READ_PLURAL: u8 = 0x33;
+    /// Write several elements.
+    pub const WRITE_PLURAL: u8 = 0x34;
+}
+
+/// What makes a controller write its batch backup (FS and DX 3.4.5).
+pub const BATCH_BACKUP_PATH: &[u8] = b"/SPDRV/CMOSBK.BIN";
+
+/// Which controllers have a command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Availability {
+    /// FS100 and DX200.
+    Both,
+    /// DX200, and FS100 from system software FS1.14.
+    Fs114,
+    /// DX200 only.
+    Dx200,
+}
+
+impl Availability {
+    /// Whether a controller of this model can have the command.
+    pub const fn on(self, model: Model) -> bool {
+        !matches!((self, model), (Self::Dx200, Model::Fs100))
+    }
+
+    /// What to tell somebody whose controller refuses the command.
+    pub const fn note(self) -> Option<&'static str> {
+        match self {
+            Self::Both => None,
+            Self::Fs114 => Some("an FS100 needs system software FS1.14 or later"),
+            Self::Dx200 => Some("DX200 only"),
+        }
+    }
+}
+
+/// Which attribute numbers a service takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Attribute {
+    /// 0.
+    Zero,
+    /// 1.
+    One,
+    /// 1 as printed; 0 is known to be taken as well.
+    OneOrZero,
+    /// The number of a field, from 1.
+    Field,
+}
+
+/// How a service's risk follows from its request.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum RiskRule {
+    /// The same whatever the data.
+    Always(Risk),
+    /// Servo power on is motion; hold, hlock and servo power off are writes (3.3.20).
+    Switches,
+}
+
+/// What a service moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Action {
+    /// The answer carries data.
+    Read,
+    /// The request carries data.
+    Write,
+}
+
+/// A service of a command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Service {
+    /// The byte on the wire.
+    pub number: u8,
+    /// In words.
+    pub meaning: &'static str,
+    /// Which side the data travels.
+    pub action: Action,
+    /// Attribute numbers it takes.
+    pub attribute: Attribute,
+    /// What it does to the world.
+    pub risk: RiskRule,
+}
+
+/// The limits of a plural command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Plural {
+    /// Most elements of one request.
+    pub max: u16,
+    /// Whether only even counts are valid.
+    pub even: bool,
+}
+
+/// One command, or one file service.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Row {
+    /// Command number; 0 for files.
+    pub number: u16,
+    /// Robot or file.
+    pub division: Division,
+    /// In words.
+    pub name: &'static str,
+    /// Section of the manuals.
+    pub section: &'static str,
+    /// Which controllers have it.
+    pub availability: Availability,
+    /// What can be done with it.
+    pub services: &'static [Service],
+    /// What can be addressed.
+    pub instances: Instances,
+    /// The data by field; one element of it for plural commands. Attribute numbers count from 1.
+    pub fields: &'static [Field],
+    /// The 25-word layout that the FS100 manual prints for the cartesian move.
+    pub alternative: Option<&'static [Field]>,
+    /// Limits, for plural commands.
+    pub plural: Option<Plural>,
+}
+
+impl Row {
+    /// The row of a robot command.
+    pub fn of(command: u16) -> Option<&'static Self> {
+        ROWS.iter().find(|row| row.division == Division::Robot && row.number == command)
+    }
+
+    /// The row of a file service; `data` tells a save from a batch backup.
+    pub fn of_file(service: u8, data: &[u8]) -> Option<&'static Self> {
+        let backup = service == service::SAVE && data == BATCH_BACKUP_PATH;
+        ROWS.iter().find(|row| {
+            row.division == Division::File
+                && row.services.iter().any(|known| known.number == service)
+                && row.is_batch_backup() == backup
+        })
+    }
+
+    /// The manual and section, e.g. `DX 3.3.41`.
+    pub fn citation(&self) -> String {
+        match self.availability {
+            Availability::Dx200 => format!("DX {}", self.section),
+            _ => format!("FS and DX {}", self.section),
+        }
+    }
+
+    /// A service by its number.
+    pub fn service(&self, number: u8) -> Option<&'static Service> {
+        self.services.iter().find(|service| service.number == number)
+    }
+
+    /// Bytes of all fields; of one element for plural commands.
+    pub fn size(&self) -> usize {
+        total(self.fields)
+    }
+
+    /// The fields a single (not plural) read or write of `attribute` moves; empty for an unknown attribute.
+    pub fn fields_of(&self, service: &Service, attribute: u8) -> &'static [Field] {
+        match service.attribute {
+            Attribute::Field => match usize::from(attribute).checked_sub(1) {
+                Some(index) => self.fields.get(index..=index).unwrap_or_default(),
+                None => &[],
+            },
+            _ => self.fields,
+        }
+    }
+
+    /// Whether this is the batch backup, which shares its service with save.
+    pub fn is_batch_backup(&self) -> bool {
+        self.section == rows::BATCH_BACKUP_SECTION
+    }
+}
+
+impl Service {
+    /// Whether an attribute number is one it takes, given how many fields there are.
+    pub fn takes(&self, attribute: u8, fields: usize) -> bool {
+        match self.attribute {
+            Attribute::Zero => attribute == 0,
+            Attribute::One => attribute == 1,
+            Attribute::OneOrZero => attribute <= 1,
+            Attribute::Field => (1..=fields).contains(&usize::from(attribute)),
+        }
+    }
+
+    /// The attribute numbers in words.
+    pub fn attributes(&self, fields: usize) -> String {
+        match self.attribute {
+            Attribute::Zero => "0".to_owned(),
+            Attribute::One => "1".to_owned(),
+            Attribute::OneOrZero => "1 (or 0)".to_owned(),
+            Attribute::Field => format!("1 to {fields}"),
+        }
+    }
+
+    /// Whether it moves several elements.
+    pub const fn is_plural(&self) -> bool {
+        matches!(self.number, service::READ_PLURAL | service::WRITE_PLURAL)
+    }
+}
+
+/// Bytes of some fields.
+pub fn total(fields: &[Field]) -> usize {
+    fields.iter().map(Field::size).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_has_one_row() {
+        let commands: Vec<u16> =
+            ROWS.iter().filter(|row| row.division == Division::Robot).map(|row| row.number).collect();
+        let expected: Vec<u16> = (0x70..=0x8C).chain(0x300..=0x30C).collect();
+        assert_eq!(commands, expected);
+        assert_eq!(ROWS.len(), 47);
+    }
+
+    #[test]
+    fn plural_maxima_fill_a_frame() {
+        for row in ROWS {
+            let Some(Plural { max, even }) = row.plural else { continue };
+            let step = if even { 2 } else { 1 };
+            let size = |count: u16| 4 + usize::from(count) * row.size();
+            assert!(size(max) <= super::super::wire::MAX_DATA, "{}", row.name);
+            assert!(size(max + step) > super::super::wire::MAX_DATA, "{}", row.name);
+        }
+    }
+
+    #[test]
+    fn sections_are_unique_and_the_backup_is_found_by_its_path() {
+        for (i, row) in ROWS.iter().enumerate() {
+            assert!(ROWS[..i].iter().all(|other| other.section != row.section), "{}", row.section);
+        }
+        assert_eq!(Row::of_file(service::SAVE, b"A.JBI").unwrap().section, "3.4.3");
+        assert_eq!(Row::of_file(service::SAVE, BATCH_BACKUP_PATH).unwrap().section, "3.4.5");
+        assert!(Row::of_file(0x33, b"").is_none());
+    }
+
+    #[test]
+    fn spans_of_a_model_do_not_overlap() {
+        for row in ROWS {
+            for model in Model::ALL {
+                let spans = row.instances.of(model);
+                assert!(spans.windows(2).all(|pair| pair[0].last < pair[1].first), "{} {model}", row.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! What each command can address, by model.
+
+use crate::controller::yerc::Model;
+
+/// A run of instance numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Span {
+    /// First number.
+    pub first: u16,
+    /// Last number, included.
+    pub last: u16,
+    /// What they are.
+    pub meaning: &'static str,
+    /// Prefix of the single names and the number of the first, e.g. `R` and 1.
+    pub numbered: Option<(&'static str, u16)>,
+    /// Whether write services may address them.
+    pub writable: bool,
+    /// Whether they exist only where the controller's parameters say so.
+    pub extended: bool,
+}
+
+impl Span {
+    /// Whether the number lies in here.
+    pub const fn contains(&self, instance: u16) -> bool {
+        self.first <= instance && instance <= self.last
+    }
+
+    /// The name of one instance, e.g. `R1, robot (pulse)`.
+    pub fn label(&self, instance: u16) -> String {
+        match self.numbered {
+            Some((prefix, from)) => {
+                let number = u32::from(from) + u32::from(instance.saturating_sub(self.first));
+                if self.meaning.is_empty() {
+                    format!("{prefix}{number}")
+                } else {
+                    format!("{prefix}{number}, {}", self.meaning)
+                }
+            }
+            None => self.meaning.to_owned(),
+        }
+    }
+}
+
+/// The spans of each model, in rising order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Instances {
+    /// On an FS100; empty where the command does not exist.
+    pub fs100: &'static [Span],
+    /// On a DX200.
+    pub dx200: &'static [Span],
+}
+
+impl Instances {
+    /// The spans of a model.
+    pub const fn of(&self, model: Model) -> &'static [Span] {
+        match model {
+            Model::Fs100 => self.fs100,
+            Model::Dx200 => self.dx200,
+        }
+    }
+
+    /// The span that holds an instance.
+    pub fn find(&self, model: Model, instance: u16) -> Option<&'static Span> {
+        self.of(model).iter().find(|span| span.contains(instance))
+    }
+
+    /// The last number of the unbroken run of spans that holds an instance.
+    pub fn reach(&self, model: Model, instance: u16, only_writable: bool) -> Option<u16> {
+        let mut spans = self.of(model).iter().filter(|span| span.writable || !only_writable);
+        let mut last = spans.find(|span| span.contains(instance))?.last;
+        for span in spans {
+            if last.checked_add(1) != Some(span.first) {
+                break;
+            }
+            last = span.last;
+        }
+        Some(last)
+    }
+
+    /// The numbers in words, e.g. `1-2, 11-12`.
+    pub fn ranges(&self, model: Model, only_writable: bool) -> String {
+        let mut out = String::new();
+        for span in self.of(model).iter().filter(|span| span.writable || !only_writable) {
+            if !out.is_empty() {
+                out.push_str(", ");
+            }
+            out.push_str(&span.first.to_string());
+            if span.last != span.first {
+                out.push('-');
+                out.push_str(&span.last.to_string());
+            }
+        }
+        out
+    }
+}
+
+/// Read-only.
+const fn ro(first: u16, last: u16, meaning: &'static str) -> Span {
+    Span { first, last, meaning, numbered: None, writable: false, extended: false }
+}
+
+/// Writable.
+const fn rw(first: u16, last: u16, meaning: &'static str) -> Span {
+    Span { writable: true, ..ro(first, last, meaning) }
+}
+
+/// Read-only, with names from `prefix` and `from` on.
+const fn no(first: u16, last: u16, meaning: &'static str, prefix: &'static str, from: u16) -> Span {
+    Span { numbered: Some((prefix, from)), ..ro(first, last, meaning) }
+}
+
+const fn both(spans: &'static [Span]) -> Instances {
+    Instances { fs100: spans, dx200: spans }
+}
+
+const fn each(fs100: &'static [Span], dx200: &'static [Span]) -> Instances {
+    Instances { fs100, dx200 }
+}
+
+pub(super) const ALARMS: Instances =
+    both(&[ro(1, 1, "latest alarm"), ro(2, 2, "second latest"), ro(3, 3, "third latest"), ro(4, 4, "fourth latest")]);
+pub(super) const HISTORY: Instances = both(&[
+    no(1, 100, "", "major failure ", 1),
+    no(1001, 1100, "", "monitor alarm ", 1),
+    no(2001, 2100, "", "user alarm (system) ", 1),
+    no(3001, 3100, "", "user alarm (user) ", 1),
+    no(4001, 4100, "", "off-line alarm ", 1),
+]);
+pub(super) const STATUS: Instances = both(&[ro(1, 1, "controller")]);
+pub(super) const TASKS: Instances = each(
+    &[ro(1, 1, "master task"), no(2, 6, "", "sub task ", 1)],
+    &[ro(1, 1, "master task"), no(2, 16, "", "sub task ", 1)],
+);
+pub(super) const AXES: Instances = each(
+    &[
+        no(1, 2, "robot (pulse)", "R", 1),
+        no(11, 12, "base (pulse)", "B", 1),
+        no(21, 23, "station (pulse)", "S", 1),
+        no(101, 102, "robot (cartesian)", "R", 1),
+        no(111, 112, "base (cartesian)", "B", 1),
+    ],
+    &[
+        no(1, 8, "robot (pulse)", "R", 1),
+        no(11, 18, "base (pulse)", "B", 1),
+        no(21, 44, "station (pulse)", "S", 1),
+        no(101, 108, "robot (cartesian)", "R", 1),
+        no(111, 118, "base (cartesian)", "B", 1),
+    ],
+);
+pub(super) const POSITIONS: Instances = each(
+    &[
+        no(1, 2, "robot (pulse)", "R", 1),
+        no(11, 12, "base (pulse)", "B", 1),
+        no(21, 23, "station (pulse)", "S", 1),
+        no(101, 102, "robot (base coordinates)", "R", 1),
+    ],
+    &[
+        no(1, 8, "robot (pulse)", "R", 1),
+        no(11, 18, "base (pulse)", "B", 1),
+        no(21, 44, "station (pulse)", "S", 1),
+        no(101, 108, "robot (base coordinates)", "R", 1),
+    ],
+);
+pub(super) const GROUPS: Instances = each(
+    &[no(1, 2, "robot", "R", 1), no(11, 12, "base", "B", 1), no(21, 23, "station", "S", 1)],
+    &[no(1, 8, "robot", "R", 1), no(11, 18, "base", "B", 1), no(21, 44, "station", "S", 1)],
+);
+/// The numbers of an FS100 class follow from 128 groups each; the manual prints two of them differently.
+pub(super) const IO: Instances = each(
+    &[
+        ro(1, 128, "robot user input"),
+        ro(1001, 1128, "robot user output"),
+        ro(2001, 2128, "external input"),
+        rw(2501, 2628, "network input"),
+        ro(3001, 3128, "external output"),
+        ro(3501, 3628, "network output"),
+        ro(4001, 4160, "robot system input"),
+        ro(5001, 5200, "robot system output"),
+        ro(6001, 6064, "interface panel input"),
+        ro(7001, 7999, "auxiliary relay"),
+        ro(8001, 8064, "robot control status"),
+        ro(8201, 8220, "pseudo input"),
+    ],
+    &[
+        ro(1, 512, "robot user input"),
+        ro(1001, 1512, "robot user output"),
+        ro(2001, 2512, "external input"),
+        rw(2701, 2956, "network input"),
+        ro(3001, 3512, "external output"),
+        ro(3701, 3956, "network output"),
+        ro(4001, 4160, "robot system input"),
+        ro(5001, 5300, "robot system output"),
+        ro(6001, 6064, "interface panel input"),
+        ro(7001, 7999, "auxiliary relay"),
+        ro(8001, 8128, "robot control status"),
+        ro(8201, 8220, "pseudo input"),
+    ],
+);
+pub(super) const REGISTERS: Instances = both(&[rw(0, 559, "register"), ro(560, 999, "register (read only)")]);
+
+const fn variables(last: u16) -> [Span; 2] {
+    let extended = Span { extended: true, ..rw(last + 1, u16::MAX, "extended variable") };
+    [rw(0, last, "variable"), extended]
+}
+
+pub(super) const VARIABLES: Instances = both(&variables(99));
+pub(super) const POSITION_VARIABLES: Instances = both(&variables(127));
+pub(super) const LONG_STRINGS: Instances = each(&[], &variables(99));
+pub(super) const RESETS: Instances = both(&[rw(1, 1, "reset alarm"), rw(2, 2, "cancel error")]);
+pub(super) const SWITCHES: Instances = both(&[rw(1, 1, "hold"), rw(2, 2, "servo power"), rw(3, 3, "hlock")]);
+pub(super) const CYCLE: Instances = both(&[rw(2, 2, "cycle")]);
+pub(super) const ONE: Instances = both(&[rw(1, 1, "controller")]);
+pub(super) const SELECTIONS: Instances = each(
+    &[rw(1, 1, "job to execute"), Span { writable: true, ..no(10, 15, "", "master job of task ", 0) }],
+    &[rw(1, 1, "job to execute"), Span { writable: true, ..no(10, 25, "", "master job of task ", 0) }],
+);
+pub(super) const TIMES: Instances = each(
+    &[
+        ro(1, 1, "control power on time"),
+        ro(10, 10, "servo power on time, total"),
+        no(11, 12, "servo power on time", "R", 1),
+        no(21, 23, "servo power on time", "S", 1),
+        ro(110, 110, "playback time, total"),
+        no(111, 112, "playback time", "R", 1),
+        no(121, 123, "playback time", "S", 1),
+        ro(210, 210, "motion time, total"),
+        no(211, 212, "motion time", "R", 1),
+        no(221, 223, "motion time", "S", 1),
+        no(301, 308, "operation time", "application ", 1),
+    ],
+    &[
+        ro(1, 1, "control power on time"),
+        ro(10, 10, "servo power on time, total"),
+        no(11, 18, "servo power on time", "R", 1),
+        no(21, 44, "servo power on time", "S", 1),
+        ro(110, 110, "playback time, total"),
+        no(111, 118, "playback time", "R", 1),
+        no(121, 144, "playback time", "S", 1),
+        ro(210, 210, "motion time, total"),
+        no(211, 218, "motion time", "R", 1),
+        no(221, 244, "motion time", "S", 1),
+        no(301, 308, "operation time", "application ", 1),
+    ],
+);
+pub(super) const SYSTEMS: Instances = each(
+    &[no(11, 12, "", "R", 1), no(21, 23, "", "S", 1), no(101, 101, "", "application ", 1)],
+    &[no(11, 18, "", "R", 1), no(21, 44, "", "S", 1), no(101, 108, "", "application ", 1)],
+);
+pub(super) const MOVES: Instances =
+    both(&[rw(1, 1, "link, absolute"), rw(2, 2, "straight, absolute"), rw(3, 3, "straight, incremental")]);
+pub(super) const PULSE_MOVES: Instances = both(&[rw(1, 1, "link, absolute"), rw(2, 2, "straight, absolute")]);
+pub(super) const FILES: Instances = both(&[rw(0, 0, "file")]);

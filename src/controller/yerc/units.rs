@@ -1,0 +1,167 @@
+//! Exact conversion between decimal text and the integers on the wire.
+//!
+//! Lengths travel as multiples of 0.001 mm, angles of 0.0001 degree, speeds of 0.01 % or 0.1 mm/s or 0.1 degree/s
+//! (FS and DX 3.3.39). No floating point is involved: what is typed is what is sent, or it is refused.
+
+use std::fmt;
+
+use thiserror::Error;
+
+/// A decimal unit: the symbol, and how many digits after the point one step of the wire is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Unit {
+    /// As shown to people.
+    pub symbol: &'static str,
+    /// Digits after the decimal point; the wire integer is the value times ten to this power.
+    pub decimals: u8,
+}
+
+/// Millimetres, in steps of 0.001.
+pub const MILLIMETRE: Unit = Unit { symbol: "mm", decimals: 3 };
+/// Degrees, in steps of 0.0001.
+pub const DEGREE: Unit = Unit { symbol: "deg", decimals: 4 };
+/// Percent, in steps of 0.01.
+pub const PERCENT: Unit = Unit { symbol: "%", decimals: 2 };
+/// Millimetres a second, in steps of 0.1.
+pub const MILLIMETRE_PER_SECOND: Unit = Unit { symbol: "mm/s", decimals: 1 };
+/// Degrees a second, in steps of 0.1.
+pub const DEGREE_PER_SECOND: Unit = Unit { symbol: "deg/s", decimals: 1 };
+/// Encoder pulses, whole.
+pub const PULSE: Unit = Unit { symbol: "pulses", decimals: 0 };
+
+/// A text that is no value of its unit.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum UnitError {
+    /// Not an optional sign, digits, and optionally a point with digits.
+    #[error("'{text}' is not a number of {symbol}")]
+    Malformed {
+        /// What was given.
+        text: String,
+        /// The unit wanted.
+        symbol: &'static str,
+    },
+    /// More digits than the controller can take.
+    #[error("'{text}' has more than {decimals} digits after the point, the resolution of {symbol} here")]
+    TooFine {
+        /// What was given.
+        text: String,
+        /// Digits allowed.
+        decimals: u8,
+        /// The unit wanted.
+        symbol: &'static str,
+    },
+    /// Does not fit 32 bits.
+    #[error("'{text}' {symbol} is out of range; {lowest} to {highest} fit")]
+    Range {
+        /// What was given.
+        text: String,
+        /// The unit wanted.
+        symbol: &'static str,
+        /// Least value in this unit.
+        lowest: String,
+        /// Greatest value in this unit.
+        highest: String,
+    },
+}
+
+impl Unit {
+    /// Reads decimal text into the integer of the wire: `"100.000"` mm is 100000.
+    pub fn parse(self, text: &str) -> Result<i32, UnitError> {
+        let malformed = || UnitError::Malformed { text: shorten(text), symbol: self.symbol };
+        let (negative, digits) = match text.as_bytes() {
+            [b'-', ..] => (true, &text[1..]),
+            [b'+', ..] => (false, &text[1..]),
+            _ => (false, text),
+        };
+        let (whole, fraction) = match digits.split_once('.') {
+            Some((whole, fraction)) if !fraction.is_empty() => (whole, fraction),
+            Some(_) => return Err(malformed()),
+            None => (digits, ""),
+        };
+        if whole.is_empty() || !whole.bytes().chain(fraction.bytes()).all(|byte| byte.is_ascii_digit()) {
+            return Err(malformed());
+        }
+        if fraction.len() > usize::from(self.decimals) {
+            return Err(UnitError::TooFine { text: shorten(text), decimals: self.decimals, symbol: self.symbol });
+        }
+        let padding = usize::from(self.decimals) - fraction.len();
+        let digits = whole.bytes().chain(fraction.bytes()).chain(std::iter::repeat_n(b'0', padding));
+        // Saturation stands for "out of range" below, so a thousand digits cannot overflow.
+        let magnitude = digits.fold(0_i64, |sum, digit| sum.saturating_mul(10).saturating_add(i64::from(digit - b'0')));
+        i32::try_from(if negative { -magnitude } else { magnitude }).map_err(|_| UnitError::Range {
+            text: shorten(text),
+            symbol: self.symbol,
+            lowest: self.show(i32::MIN).to_string(),
+            highest: self.show(i32::MAX).to_string(),
+        })
+    }
+
+    /// The value with all its digits: 100000 is `100.000` in millimetres.
+    pub const fn show(self, value: i32) -> Quantity {
+        Quantity { unit: self, value: value as i64 }
+    }
+
+    /// Like [`Unit::show`], for words that carry no sign.
+    pub const fn show_unsigned(self, value: u32) -> Quantity {
+        Quantity { unit: self, value: value as i64 }
+    }
+}
+
+/// A wire integer with its unit; displays as plain decimal text without the symbol.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Quantity {
+    unit: Unit,
+    value: i64,
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sign = if self.value < 0 { "-" } else { "" };
+        let magnitude = self.value.unsigned_abs();
+        match self.unit.decimals {
+            0 => write!(f, "{sign}{magnitude}"),
+            decimals => {
+                let scale = 10_u64.pow(u32::from(decimals));
+                let width = usize::from(decimals);
+                write!(f, "{sign}{}.{:0width$}", magnitude / scale, magnitude % scale)
+            }
+        }
+    }
+}
+
+/// Error messages stay on a line, however long the junk is.
+fn shorten(text: &str) -> String {
+    const LONGEST: usize = 40;
+    if text.chars().count() <= LONGEST {
+        return text.to_owned();
+    }
+    text.chars().take(LONGEST).chain("...".chars()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_both_ways() {
+        assert_eq!(MILLIMETRE.parse("100.000"), Ok(100_000));
+        assert_eq!(MILLIMETRE.parse("-0.001"), Ok(-1));
+        assert_eq!(DEGREE.parse("180"), Ok(1_800_000));
+        assert_eq!(PERCENT.parse("+50.5"), Ok(5050));
+        assert_eq!(MILLIMETRE_PER_SECOND.parse("0.1"), Ok(1));
+        assert_eq!(MILLIMETRE.show(-1).to_string(), "-0.001");
+        assert_eq!(MILLIMETRE.show(100_000).to_string(), "100.000");
+        assert_eq!(PULSE.show(i32::MIN).to_string(), "-2147483648");
+        assert_eq!(MILLIMETRE.parse("-2147483.648"), Ok(i32::MIN));
+    }
+
+    #[test]
+    fn refuses_what_it_cannot_send() {
+        assert!(matches!(MILLIMETRE.parse("1.0005"), Err(UnitError::TooFine { decimals: 3, .. })));
+        assert!(matches!(MILLIMETRE.parse("2147483.648"), Err(UnitError::Range { .. })));
+        assert!(matches!(MILLIMETRE.parse(&"9".repeat(500)), Err(UnitError::Range { .. })));
+        for junk in ["", "-", ".", "1.", ".5", "1e3", "1,5", "--1", "0x10", "1 ", "١"] {
+            assert!(matches!(MILLIMETRE.parse(junk), Err(UnitError::Malformed { .. })), "{junk:?}");
+        }
+    }
+}

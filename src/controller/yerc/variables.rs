@@ -1,0 +1,12 @@
+//! Variables: kinds, values, references such as `B0..B99`, and the fewest requests that read or write many of them.
+
+mod plan;
+mod reference;
+mod value;
+
+pub use plan::{
+    IoStep, ReadStep, RegisterStep, WriteIoStep, WriteRegisterStep, WriteStep, plan_io_reads, plan_io_writes,
+    plan_reads, plan_register_reads, plan_register_writes, plan_writes,
+};
+pub use reference::{Reference, ReferenceError, VariableKind, parse_numbers, parse_references};
+pub use value::{Value, ValueError};

@@ -1,0 +1,230 @@
+//! Kinds of variables, and how they are named.
+
+use std::fmt;
+use std::str::FromStr;
+
+use thiserror::Error;
+
+use crate::controller::yerc::Model;
+use crate::controller::yerc::table::{Plural, Row};
+
+/// A kind of variable. S variables hold 16 bytes on FS100 and 32 on DX200, where both forms can be used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum VariableKind {
+    /// Byte.
+    B,
+    /// Integer, 16 bits.
+    I,
+    /// Double-precision integer, 32 bits.
+    D,
+    /// Real.
+    R,
+    /// String, 16-byte form.
+    S16,
+    /// String, 32-byte form (DX200).
+    S32,
+    /// Robot position.
+    P,
+    /// Base position.
+    Bp,
+    /// External axis position.
+    Ex,
+}
+
+/// Kind, letters, command, plural command.
+const KINDS: [(VariableKind, &str, u16, u16); 9] = [
+    (VariableKind::B, "B", 0x7A, 0x302),
+    (VariableKind::I, "I", 0x7B, 0x303),
+    (VariableKind::D, "D", 0x7C, 0x304),
+    (VariableKind::R, "R", 0x7D, 0x305),
+    (VariableKind::S16, "S", 0x7E, 0x306),
+    (VariableKind::S32, "S", 0x8C, 0x30C),
+    (VariableKind::P, "P", 0x7F, 0x307),
+    (VariableKind::Bp, "BP", 0x80, 0x308),
+    (VariableKind::Ex, "EX", 0x81, 0x309),
+];
+
+impl VariableKind {
+    /// Every kind, in the order the manual lists them.
+    pub fn all() -> impl Iterator<Item = Self> {
+        KINDS.iter().map(|row| row.0)
+    }
+
+    /// The letters, e.g. `BP`; both string forms are `S`.
+    pub fn letters(self) -> &'static str {
+        KINDS[self as usize].1
+    }
+
+    /// The command for one.
+    pub fn command(self) -> u16 {
+        KINDS[self as usize].2
+    }
+
+    /// The command for several.
+    pub fn plural_command(self) -> u16 {
+        KINDS[self as usize].3
+    }
+
+    /// Bytes of one.
+    pub fn size(self) -> usize {
+        self.row().size()
+    }
+
+    /// The limits of the plural command.
+    #[expect(clippy::missing_panics_doc, reason = "a property of the table, held by a test")]
+    pub fn plural(self) -> Plural {
+        Row::of(self.plural_command()).and_then(|row| row.plural).expect("every variable has a plural command")
+    }
+
+    /// The last number of a controller as delivered: 99, or 127 for positions.
+    #[expect(clippy::missing_panics_doc, reason = "a property of the table, held by a test")]
+    pub fn last_standard(self) -> u16 {
+        let spans = self.row().instances.dx200;
+        spans.iter().find(|span| !span.extended).map(|span| span.last).expect("every variable has standard numbers")
+    }
+
+    /// P, BP or EX.
+    pub const fn is_position(self) -> bool {
+        matches!(self, Self::P | Self::Bp | Self::Ex)
+    }
+
+    /// The string form to use: 32 bytes where the model has them and `short` does not ask for 16.
+    #[must_use]
+    pub const fn string_form(self, model: Model, short: bool) -> Self {
+        match (self, model) {
+            (Self::S16 | Self::S32, Model::Dx200) if !short => Self::S32,
+            (Self::S16 | Self::S32, _) => Self::S16,
+            _ => self,
+        }
+    }
+
+    fn row(self) -> &'static Row {
+        Row::of(self.command()).expect("every variable has a command")
+    }
+}
+
+/// A variable by kind and number; reads and shows as `B0`, `P12`, `EX3`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Reference {
+    /// What it holds.
+    pub kind: VariableKind,
+    /// From 0.
+    pub number: u16,
+}
+
+/// A text that names no variable.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum ReferenceError {
+    /// Unknown letters.
+    #[error("'{found}' names no variable; there are B, I, D, R, S, P, BP and EX with a number, e.g. B0 or B0..B99")]
+    Kind {
+        /// What was given.
+        found: String,
+    },
+    /// No number, or one beyond 65535.
+    #[error("'{found}' needs a number from 0 to 65535")]
+    Number {
+        /// What was given.
+        found: String,
+    },
+    /// A range whose ends do not go together.
+    #[error("'{found}' is no range; both ends name the same kind, the lower one first")]
+    Range {
+        /// What was given.
+        found: String,
+    },
+}
+
+impl Reference {
+    /// A variable.
+    pub const fn new(kind: VariableKind, number: u16) -> Self {
+        Self { kind, number }
+    }
+}
+
+impl fmt::Display for Reference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.kind.letters(), self.number)
+    }
+}
+
+impl FromStr for Reference {
+    type Err = ReferenceError;
+
+    /// `S` reads as the 32-byte form; see [`VariableKind::string_form`].
+    fn from_str(text: &str) -> Result<Self, ReferenceError> {
+        let digits = text.find(|c: char| c.is_ascii_digit()).unwrap_or(text.len());
+        let (letters, number) = text.split_at(digits);
+        let kind = KINDS
+            .iter()
+            .rev()
+            .find(|row| row.1.eq_ignore_ascii_case(letters))
+            .map(|row| row.0)
+            .ok_or_else(|| ReferenceError::Kind { found: text.to_owned() })?;
+        Ok(Self { kind, number: parse_number(number, text)? })
+    }
+}
+
+/// Reads `B0`, `B0..B99` or `B0..99`; both ends belong to the range.
+pub fn parse_references(text: &str) -> Result<Vec<Reference>, ReferenceError> {
+    let Some((first, last)) = text.split_once("..") else { return Ok(vec![text.parse()?]) };
+    let wrong = || ReferenceError::Range { found: text.to_owned() };
+    let first: Reference = first.parse()?;
+    let last = if last.starts_with(|c: char| c.is_ascii_digit()) {
+        Reference::new(first.kind, parse_number(last, text)?)
+    } else {
+        last.parse()?
+    };
+    if last.kind != first.kind || last.number < first.number {
+        return Err(wrong());
+    }
+    Ok((first.number..=last.number).map(|number| Reference::new(first.kind, number)).collect())
+}
+
+/// Reads `5` or `5..20` for registers and I/O groups; both ends belong to the range.
+pub fn parse_numbers(text: &str) -> Result<Vec<u16>, ReferenceError> {
+    let (first, last) = text.split_once("..").unwrap_or((text, text));
+    let (first, last) = (parse_number(first, text)?, parse_number(last, text)?);
+    if last < first {
+        return Err(ReferenceError::Range { found: text.to_owned() });
+    }
+    Ok((first..=last).collect())
+}
+
+fn parse_number(digits: &str, whole: &str) -> Result<u16, ReferenceError> {
+    let wrong = || ReferenceError::Number { found: whole.to_owned() };
+    if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
+        return Err(wrong());
+    }
+    digits.parse().map_err(|_| wrong())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_stand_at_their_row() {
+        for (index, kind) in VariableKind::all().enumerate() {
+            assert_eq!(kind as usize, index);
+            assert_eq!(kind.row().size(), Row::of(kind.plural_command()).unwrap().size());
+        }
+        assert_eq!(VariableKind::P.last_standard(), 127);
+        assert_eq!(VariableKind::S16.last_standard(), 99);
+        assert_eq!(VariableKind::S32.string_form(Model::Fs100, false), VariableKind::S16);
+        assert_eq!(VariableKind::S16.string_form(Model::Dx200, false), VariableKind::S32);
+    }
+
+    #[test]
+    fn references_and_ranges() {
+        assert_eq!("bp7".parse(), Ok(Reference::new(VariableKind::Bp, 7)));
+        assert_eq!(Reference::new(VariableKind::Ex, 3).to_string(), "EX3");
+        assert_eq!(parse_references("B0..B99").unwrap().len(), 100);
+        assert_eq!(parse_references("I1..20").unwrap().len(), 20);
+        assert_eq!(parse_references("D5").unwrap(), [Reference::new(VariableKind::D, 5)]);
+        for junk in ["", "B", "X1", "B-1", "B65536", "B0..", "B1..B0", "B0..I5", "B0...B5", "5", "B1x", "..B1"] {
+            assert!(parse_references(junk).is_err(), "{junk}");
+        }
+        assert_eq!(parse_numbers("5..7"), Ok(vec![5, 6, 7]));
+    }
+}

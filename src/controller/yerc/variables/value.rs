@@ -1,0 +1,139 @@
+//! What a variable holds.
+
+use thiserror::Error;
+
+use super::VariableKind;
+use crate::controller::yerc::payload::{
+    BasePosition, ExternalPosition, PayloadError, Position, PositionTextError, Reader, Text, TextError,
+};
+
+/// The value of a variable; its kind follows from it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// B.
+    Byte(u8),
+    /// I.
+    Integer(i16),
+    /// D.
+    Double(i32),
+    /// R.
+    Real(f32),
+    /// S, 16-byte form.
+    Short(Text<16>),
+    /// S, 32-byte form.
+    Long(Text<32>),
+    /// P.
+    Position(Position),
+    /// BP.
+    Base(BasePosition),
+    /// EX.
+    External(ExternalPosition),
+}
+
+/// A text that is no value of its kind.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum ValueError {
+    /// Not a number of the range.
+    #[error("'{found}' is not {expected}")]
+    Number {
+        /// What was given.
+        found: String,
+        /// What is possible.
+        expected: &'static str,
+    },
+    /// A string that does not fit.
+    #[error(transparent)]
+    Text(#[from] TextError),
+    /// Not a position.
+    #[error(transparent)]
+    Position(#[from] PositionTextError),
+}
+
+impl Value {
+    /// Reads an element of an answer: its size or more, fewer words only for positions.
+    pub fn parse(kind: VariableKind, data: &[u8]) -> Result<Self, PayloadError> {
+        let mut reader = Reader::new("variable", data);
+        Ok(match kind {
+            VariableKind::B => Self::Byte(u8::from_le_bytes(reader.array()?)),
+            VariableKind::I => Self::Integer(i16::from_le_bytes(reader.array()?)),
+            VariableKind::D => Self::Double(reader.i32()?),
+            VariableKind::R => Self::Real(f32::from_le_bytes(reader.array()?)),
+            VariableKind::S16 => Self::Short(reader.text()?),
+            VariableKind::S32 => Self::Long(reader.text()?),
+            VariableKind::P => Self::Position(Position::parse(data)?),
+            VariableKind::Bp => Self::Base(BasePosition::parse(data)?),
+            VariableKind::Ex => Self::External(ExternalPosition::parse(data)?),
+        })
+    }
+
+    /// The bytes of the element in full size.
+    pub fn emit(&self) -> Vec<u8> {
+        match self {
+            Self::Byte(value) => vec![*value],
+            Self::Integer(value) => value.to_le_bytes().to_vec(),
+            Self::Double(value) => value.to_le_bytes().to_vec(),
+            Self::Real(value) => value.to_le_bytes().to_vec(),
+            Self::Short(text) => text.emit().to_vec(),
+            Self::Long(text) => text.emit().to_vec(),
+            Self::Position(position) => position.emit(),
+            Self::Base(position) => position.emit(),
+            Self::External(position) => position.emit(),
+        }
+    }
+
+    /// The kind of variable that holds it.
+    pub const fn kind(&self) -> VariableKind {
+        match self {
+            Self::Byte(_) => VariableKind::B,
+            Self::Integer(_) => VariableKind::I,
+            Self::Double(_) => VariableKind::D,
+            Self::Real(_) => VariableKind::R,
+            Self::Short(_) => VariableKind::S16,
+            Self::Long(_) => VariableKind::S32,
+            Self::Position(_) => VariableKind::P,
+            Self::Base(_) => VariableKind::Bp,
+            Self::External(_) => VariableKind::Ex,
+        }
+    }
+
+    /// Reads what an operator typed; for strings, in the controller's encoding.
+    pub fn from_text(kind: VariableKind, text: &[u8]) -> Result<Self, ValueError> {
+        let shown = String::from_utf8_lossy(text);
+        let number = |expected| ValueError::Number { found: shown.clone().into_owned(), expected };
+        Ok(match kind {
+            VariableKind::B => Self::Byte(shown.parse().map_err(|_| number("a number from 0 to 255"))?),
+            VariableKind::I => Self::Integer(shown.parse().map_err(|_| number("a number from -32768 to 32767"))?),
+            VariableKind::D => {
+                Self::Double(shown.parse().map_err(|_| number("a number from -2147483648 to 2147483647"))?)
+            }
+            VariableKind::R => {
+                let value = shown.parse().ok().filter(|value: &f32| value.is_finite());
+                Self::Real(value.ok_or_else(|| number("a number that fits 32-bit floating point"))?)
+            }
+            VariableKind::S16 => Self::Short(Text::new(text)?),
+            VariableKind::S32 => Self::Long(Text::new(text)?),
+            VariableKind::P => Self::Position(shown.parse()?),
+            VariableKind::Bp => Self::Base(shown.parse()?),
+            VariableKind::Ex => Self::External(shown.parse()?),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn typed_values_are_range_checked() {
+        let error = |kind, text: &str| Value::from_text(kind, text.as_bytes()).unwrap_err().to_string();
+        assert_eq!(error(VariableKind::B, "256"), "'256' is not a number from 0 to 255");
+        assert_eq!(error(VariableKind::I, "32768"), "'32768' is not a number from -32768 to 32767");
+        assert_eq!(error(VariableKind::R, "1e39"), "'1e39' is not a number that fits 32-bit floating point");
+        assert_eq!(error(VariableKind::R, "nan"), "'nan' is not a number that fits 32-bit floating point");
+        assert_eq!(
+            error(VariableKind::S16, "12345678901234567"),
+            "the text has 17 bytes in the controller's encoding; at most 16 fit"
+        );
+        assert_eq!(Value::from_text(VariableKind::D, b"-5"), Ok(Value::Double(-5)));
+    }
+}
