@@ -1,0 +1,182 @@
+//! A faulty link in virtual time between a session and a controller.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::time::Duration;
+
+use armctl::controller::{Now, Session, Step};
+use armctl::transport::fault::{FaultSpec, Faults};
+
+/// How long a controller takes to answer.
+const SERVICE_TIME: Duration = Duration::from_millis(8);
+/// More steps than any session needs: one that takes more will never end.
+const MOST_STEPS: usize = 100_000;
+
+/// A controller at the far end of a link, with what the tests want to know of it.
+pub(crate) trait Controller {
+    /// The datagrams with which it answers one.
+    fn receive(&mut self, now: Now, datagram: &[u8]) -> Vec<Vec<u8>>;
+
+    /// How often it carried out a request that changes state.
+    fn executed(&self) -> u32;
+
+    /// Puts a file there, which it also sends as its list.
+    fn offer(&mut self, content: &[u8]);
+
+    /// Removes the file that was stored by an upload.
+    fn forget(&mut self);
+
+    /// The file that was stored by an upload.
+    fn stored(&self) -> Option<&[u8]>;
+
+    /// Whether it may leave out blocks of a file when frames are lost.
+    fn skips(&self) -> bool;
+}
+
+/// Where a datagram is heading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum To {
+    Client,
+    Controller,
+}
+
+/// A datagram on its way: when it arrives, a number that keeps the order of equals, where to, and what.
+type Flight = Reverse<(Now, u64, To, Vec<u8>)>;
+
+/// What a session did.
+pub(crate) struct Run<O> {
+    /// How it ended.
+    pub(crate) outcome: O,
+    /// The content it handed out.
+    pub(crate) data: Vec<u8>,
+    /// Every frame it sent.
+    pub(crate) sent: Vec<Vec<u8>>,
+    /// Refusals the controller gave meanwhile because it was busy.
+    pub(crate) busy: usize,
+    /// From its first step to its last.
+    pub(crate) lasted: Duration,
+    /// From its last progress (content, or a frame that is new but for its id) to its end.
+    pub(crate) idle: Duration,
+}
+
+/// A client's end, a faulty wire and a controller.
+pub(crate) struct Link<C> {
+    /// The controller.
+    pub(crate) controller: C,
+    now: Now,
+    there: Faults,
+    back: Faults,
+    flights: BinaryHeap<Flight>,
+    launched: u64,
+    /// Busy refusals so far.
+    busy: usize,
+    /// Client frames until one is lost for certain.
+    lose_in: Option<usize>,
+}
+
+impl<C: Controller> Link<C> {
+    pub(crate) fn new(controller: C, faults: FaultSpec) -> Self {
+        let (there, back) = Faults::pair(faults);
+        Self {
+            controller,
+            now: Now::ZERO,
+            there,
+            back,
+            flights: BinaryHeap::new(),
+            launched: 0,
+            busy: 0,
+            lose_in: None,
+        }
+    }
+
+    /// Loses the client's frame of this number, counted from 0.
+    pub(crate) fn lose_client_frame(&mut self, number: usize) {
+        self.lose_in = Some(number);
+    }
+
+    /// Runs a session to its end; `feed` answers its calls for content.
+    pub(crate) fn run<S: Session>(&mut self, session: &mut S, mut feed: impl FnMut(&mut S)) -> Run<S::Outcome> {
+        let (started, busy) = (self.now, self.busy);
+        let mut progress = started;
+        let (mut data, mut sent) = (Vec::new(), Vec::<Vec<u8>>::new());
+        for _ in 0..MOST_STEPS {
+            match session.poll(self.now) {
+                Step::Send(frame) => {
+                    if sent.last().is_none_or(|last| !same_but_for_id(last, &frame)) {
+                        progress = self.now;
+                    }
+                    self.send(&frame);
+                    sent.push(frame);
+                }
+                Step::Data(block) => {
+                    assert!(!block.is_empty(), "a piece of nothing");
+                    progress = self.now;
+                    data.extend(block);
+                }
+                Step::Feed => feed(session),
+                Step::Wait(until) => {
+                    assert!(until > self.now, "a wait until {until:?} at {:?} would spin", self.now);
+                    self.advance(until, |now, bytes| session.handle(now, bytes));
+                }
+                Step::Done(outcome) => {
+                    let (lasted, idle) = (self.now.saturating_sub(started), self.now.saturating_sub(progress));
+                    return Run { outcome, data, sent, busy: self.busy - busy, lasted, idle };
+                }
+            }
+        }
+        panic!("the session has not ended after {MOST_STEPS} steps at {:?}", self.now);
+    }
+
+    /// Lets everything arrive that is under way.
+    pub(crate) fn settle(&mut self) {
+        while !self.flights.is_empty() {
+            self.advance(Now::MAX, |_, _| {});
+        }
+    }
+
+    /// The next arrival, or `until` if there is none before.
+    fn advance(&mut self, until: Now, handle: impl FnOnce(Now, &[u8])) {
+        let arrives = self.flights.peek().is_some_and(|Reverse((at, ..))| *at <= until);
+        let Some(Reverse((at, _, to, bytes))) = arrives.then(|| self.flights.pop()).flatten() else {
+            self.now = until;
+            return;
+        };
+        self.now = self.now.max(at);
+        match to {
+            To::Client => handle(self.now, &bytes),
+            To::Controller => {
+                for answer in self.controller.receive(self.now, &bytes) {
+                    self.busy += usize::from(is_busy_refusal(&answer));
+                    let copies = self.back.pass(self.now + SERVICE_TIME, &answer);
+                    self.launch(To::Client, copies);
+                }
+            }
+        }
+    }
+
+    fn send(&mut self, frame: &[u8]) {
+        let lost = self.lose_in == Some(0);
+        self.lose_in = self.lose_in.and_then(|left| left.checked_sub(1));
+        if !lost {
+            let copies = self.there.pass(self.now, frame);
+            self.launch(To::Controller, copies);
+        }
+    }
+
+    fn launch(&mut self, to: To, copies: Vec<(Now, Vec<u8>)>) {
+        for (at, bytes) in copies {
+            self.flights.push(Reverse((at, self.launched, to, bytes)));
+            self.launched += 1;
+        }
+    }
+}
+
+/// The id is at offset 11.
+fn same_but_for_id(one: &[u8], other: &[u8]) -> bool {
+    one.len() == other.len() && one[..11] == other[..11] && one[12..] == other[12..]
+}
+
+/// Status and added status are at offsets 25 and 28; the codes are those of DX chapter 4.
+fn is_busy_refusal(frame: &[u8]) -> bool {
+    frame[25] != 0 && [0xD8F1, 0xD8FA, 0xE444, 0xFFF6].contains(&u16::from_le_bytes([frame[28], frame[29]]))
+}

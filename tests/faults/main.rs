@@ -1,0 +1,358 @@
+//! The sessions against a controller behind a bad link, in virtual time.
+//!
+//! Every combination of fault, controller, command class, transfer and file size runs under many seeds. What must hold
+//! is little and absolute: no wrong data is ever reported as success, a change leaves once unless it was refused as
+//! busy, nothing outlives its deadline, and every end is one of the typed ones.
+
+mod link;
+mod model;
+
+use std::collections::BTreeSet;
+use std::time::Duration;
+
+use armctl::controller::yerc::session::{
+    Download, DownloadEnd, Ended, Exchange, Ids, Policy, Upload, UploadEnd, is_busy,
+};
+use armctl::controller::yerc::wire::{Division, RequestFrame};
+use armctl::transport::fault::{FaultSpec, Share};
+
+use link::{Controller, Link, Run};
+use model::{Manners, Model};
+
+/// Each fault alone, all in moderation, all at their worst.
+const FAULTS: [&str; 8] = [
+    "drop=10%",
+    "dup=20%",
+    "delay=0..50ms",
+    "reorder=15%",
+    "corrupt=10%",
+    "busy=15%",
+    MODERATE,
+    "drop=25%,dup=20%,delay=0..250ms,reorder=20%,corrupt=10%,busy=20%",
+];
+const MODERATE: &str = "drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%";
+
+/// Around the block size of 479, and a file of many blocks.
+const SIZES: [usize; 7] = [0, 1, 478, 479, 480, 958, 10_000];
+const MANNERS: [Manners; 2] = [Manners::Resends, Manners::Naive];
+
+const EXCHANGE_SEEDS: u64 = 3000;
+const TRANSFER_SEEDS: u64 = 200;
+
+fn spec(text: &str, seed: u64) -> FaultSpec {
+    FaultSpec { seed, ..text.parse().expect("the tests write their faults correctly") }
+}
+
+fn request(division: Division, command: u16, service: u8, data: &[u8]) -> RequestFrame<'_> {
+    RequestFrame { division, ack: false, id: 0, block: 0, command, instance: 1, attribute: 0, service, data }
+}
+
+/// Bytes that differ from block to block.
+fn content(size: usize, seed: u64) -> Vec<u8> {
+    let mut bytes = vec![0; size];
+    fastrand::Rng::with_seed(seed ^ 0xC0_FFEE).fill(&mut bytes);
+    bytes
+}
+
+fn link_to(manners: Manners, faults: FaultSpec) -> Link<Model> {
+    let model = Model::new(manners, faults.busy.per_10_000(), faults.seed);
+    Link::new(model, faults)
+}
+
+// ---- one request, one answer
+
+/// A class of commands: what a repeat would do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Class {
+    Read,
+    Write,
+    Motion,
+}
+
+const CLASSES: [Class; 3] = [Class::Read, Class::Write, Class::Motion];
+
+/// What one exchange did.
+struct Exchanged {
+    class: Class,
+    ended: Ended,
+    sends: usize,
+}
+
+fn exchange(link: &mut Link<impl Controller>, class: Class, ids: &Ids) -> Exchanged {
+    let request = match class {
+        Class::Read => request(Division::Robot, 0x72, 0x01, &[]),
+        Class::Write => request(Division::Robot, 0x7C, 0x10, &[1, 2, 3, 4]),
+        Class::Motion => request(Division::Robot, 0x8A, 0x01, &[0; 104]),
+    };
+    let policy = Policy::default();
+    let mut session = Exchange::new(&request, class == Class::Read, policy, ids);
+    let run = link.run(&mut session, |_| unreachable!("an exchange asks for no content"));
+    let what = format!("{class:?}: {:?} after {:?}, {:?}", run.outcome, run.lasted, session.counters());
+
+    assert!(run.lasted <= policy.deadline, "{what}");
+    assert!(run.data.is_empty(), "{what}");
+    match (&run.outcome, class) {
+        (Ended::Answered(reply), _) if !reply.status.is_ok() => assert!(is_busy(reply.status), "{what}"),
+        (Ended::Answered(reply), Class::Read) => assert_eq!(reply.data, model::STATE, "{what}"),
+        (Ended::Answered(reply), _) => assert!(reply.data.is_empty(), "{what}"),
+        (Ended::NoAnswer(_), Class::Read) | (Ended::OutcomeUnknown(_), Class::Write | Class::Motion) => {}
+        (Ended::NoAnswer(_) | Ended::OutcomeUnknown(_), _) => panic!("{what}"),
+    }
+    if class != Class::Read {
+        // Counted at the controller: a second copy of a refusal must not pass for a second refusal.
+        assert!((1..=1 + run.busy).contains(&run.sent.len()), "{} left, {} busy; {what}", run.sent.len(), run.busy);
+    }
+    Exchanged { class, ended: run.outcome, sends: run.sent.len() }
+}
+
+/// Several exchanges of every class over one link, so that what comes late meets the ones that follow.
+fn exchanges(manners: Manners, faults: FaultSpec) -> (Vec<Exchanged>, u32) {
+    let mut link = link_to(manners, faults);
+    let ids = Ids::default();
+    let done = CLASSES.iter().cycle().take(9).map(|&class| exchange(&mut link, class, &ids)).collect();
+    link.settle();
+    (done, link.controller.executed())
+}
+
+fn answered_well(exchanged: &Exchanged) -> bool {
+    matches!(&exchanged.ended, Ended::Answered(reply) if reply.status.is_ok())
+}
+
+#[test]
+fn exchanges_keep_their_promises_under_every_fault() {
+    for text in FAULTS {
+        for seed in 0..EXCHANGE_SEEDS {
+            let faults = spec(text, seed);
+            let doubling = faults.dup != Share::NONE;
+            let (all, executed) = exchanges(Manners::Resends, faults);
+            let changes = || all.iter().filter(|exchanged| exchanged.class != Class::Read);
+            let done = changes().filter(|exchanged| answered_well(exchanged)).count();
+            let executed = usize::try_from(executed).expect("few executions");
+            // Whether a change was done at all, and done once, is only in the client's hands if nobody doubles it.
+            assert!(executed >= done, "{text},seed={seed}: {done} reported as done, {executed} executed");
+            let most = if doubling { 2 * changes().map(|it| it.sends).sum::<usize>() } else { changes().count() };
+            assert!(executed <= most, "{text},seed={seed}: {executed} executed of {most}");
+        }
+    }
+}
+
+#[test]
+fn without_loss_every_exchange_is_answered() {
+    for text in ["seed=0", "delay=0..50ms", "dup=20%"] {
+        for seed in 0..EXCHANGE_SEEDS {
+            let (all, _) = exchanges(Manners::Resends, spec(text, seed));
+            assert!(all.iter().all(|it| answered_well(it) && it.sends == 1), "{text},seed={seed}");
+        }
+    }
+}
+
+#[test]
+fn moderate_loss_hardly_stops_a_read() {
+    let (mut reads, mut good) = (0, 0);
+    for seed in 0..EXCHANGE_SEEDS {
+        let (all, _) = exchanges(Manners::Resends, spec(MODERATE, seed));
+        reads += all.iter().filter(|it| it.class == Class::Read).count();
+        good += all.iter().filter(|it| it.class == Class::Read && answered_well(it)).count();
+    }
+    assert!(good * 1000 >= reads * 998, "{good} of {reads} reads");
+}
+
+// ---- transfers
+
+/// Where a transfer goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Way {
+    Save,
+    List,
+    Load,
+}
+
+const WAYS: [Way; 3] = [Way::Save, Way::List, Way::Load];
+
+/// The kinds of ends of transfers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum End {
+    Success,
+    Refused,
+    Violated,
+    NoAnswer,
+    Unknown,
+}
+
+/// Runs a transfer, checks all that must hold whatever happens, and tells how it ended.
+fn transfer(link: &mut Link<impl Controller>, way: Way, content: &[u8], ids: &Ids) -> End {
+    match way {
+        Way::Save => download(link, 0x16, content, ids),
+        Way::List => download(link, 0x32, content, ids),
+        Way::Load => upload(link, content, ids),
+    }
+}
+
+fn download(link: &mut Link<impl Controller>, service: u8, content: &[u8], ids: &Ids) -> End {
+    link.controller.offer(content);
+    let policy = Policy::default();
+    let request = RequestFrame { instance: 0, ..request(Division::File, 0, service, b"TESTJOB.JBI") };
+    let mut session = Download::new(&request, 1 << 20, policy, ids);
+    let Run { outcome, data, idle, .. } = link.run(&mut session, |_| unreachable!("a download asks for no content"));
+    let what = format!("{} bytes: {outcome:?} idle for {idle:?}, {:?}", content.len(), session.counters());
+
+    assert!(idle <= policy.deadline, "{what}");
+    assert!(content.starts_with(&data), "what came is no beginning of the file; {what}");
+    let got = data.len() as u64;
+    match outcome {
+        DownloadEnd::Complete { bytes, blocks } => {
+            assert_eq!(data, content, "{what}");
+            assert_eq!((bytes, blocks as usize), (got, content.len().div_ceil(479)), "{what}");
+            End::Success
+        }
+        DownloadEnd::Nothing(status) => {
+            assert!(content.is_empty() && [0xE29C, 0xE2A7].contains(&status.added), "{what}");
+            End::Success
+        }
+        DownloadEnd::Refused { status, bytes } => {
+            assert_eq!(bytes, got, "{what}");
+            assert!(is_busy(status) || status.added == model::NO_SUCH_ACK, "{what}");
+            End::Refused
+        }
+        DownloadEnd::Violated { bytes, .. } => {
+            assert_eq!(bytes, got, "{what}");
+            assert!(link.controller.skips(), "{what}");
+            End::Violated
+        }
+        DownloadEnd::NoAnswer { bytes, .. } => {
+            assert_eq!(bytes, got, "{what}");
+            End::NoAnswer
+        }
+        DownloadEnd::Finished | DownloadEnd::TooLarge { .. } => panic!("{what}"),
+    }
+}
+
+fn upload(link: &mut Link<impl Controller>, content: &[u8], ids: &Ids) -> End {
+    link.controller.forget();
+    let policy = Policy::default();
+    let request = RequestFrame { instance: 0, ..request(Division::File, 0, 0x15, b"TESTJOB.JBI") };
+    let mut session = Upload::new(&request, policy, ids);
+    let mut pieces = content.chunks(1000);
+    let Run { outcome, idle, sent, .. } = link.run(&mut session, |session| match pieces.next() {
+        Some(piece) => session.feed(piece, false),
+        None => session.feed(&[], true),
+    });
+    let what = format!("{} bytes: {outcome:?} idle for {idle:?}, {:?}", content.len(), session.counters());
+
+    assert!(idle <= policy.deadline, "{what}");
+    let size = content.len() as u64;
+    match outcome {
+        UploadEnd::Complete { bytes, blocks } => {
+            assert_eq!(link.controller.stored(), Some(content), "{what}");
+            assert_eq!((bytes, blocks as usize), (size, content.len().div_ceil(479)), "{what}");
+            End::Success
+        }
+        UploadEnd::Empty => {
+            assert!(content.is_empty() && sent.is_empty(), "{what}");
+            End::Success
+        }
+        UploadEnd::Refused { status, sent, taken, .. } => {
+            assert!(taken <= sent && sent <= size, "{what}");
+            assert!(is_busy(status) || status.added == model::WRONG_BLOCK, "{what}");
+            End::Refused
+        }
+        UploadEnd::NoAnswer(_) => {
+            assert!(sent.iter().all(|frame| frame[10] == 0), "data left; {what}");
+            End::NoAnswer
+        }
+        UploadEnd::OutcomeUnknown { sent, taken, .. } => {
+            assert!(taken < sent && sent <= size, "{what}");
+            End::Unknown
+        }
+        UploadEnd::TooLong { .. } => panic!("{what}"),
+    }
+}
+
+/// Transfers of every kind and size under one kind of fault.
+fn transfers(text: &str, manners: Manners, seeds: u64) -> Vec<End> {
+    let mut ends = Vec::new();
+    for way in WAYS {
+        for size in SIZES {
+            for seed in 0..seeds {
+                let mut link = link_to(manners, spec(text, seed));
+                ends.push(transfer(&mut link, way, &content(size, seed), &Ids::default()));
+            }
+        }
+    }
+    ends
+}
+
+fn successes(ends: &[End]) -> usize {
+    ends.iter().filter(|end| **end == End::Success).count()
+}
+
+#[test]
+fn transfers_keep_their_promises_under_every_fault() {
+    let mut seen = BTreeSet::new();
+    for text in FAULTS {
+        for manners in MANNERS {
+            seen.extend(transfers(text, manners, TRANSFER_SEEDS));
+        }
+    }
+    // Or the checks above have not been put to the test.
+    assert!(seen.into_iter().eq([End::Success, End::Refused, End::Violated, End::NoAnswer, End::Unknown]));
+}
+
+#[test]
+fn without_faults_every_transfer_succeeds() {
+    for manners in MANNERS {
+        for text in ["seed=0", "delay=0..50ms"] {
+            let ends = transfers(text, manners, 3);
+            assert_eq!(successes(&ends), ends.len(), "{manners:?}, {text}");
+        }
+    }
+}
+
+#[test]
+fn doubling_and_reordering_alone_stop_no_transfer_with_a_controller_that_resends() {
+    for text in ["dup=20%", "reorder=15%", "dup=100%"] {
+        let ends = transfers(text, Manners::Resends, 10);
+        assert_eq!(successes(&ends), ends.len(), "{text}");
+    }
+}
+
+#[test]
+fn moderate_loss_hardly_stops_a_transfer_with_a_controller_that_resends() {
+    let ends = transfers(MODERATE, Manners::Resends, TRANSFER_SEEDS);
+    let good = successes(&ends);
+    assert!(good * 1000 >= ends.len() * 995, "{good} of {} transfers", ends.len());
+}
+
+/// Transfers that follow each other over one link: what comes late from one meets the next.
+#[test]
+fn transfers_in_a_row_do_not_mix() {
+    for text in FAULTS {
+        for seed in 0..TRANSFER_SEEDS {
+            let mut link = link_to(Manners::Resends, spec(text, seed));
+            let ids = Ids::starting_at(250);
+            for round in 0..4 {
+                for way in WAYS {
+                    transfer(&mut link, way, &content(1000, seed << 8 | round), &ids);
+                }
+                exchange(&mut link, Class::Motion, &ids);
+            }
+        }
+    }
+}
+
+/// The last ACK gets lost: the controller sends its last block again, and the session that has ended acknowledges it.
+#[test]
+fn a_lost_last_ack_is_made_good_by_lingering() {
+    let mut link = link_to(Manners::Resends, FaultSpec::default());
+    link.controller.offer(&[7; 600]);
+    let request = request(Division::File, 0, 0x16, b"TESTJOB.JBI");
+    let mut session = Download::new(&request, 1 << 20, Policy::default(), &Ids::default());
+    link.lose_client_frame(2);
+    let run = link.run(&mut session, |_| unreachable!("a download asks for no content"));
+    assert_eq!(run.outcome, DownloadEnd::Complete { bytes: 600, blocks: 2 });
+    assert!(link.controller.transferring());
+    let again = link.controller.resend().expect("the last block is not acknowledged");
+    let ack = session.linger(&again).expect("the last block once more");
+    link.controller.receive(Duration::ZERO, &ack);
+    assert!(!link.controller.transferring());
+}

@@ -1,0 +1,262 @@
+//! A controller in a few lines, with byte handling of its own: it shares nothing with the code under test.
+
+use armctl::controller::Now;
+
+use crate::link::Controller;
+
+/// What every read answers.
+pub(crate) const STATE: [u8; 8] = [0x42, 0, 0, 0, 0x40, 0, 0, 0];
+/// The refusal of a block that is not due (DX chapter 4).
+pub(crate) const WRONG_BLOCK: u32 = 0xE4A1;
+/// The refusal of an ACK without a transfer (DX chapter 4).
+pub(crate) const NO_SUCH_ACK: u32 = 0xE4A2;
+
+const LAST: u32 = 0x8000_0000;
+const BLOCK: usize = 479;
+
+/// What a controller makes of frames that come twice; the manuals do not say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Manners {
+    /// It knows a frame by its id and number and sends its last frame again.
+    Resends,
+    /// It takes every ACK as a call for the next block and every request as a new one, and never sends twice.
+    Naive,
+}
+
+/// A transfer, from the controller's side.
+enum Transfer {
+    None,
+    /// Block `block` of a file has been sent with `service`.
+    Out {
+        id: u8,
+        service: u8,
+        block: u32,
+    },
+    /// Every block has been acknowledged.
+    OutDone {
+        id: u8,
+    },
+    /// Blocks up to `taken` have come.
+    In {
+        id: u8,
+        taken: u32,
+        bytes: Vec<u8>,
+    },
+    /// The last block was `last`.
+    InDone {
+        id: u8,
+        last: u32,
+    },
+}
+
+/// The controller.
+pub(crate) struct Model {
+    manners: Manners,
+    busy_per_10_000: u16,
+    rng: fastrand::Rng,
+    executed: u32,
+    file: Vec<u8>,
+    stored: Option<Vec<u8>>,
+    transfer: Transfer,
+}
+
+/// The fields of a client's frame.
+struct Frame<'a> {
+    division: u8,
+    ack: bool,
+    id: u8,
+    block: u32,
+    service: u8,
+    data: &'a [u8],
+}
+
+impl<'a> Frame<'a> {
+    fn read(bytes: &'a [u8]) -> Option<Self> {
+        let (head, data) = bytes.split_at_checked(32)?;
+        let size = usize::from(head[6]) | usize::from(head[7]) << 8;
+        let whole = head.starts_with(b"YERC\x20\x00") && size == data.len() && size <= BLOCK;
+        whole.then_some(Self {
+            division: head[9],
+            ack: head[10] == 1,
+            id: head[11],
+            block: u32::from(head[12])
+                | u32::from(head[13]) << 8
+                | u32::from(head[14]) << 16
+                | u32::from(head[15]) << 24,
+            service: head[29],
+            data,
+        })
+    }
+
+    fn answer(&self, block: u32, status: u8, added: u32, data: &[u8]) -> Vec<u8> {
+        frame(self.division, self.id, block, self.service, [status, u8::from(added != 0)], added, data)
+    }
+}
+
+fn frame(division: u8, id: u8, block: u32, service: u8, [status, words]: [u8; 2], added: u32, data: &[u8]) -> Vec<u8> {
+    let mut bytes = b"YERC\x20\x00".to_vec();
+    bytes.extend([data.len() & 0xFF, data.len() >> 8].map(|byte| u8::try_from(byte).expect("a byte")));
+    bytes.extend([3, division, 1, id]);
+    bytes.extend(block.to_le_bytes());
+    bytes.extend(*b"99999999");
+    bytes.extend([service + 0x80, status, words, 0]);
+    bytes.extend(added.to_le_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+impl Model {
+    pub(crate) fn new(manners: Manners, busy_per_10_000: u16, seed: u64) -> Self {
+        Self {
+            manners,
+            busy_per_10_000,
+            rng: fastrand::Rng::with_seed(seed ^ 0xB5),
+            executed: 0,
+            file: Vec::new(),
+            stored: None,
+            transfer: Transfer::None,
+        }
+    }
+
+    /// Whether a transfer waits for the client.
+    pub(crate) fn transferring(&self) -> bool {
+        matches!(self.transfer, Transfer::Out { .. } | Transfer::In { .. })
+    }
+
+    /// The block that waits for its ACK, once more.
+    pub(crate) fn resend(&self) -> Option<Vec<u8>> {
+        match self.transfer {
+            Transfer::Out { id, service, block } => Some(self.block(id, service, block)),
+            _ => None,
+        }
+    }
+
+    fn block(&self, id: u8, service: u8, number: u32) -> Vec<u8> {
+        let data = self.file.chunks(BLOCK).nth(number as usize - 1).expect("only blocks there are get sent");
+        frame(2, id, self.marked(number), service, [0, 0], 0, data)
+    }
+
+    /// The number of a block as it is sent.
+    fn marked(&self, number: u32) -> u32 {
+        let last = number as usize == self.file.len().div_ceil(BLOCK);
+        if last { number | LAST } else { number }
+    }
+
+    fn request(&mut self, frame: &Frame<'_>) -> Option<Vec<u8>> {
+        let resends = self.manners == Manners::Resends;
+        match (frame.division, frame.service) {
+            (1, 0x01) if frame.data.is_empty() => Some(frame.answer(LAST, 0, 0, &STATE)),
+            (1, _) => {
+                self.executed += 1;
+                Some(frame.answer(LAST, 0, 0, &[]))
+            }
+            (2, 0x15) => match self.transfer {
+                Transfer::In { id, taken, .. } if resends && id == frame.id => {
+                    (taken == 0).then(|| frame.answer(0, 0, 0, &[]))
+                }
+                Transfer::InDone { id, .. } if resends && id == frame.id => None,
+                _ => {
+                    self.transfer = Transfer::In { id: frame.id, taken: 0, bytes: Vec::new() };
+                    Some(frame.answer(0, 0, 0, &[]))
+                }
+            },
+            (2, service @ (0x16 | 0x32)) => match self.transfer {
+                Transfer::Out { id, block, .. } if resends && id == frame.id => {
+                    (block == 1).then(|| self.block(id, service, 1))
+                }
+                Transfer::OutDone { id } if resends && id == frame.id => None,
+                _ if self.file.is_empty() => {
+                    Some(frame.answer(LAST, 0, if service == 0x16 { 0xE29C } else { 0xE2A7 }, &[]))
+                }
+                _ => {
+                    self.transfer = Transfer::Out { id: frame.id, service, block: 1 };
+                    Some(self.block(frame.id, service, 1))
+                }
+            },
+            (division, service) => panic!("no client should send service {service:#x} to division {division}"),
+        }
+    }
+
+    /// An ACK of the client.
+    fn acknowledged(&mut self, frame: &Frame<'_>) -> Option<Vec<u8>> {
+        let resends = self.manners == Manners::Resends;
+        match self.transfer {
+            Transfer::Out { id, .. } if resends && id != frame.id => None,
+            Transfer::Out { service, block, .. } if !resends || frame.block == self.marked(block) => {
+                if self.marked(block) & LAST != 0 {
+                    self.transfer = Transfer::OutDone { id: frame.id };
+                    return None;
+                }
+                self.transfer = Transfer::Out { id: frame.id, service, block: block + 1 };
+                Some(self.block(frame.id, service, block + 1))
+            }
+            Transfer::Out { service, block, .. } => {
+                (frame.block + 1 == block).then(|| self.block(frame.id, service, block))
+            }
+            _ if resends => None,
+            _ => Some(frame.answer(LAST, 0x1F, NO_SUCH_ACK, &[])),
+        }
+    }
+
+    /// A data block of the client.
+    fn loaded(&mut self, frame: &Frame<'_>) -> Option<Vec<u8>> {
+        let resends = self.manners == Manners::Resends;
+        let number = frame.block & !LAST;
+        let ack = frame.answer(frame.block, 0, 0, &[]);
+        let refusal = frame.answer(frame.block, 0x1F, WRONG_BLOCK, &[]);
+        match &mut self.transfer {
+            Transfer::In { id, .. } | Transfer::InDone { id, .. } if resends && *id != frame.id => None,
+            Transfer::In { id, taken, bytes } if number == *taken + 1 => {
+                bytes.extend(frame.data);
+                if frame.block & LAST == 0 {
+                    *taken = number;
+                } else {
+                    self.stored = Some(std::mem::take(bytes));
+                    self.transfer = Transfer::InDone { id: *id, last: frame.block };
+                }
+                Some(ack)
+            }
+            Transfer::In { taken, .. } if resends && number <= *taken => (number == *taken).then_some(ack),
+            Transfer::InDone { last, .. } if resends => (*last == frame.block).then_some(ack),
+            _ if resends => None,
+            _ => {
+                self.transfer = Transfer::None;
+                Some(refusal)
+            }
+        }
+    }
+}
+
+impl Controller for Model {
+    fn receive(&mut self, _: Now, datagram: &[u8]) -> Vec<Vec<u8>> {
+        let Some(frame) = Frame::read(datagram) else { return Vec::new() };
+        let answer = match (frame.ack, frame.service) {
+            (false, _) if self.rng.u16(0..10_000) < self.busy_per_10_000 => Some(frame.answer(LAST, 0x1F, 0xD8FA, &[])),
+            (false, _) => self.request(&frame),
+            (true, 0x15) => self.loaded(&frame),
+            (true, _) => self.acknowledged(&frame),
+        };
+        answer.into_iter().collect()
+    }
+
+    fn executed(&self) -> u32 {
+        self.executed
+    }
+
+    fn offer(&mut self, content: &[u8]) {
+        self.file = content.to_vec();
+        self.transfer = Transfer::None;
+    }
+
+    fn forget(&mut self) {
+        self.stored = None;
+    }
+
+    fn stored(&self) -> Option<&[u8]> {
+        self.stored.as_deref()
+    }
+
+    fn skips(&self) -> bool {
+        self.manners == Manners::Naive
+    }
+}
