@@ -3,12 +3,15 @@
 //! UDP, little-endian, one frame a datagram. Sources, by short name in the docs of this folder: FS = FS100 manual
 //! HW1481031, DX = DX200 manual HW1481977; section numbers are the same in both unless told otherwise.
 
+pub mod describe;
 pub mod files;
 pub mod group;
 pub mod payload;
 pub mod query;
 pub mod request;
 pub mod session;
+pub mod signal;
+pub mod simulator;
 pub mod status;
 pub mod subcode;
 pub mod table;

@@ -157,6 +157,13 @@ pub enum RequestError {
     FileName(#[from] FileNameError),
 }
 
+impl From<RequestFrame<'_>> for Request {
+    fn from(frame: RequestFrame<'_>) -> Self {
+        let RequestFrame { command, instance, attribute, service, data, .. } = frame;
+        Self { command, instance, attribute, service, data: data.to_vec() }
+    }
+}
+
 impl Request {
     /// A request to the file server.
     pub fn file(service: u8, data: impl Into<Vec<u8>>) -> Self {
@@ -234,7 +241,7 @@ impl Request {
         match (row.division, row.plural) {
             (Division::File, _) => self.check_file(),
             (Division::Robot, Some(plural)) => self.check_plural(row, plural, last),
-            (Division::Robot, None) => self.check_data(row, service),
+            (Division::Robot, None) => self.check_data(row, service, model),
         }
     }
 
@@ -294,7 +301,7 @@ impl Request {
         check_values(row, row.fields, elements)
     }
 
-    fn check_data(&self, row: &Row, service: &Service) -> Result<(), RequestError> {
+    fn check_data(&self, row: &Row, service: &Service, model: Model) -> Result<(), RequestError> {
         let wrong = |allowed: String| {
             Err(RequestError::DataSize { name: row.name, service: self.service, found: self.data.len(), allowed })
         };
@@ -302,7 +309,7 @@ impl Request {
             return if self.data.is_empty() { Ok(()) } else { wrong("0".to_owned()) };
         }
         let fields = row.fields_of(service, self.attribute);
-        let layouts = [Some(fields), row.alternative];
+        let layouts = [Some(fields), row.alternative.filter(|_| model == Model::Fs100)];
         match layouts.into_iter().flatten().find(|fields| total(fields) == self.data.len()) {
             Some(fields) => check_values(row, fields, &self.data),
             None => wrong(listed(layouts.into_iter().flatten().map(|fields| total(fields).to_string()))),
@@ -386,8 +393,12 @@ mod tests {
             "switch of hold, servo power and hlock is 3; allowed: 1 (on), 2 (off)"
         );
         assert_eq!(
-            text(request(0x8A, 1, 1, 0x02, &[0; 99]), Model::Dx200),
+            text(request(0x8A, 1, 1, 0x02, &[0; 99]), Model::Fs100),
             "cartesian move with service 0x02 takes 104, 100 data bytes, not 99"
+        );
+        assert_eq!(
+            text(request(0x8A, 1, 1, 0x02, &[0; 100]), Model::Dx200),
+            "cartesian move with service 0x02 takes 104 data bytes, not 100"
         );
     }
 

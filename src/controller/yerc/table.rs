@@ -144,7 +144,7 @@ pub struct Row {
     pub instances: Instances,
     /// The data by field; one element of it for plural commands. Attribute numbers count from 1.
     pub fields: &'static [Field],
-    /// The 25-word layout that the FS100 manual prints for the cartesian move.
+    /// The 25-word layout that the FS100 manual prints for the cartesian move; only an FS100 is sent it.
     pub alternative: Option<&'static [Field]>,
     /// Limits, for plural commands.
     pub plural: Option<Plural>,

@@ -47,7 +47,8 @@ pub struct ReadVariables {
 }
 
 impl ReadVariables {
-    /// As many as a frame holds; an even count of B variables. Standard and extended numbers may follow each other.
+    /// As many as a frame holds; an even count of B variables. Standard and extended numbers may follow each other. The
+    /// string form that suits the model is chosen with [`VariableKind::string_form`].
     pub fn new(kind: VariableKind, first: u16, count: u16) -> Result<Self, QueryError> {
         checked(Model::Dx200, Self { kind, first, count })
     }

@@ -358,7 +358,7 @@ mod tests {
         let mut sends = Vec::new();
         let mut now = ms(0);
         pace.sent(now, true);
-        loop {
+        for _ in 0..10 {
             match pace.due(now) {
                 Due::Nothing { before } => now = before,
                 Due::Repeat => {

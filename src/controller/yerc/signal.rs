@@ -1,0 +1,108 @@
+//! Logical numbers of I/O signals: `#10010` is bit 0 of group 1001 (FS and DX 3.3.9).
+
+use std::fmt;
+use std::str::FromStr;
+
+use thiserror::Error;
+
+use super::Model;
+use super::table::{Row, Span};
+
+/// One signal by its logical number; the last digit is 0 to 7.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Signal {
+    group: u16,
+    bit: u8,
+}
+
+/// A number that is no signal.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum SignalError {
+    /// Not a number of up to five digits.
+    #[error("'{found}' is no signal number, e.g. 10010")]
+    Malformed {
+        /// What was given.
+        found: String,
+    },
+    /// The last digit counts eight signals.
+    #[error("signal {number} does not exist: the last digit goes from 0 to 7")]
+    Digit {
+        /// The number given.
+        number: u32,
+    },
+}
+
+impl Signal {
+    /// A signal by its logical number.
+    pub fn new(number: u32) -> Result<Self, SignalError> {
+        let bit = u8::try_from(number % 10).ok().filter(|bit| *bit < 8).ok_or(SignalError::Digit { number })?;
+        let malformed = |_| SignalError::Malformed { found: number.to_string() };
+        Ok(Self { group: u16::try_from(number / 10).map_err(malformed)?, bit })
+    }
+
+    /// The instance that reads its group of eight.
+    pub const fn group(self) -> u16 {
+        self.group
+    }
+
+    /// Its bit in the group's byte, 0 the lowest.
+    pub const fn bit(self) -> u8 {
+        self.bit
+    }
+
+    /// The logical number.
+    pub fn number(self) -> u32 {
+        u32::from(self.group) * 10 + u32::from(self.bit)
+    }
+
+    /// Whether it is on in the group's byte.
+    pub const fn is_on(self, byte: u8) -> bool {
+        byte >> self.bit & 1 == 1
+    }
+
+    /// The class it belongs to, with its name and whether it can be written; `None` where the model has no such signal.
+    pub fn class(self, model: Model) -> Option<&'static Span> {
+        io_class(model, self.group)
+    }
+}
+
+/// The class of a group of eight signals.
+pub fn io_class(model: Model, group: u16) -> Option<&'static Span> {
+    Row::of(0x78)?.instances.find(model, group)
+}
+
+impl fmt::Display for Signal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "#{:05}", self.number())
+    }
+}
+
+impl FromStr for Signal {
+    type Err = SignalError;
+
+    fn from_str(text: &str) -> Result<Self, SignalError> {
+        let digits = text.strip_prefix('#').unwrap_or(text);
+        if digits.is_empty() || digits.len() > 6 || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
+            return Err(SignalError::Malformed { found: text.to_owned() });
+        }
+        Self::new(digits.parse().map_err(|_| SignalError::Malformed { found: text.to_owned() })?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_name_group_bit_and_class() {
+        let signal: Signal = "#29563".parse().unwrap();
+        assert_eq!((signal.group(), signal.bit(), signal.to_string().as_str()), (2956, 3, "#29563"));
+        assert!(signal.class(Model::Dx200).unwrap().writable);
+        assert_eq!(signal.class(Model::Fs100), None);
+        assert_eq!("10".parse::<Signal>().unwrap().class(Model::Fs100).unwrap().meaning, "robot user input");
+        assert_eq!("9".parse::<Signal>(), Err(SignalError::Digit { number: 9 }));
+        for junk in ["", "#", "-10", "1e3", "9999999", "700000"] {
+            assert!(matches!(junk.parse::<Signal>(), Err(SignalError::Malformed { .. })), "{junk}");
+        }
+    }
+}

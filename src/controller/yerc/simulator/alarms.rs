@@ -1,0 +1,202 @@
+//! Alarms: the four that may be active and the history of five classes (DX 3.3.1, 3.3.2, 3.3.37, 3.3.38).
+
+use std::collections::VecDeque;
+
+use encoding_rs::SHIFT_JIS;
+
+use crate::controller::yerc::payload::{Alarm, AlarmKind, AlarmTexts, Text};
+
+/// Alarms that can be active at a time.
+pub(super) const ACTIVE: usize = 4;
+/// Entries the controller keeps in each class of the history.
+const HISTORY: usize = 100;
+/// Instances of a class start at multiples of this, plus 1.
+const CLASS_STEP: u16 = 1000;
+
+/// The part of the history an alarm goes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Class {
+    Major,
+    Monitor,
+    System,
+    User,
+    Offline,
+}
+
+impl Class {
+    /// The class of an alarm number: 0001-3999 stop the controller, 8000 up are raised by jobs and ladder.
+    pub(super) fn of(code: u32) -> Self {
+        match code {
+            0..=3999 => Self::Major,
+            4000..=7999 => Self::Monitor,
+            8000..=8999 => Self::System,
+            _ => Self::User,
+        }
+    }
+}
+
+/// An alarm whose texts follow from code, sub-code and alarm type; `name` where it is not the usual one.
+pub(super) fn alarm(code: u32, data: u32, kind: u32, time: &str, name: Option<&str>) -> Alarm {
+    let alarm = Alarm {
+        code,
+        data,
+        kind: AlarmKind(kind),
+        time: Text::cut(time.as_bytes()),
+        name: Text::cut(&sjis(name.unwrap_or_else(|| known_name(code)))),
+        texts: None,
+    };
+    let (sub_code, reversed) = sub_code(&alarm);
+    let source = if (4300..4400).contains(&code) { "[SV#1]" } else { "" };
+    let texts = AlarmTexts {
+        source: Text::cut(source.as_bytes()),
+        sub_code: Text::cut(sub_code.as_bytes()),
+        reversed: Text::cut(reversed.as_bytes()),
+    };
+    Alarm { texts: Some(texts), ..alarm }
+}
+
+/// What is wrong now, and what was.
+#[derive(Debug, Clone, Default)]
+pub(super) struct AlarmLog {
+    active: VecDeque<Alarm>,
+    history: [VecDeque<Alarm>; 5],
+}
+
+impl AlarmLog {
+    pub(super) fn raise(&mut self, alarm: Alarm) {
+        self.record(Class::of(alarm.code), alarm.clone());
+        self.active.push_front(alarm);
+        self.active.truncate(ACTIVE);
+    }
+
+    /// Adds to the history as its newest entry.
+    pub(super) fn record(&mut self, class: Class, alarm: Alarm) {
+        let history = &mut self.history[class as usize];
+        history.push_front(alarm);
+        history.truncate(HISTORY);
+    }
+
+    pub(super) fn is_active(&self) -> bool {
+        !self.active.is_empty()
+    }
+
+    /// Whether one is active that only a restart clears.
+    pub(super) fn major_is_active(&self) -> bool {
+        self.active.iter().any(|alarm| Class::of(alarm.code) == Class::Major)
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.active.clear();
+    }
+
+    pub(super) fn active(&self) -> impl Iterator<Item = &Alarm> {
+        self.active.iter()
+    }
+
+    /// Instances 1 to 4, newest first; outside of them there is nothing to ask. An empty place reads as zeros.
+    pub(super) fn current(&self, instance: u16) -> Option<Vec<u8>> {
+        let place = usize::from(instance).checked_sub(1).filter(|&place| place < ACTIVE)?;
+        Some(bytes_or_zeros(self.active.get(place)))
+    }
+
+    /// Instances 1-100, 1001-1100, … 4001-4100.
+    pub(super) fn past(&self, instance: u16) -> Option<Vec<u8>> {
+        let class = self.history.get(usize::from(instance / CLASS_STEP))?;
+        let place = usize::from(instance % CLASS_STEP).checked_sub(1).filter(|&place| place < HISTORY)?;
+        Some(bytes_or_zeros(class.get(place)))
+    }
+}
+
+fn bytes_or_zeros(alarm: Option<&Alarm>) -> Vec<u8> {
+    alarm.map_or_else(|| vec![0; Alarm::SIZE_WITH_TEXTS], Alarm::emit)
+}
+
+/// Text as a Japanese controller stores it.
+pub(super) fn sjis(text: &str) -> Vec<u8> {
+    SHIFT_JIS.encode(text).0.into_owned()
+}
+
+fn known_name(code: u32) -> &'static str {
+    match code {
+        1300 => "SERVO CPU SYNCHRONIZING ERROR",
+        4107 => "OUT OF RANGE (ABSO DATA)",
+        4315 => "COLLISION DETECT",
+        4328 => "SERVO TRACKING ERROR",
+        4416 => "PULSE LIMIT (MIN./MAX.)",
+        4446 => "OVER VARIABLE LIMIT",
+        4448 => "UNDEFINED POSITION VARIABLE",
+        4511 => "OUT OF RANGE (DROP-VALUE)",
+        8000..=8999 => "USER ALARM (SYSTEM)",
+        9000..=9999 => "USER ALARM (USER)",
+        _ => "SIMULATED ALARM",
+    }
+}
+
+/// Text and reverse-video map of a sub-code by alarm type (DX 3.3.1); which bit is which axis is this simulator's choice.
+fn sub_code(alarm: &Alarm) -> (String, String) {
+    let names: &[&str] = match alarm.kind.0 {
+        3 => &["S", "L", "U", "R", "B", "T"],
+        4 => &["X", "Y", "Z"],
+        5 => &["X", "Y", "Z", "Rx", "Ry", "Rz"],
+        8 => &["R1", "R2", "S1", "S2"],
+        11 => &["R1"],
+        12 => &["R1", "S1", "B1"],
+        _ => {
+            let text = alarm.sub_code().to_string();
+            let reversed = "0".repeat(text.len());
+            return (text, reversed);
+        }
+    };
+    axes(names, alarm.data)
+}
+
+/// Names in brackets; the ones whose bit is set are shown reversed.
+fn axes(names: &[&str], bits: u32) -> (String, String) {
+    let (mut text, mut reverse) = (String::from("["), String::from("0"));
+    for (bit, name) in names.iter().enumerate() {
+        text.push_str(name);
+        reverse.push_str(&(if bits >> bit & 1 == 1 { "1" } else { "0" }).repeat(name.len()));
+    }
+    text.push(']');
+    reverse.push('0');
+    (text, reverse)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(kind: u32, data: u32) -> (String, String) {
+        sub_code(&alarm(4315, data, kind, "", None))
+    }
+
+    #[test]
+    fn the_alarm_of_vector_a01() {
+        let alarm = alarm(4315, 3, 1, "2011/10/10 15:49", None);
+        let bytes = alarm.emit();
+        assert_eq!(bytes[..12], [0xDB, 0x10, 0, 0, 3, 0, 0, 0, 1, 0, 0, 0]);
+        assert_eq!(&bytes[12..28], b"2011/10/10 15:49");
+        assert_eq!(&bytes[28..44], b"COLLISION DETECT");
+        assert_eq!(bytes.len(), 268);
+    }
+
+    #[test]
+    fn sub_codes_read_by_type() {
+        assert_eq!(texts(1, 3).0, "[3]");
+        assert_eq!(texts(3, 0b10), ("[SLURBT]".into(), "00100000".into()));
+        assert_eq!(texts(5, 0b1000).1, "00001100000");
+    }
+
+    #[test]
+    fn the_fifth_alarm_pushes_out_the_first() {
+        let mut log = AlarmLog::default();
+        for code in 4001..=4005 {
+            log.raise(alarm(code, 0, 0, "", None));
+        }
+        assert_eq!(log.current(1).unwrap()[..2], 4005u16.to_le_bytes());
+        assert_eq!(log.current(4).unwrap()[..2], 4002u16.to_le_bytes());
+        assert_eq!(log.current(5), None);
+        assert_eq!(log.past(1005).unwrap()[..2], 4001u16.to_le_bytes());
+    }
+}

@@ -1,0 +1,216 @@
+//! What somebody at the machine can do: one line, one action.
+
+use super::alarms::Class;
+use super::memory::io_class;
+use super::world::{Mode, World};
+use crate::controller::yerc::payload::CycleMode;
+
+/// The lines there are, as an unknown one is answered.
+const USAGE: &str = "alarm CODE [DATA [TYPE]] [NAME] | alarm clear | error on|off | mode teach|play | remote on|off | \
+servo on|off | cycle step|once|continuous | hold pendant|external on|off | estop [off] | guard on|off | edit on|off | \
+convert on|off | io SIGNAL on|off | register NUMBER VALUE | state";
+
+/// Carries out a line; the answer says what is now.
+pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    match words.as_slice() {
+        ["state"] => return Ok(state(world)),
+        ["alarm", "clear"] => world.alarms.clear(),
+        ["alarm", rest @ ..] => return alarm(world, rest),
+        ["error", state] => world.switches.error = on_off(state)?,
+        ["mode", "teach"] => set_mode(world, Mode::Teach)?,
+        ["mode", "play"] => set_mode(world, Mode::Play)?,
+        ["remote", state] => {
+            let mode = world.switches.mode;
+            world.set_mode(mode, on_off(state)?);
+        }
+        ["servo", state] => servo(world, on_off(state)?)?,
+        ["cycle", name] => {
+            unlocked(world)?;
+            world.switches.cycle = cycle(name).ok_or_else(|| expected(name, "step, once or continuous"))?;
+        }
+        ["hold", "pendant", state] => {
+            let on = on_off(state)?;
+            unlocked(world)?;
+            world.switches.hold.pendant = on;
+            if on {
+                world.stop();
+            }
+        }
+        ["hold", "external", state] => {
+            world.switches.hold.external = on_off(state)?;
+            if world.switches.hold.external {
+                world.stop();
+            }
+        }
+        ["estop"] => {
+            world.switches.estop = true;
+            world.power_off();
+        }
+        ["estop", "off"] => world.switches.estop = false,
+        ["guard", state] => world.switches.guard = on_off(state)?,
+        ["edit", state] => world.switches.editing = on_off(state)?,
+        ["convert", state] => world.switches.converting = on_off(state)?,
+        ["io", signal, state] => return io(world, signal, on_off(state)?),
+        ["register", number, value] => return register(world, number, value),
+        _ => return Err(format!("no such line: '{}'; there are {USAGE}", line.trim())),
+    }
+    Ok(summary(world))
+}
+
+fn alarm(world: &mut World, words: &[&str]) -> Result<String, String> {
+    let [code, rest @ ..] = words else { return Err("alarm needs a number from 1 to 9999, or 'clear'".into()) };
+    let code = number(code, 1, 9999)?;
+    let (mut numbers, mut name) = ([0, 0], rest);
+    for (place, most) in [0xFFFF_FFFF, 0xFF].into_iter().enumerate() {
+        let Some((digits, tail)) =
+            name.split_first().filter(|(text, _)| text.starts_with(|c: char| c.is_ascii_digit()))
+        else {
+            break;
+        };
+        numbers[place] = number(digits, 0, most)?;
+        name = tail;
+    }
+    let [data, kind] = numbers;
+    let name = name.join(" ");
+    world.raise(code, data, kind, Some(name.as_str()).filter(|name| !name.is_empty()));
+    Ok(format!("alarm {code} raised ({:?})", Class::of(code)).to_lowercase())
+}
+
+fn set_mode(world: &mut World, mode: Mode) -> Result<(), String> {
+    unlocked(world)?;
+    let remote = world.switches.remote;
+    world.set_mode(mode, remote);
+    Ok(())
+}
+
+fn servo(world: &mut World, on: bool) -> Result<(), String> {
+    if !on {
+        world.power_off();
+        return Ok(());
+    }
+    unlocked(world)?;
+    if world.alarms.is_active() {
+        return Err("servo power stays off while an alarm is active: 'alarm clear' first".into());
+    }
+    if world.switches.estop {
+        return Err("servo power stays off during an emergency stop: 'estop off' first".into());
+    }
+    world.switches.servo = true;
+    Ok(())
+}
+
+/// HLOCK keeps the pendant from everything but the emergency stop (DX 3.3.20).
+fn unlocked(world: &World) -> Result<(), String> {
+    if world.switches.hlock { Err("the pendant is locked by HLOCK".into()) } else { Ok(()) }
+}
+
+fn io(world: &mut World, signal: &str, on: bool) -> Result<String, String> {
+    let number = number(signal, 0, 99_999)?;
+    if world.memory.set_signal(number, on) {
+        return Ok(format!("#{number:05} is {}", if on { "on" } else { "off" }));
+    }
+    let known = u16::try_from(number / 10).ok().and_then(|instance| io_class(world.model, instance));
+    Err(match known {
+        Some(class) => format!("#{number:05}: {} signals end in 0 to 7", class.meaning),
+        None => format!("#{number:05} is no signal of this controller"),
+    })
+}
+
+fn register(world: &mut World, register: &str, value: &str) -> Result<String, String> {
+    let (register, value) = (number(register, 0, 999)?, number(value, 0, 0xFFFF)?);
+    let fits = u16::try_from(register).ok().zip(u16::try_from(value).ok());
+    match fits {
+        Some((register, value)) if world.memory.force_register(register, value) => {
+            Ok(format!("register {register} is {value}"))
+        }
+        _ => Err(format!("there is no register {register}")),
+    }
+}
+
+/// One line about everything that decides what is refused.
+fn summary(world: &World) -> String {
+    let switches = &world.switches;
+    let mut parts = vec![
+        match switches.mode {
+            Mode::Teach => "teach mode",
+            Mode::Play => "play mode",
+        },
+        if switches.remote { "command remote" } else { "local" },
+        if switches.servo { "servo on" } else { "servo off" },
+        match switches.cycle {
+            CycleMode::Step => "step",
+            CycleMode::Once => "one cycle",
+            CycleMode::Continuous => "continuous",
+        },
+    ];
+    let optional = [
+        (world.is_running(), "running"),
+        (switches.hold.pendant, "held by pendant"),
+        (switches.hold.external, "held by external signal"),
+        (switches.hold.command, "held by command"),
+        (switches.estop, "emergency stop"),
+        (switches.guard, "in-guard safe operation"),
+        (switches.hlock, "hlock"),
+        (switches.editing, "editing"),
+        (switches.converting, "converting coordinates"),
+        (world.alarms.is_active(), "alarm"),
+        (switches.error, "error"),
+    ];
+    parts.extend(optional.into_iter().filter_map(|(on, text)| on.then_some(text)));
+    parts.join(", ")
+}
+
+/// The summary, then job, alarms, message and positions.
+fn state(world: &World) -> String {
+    let mut lines = vec![summary(world)];
+    let job = world.player.info();
+    if job.name.is_empty() {
+        lines.push("no job selected".into());
+    } else {
+        let (name, ..) = encoding_rs::SHIFT_JIS.decode(job.name.as_bytes());
+        lines.push(format!("job {name}, line {}, step {}", job.line, job.step));
+    }
+    for alarm in world.alarms.active() {
+        let (name, ..) = encoding_rs::SHIFT_JIS.decode(alarm.name.as_bytes());
+        lines.push(format!("alarm {} {name} {}", alarm.code, alarm.sub_code()).trim_end().to_owned());
+    }
+    if !world.switches.message.is_empty() {
+        let (text, ..) = encoding_rs::SHIFT_JIS.decode(&world.switches.message);
+        lines.push(format!("message \"{text}\""));
+    }
+    for group in &world.arm.groups {
+        let pulses: Vec<String> =
+            group.pulses[..group.axes].iter().map(|&pulse| super::motion::whole(pulse).to_string()).collect();
+        lines.push(format!("{} {}", group.name(), pulses.join(" ")));
+    }
+    lines.join("\n")
+}
+
+fn on_off(word: &str) -> Result<bool, String> {
+    match word {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err(expected(word, "on or off")),
+    }
+}
+
+pub(super) fn cycle(word: &str) -> Option<CycleMode> {
+    match word {
+        "step" => Some(CycleMode::Step),
+        "once" => Some(CycleMode::Once),
+        "continuous" => Some(CycleMode::Continuous),
+        _ => None,
+    }
+}
+
+fn number(word: &str, least: u32, most: u32) -> Result<u32, String> {
+    word.parse()
+        .ok()
+        .filter(|value| (least..=most).contains(value))
+        .ok_or_else(|| expected(word, &format!("a number from {least} to {most}")))
+}
+
+fn expected(word: &str, what: &str) -> String {
+    format!("'{word}' is not {what}")
+}

@@ -1,0 +1,243 @@
+//! The move commands: checks, coordinate systems, and the order to the arm (DX 3.3.39, 3.3.40).
+//!
+//! The checks come in the order of the request's words. User frames are an origin and a turn about Z; tool
+//! increments are turned by the tool's orientation.
+
+use super::motion::{AXES, Family, MAX_ANGULAR_DEG_S, MAX_LINEAR_MM_S, Pose, Pulses, Speed, forward, inverse};
+use super::world::{Refusal, World, code};
+use crate::controller::yerc::payload::{CartesianMove, MoveLayout, PositionKind, PulseMove, SpeedClass};
+
+/// Instances of the moves.
+const LINK: u16 = 1;
+const INCREMENT: u16 = 3;
+/// Highest tool and user frame number.
+const LAST_NUMBER: u32 = 63;
+/// Form bits that a move defines; the manuals reserve the others.
+const FORM_BITS: u32 = 0x3F;
+const EXTENDED_FORM_BITS: u32 = 0x1F;
+/// Fastest straight motion during in-guard safe operation.
+const GUARDED_MM_S: f64 = 250.0;
+
+impl World {
+    /// Command 0x8A.
+    pub(super) fn move_cartesian(&mut self, instance: u16, data: &[u8]) -> Result<(), Refusal> {
+        if ![MoveLayout::Words25.size(), MoveLayout::Words26.size()].contains(&data.len()) {
+            return Err(Refusal::Added(code::REQUEST_SIZE));
+        }
+        let order = CartesianMove::parse(data).map_err(|_| Refusal::Added(code::REQUEST_SIZE))?;
+        self.may_move()?;
+        let group = self.moved_group(order.robot, order.station)?;
+        let speed = speed_of(instance, order.class, order.speed)?;
+        let known = match order.coordinate {
+            PositionKind::Base | PositionKind::Robot | PositionKind::User => true,
+            // A target in the tool's own frame says something only as an increment.
+            PositionKind::Tool => instance == INCREMENT,
+            PositionKind::Pulse | PositionKind::Other(_) => false,
+        };
+        if !known {
+            return Err(Refusal::Added(code::COORDINATE));
+        }
+        if order.reserved != [0, 0] {
+            return Err(Refusal::Added(code::RANGE));
+        }
+        if order.form.0 & !FORM_BITS != 0 || order.extended.0 & !EXTENDED_FORM_BITS != 0 {
+            return Err(Refusal::Added(code::FORM));
+        }
+        check_tool(order.tool)?;
+        let frame = self.user_frame(order.coordinate, order.user)?;
+        if self.arm.groups[group].family == Family::Station {
+            let targets = self.station_target(group, &order.station_axes, instance == INCREMENT)?;
+            return self.go(instance, &[targets], speed);
+        }
+        check_unused(&order.station_axes)?;
+        let mut targets = Vec::new();
+        let number = self.arm.groups[group].number;
+        let base = self.base_target(number, &order.base.map(f64::from), instance == INCREMENT)?;
+        let base_mm = base.map_or(0.0, |(_, pulses)| pulses[0] / 1000.0);
+        let near = self.arm.groups[group].pulses;
+        let pose = target_pose(&order, instance == INCREMENT, &forward(&near), base_mm, frame);
+        targets.push((group, inverse(&pose, &near)));
+        targets.extend(base);
+        self.go(instance, &targets, speed)?;
+        let moved = &mut self.arm.groups[group];
+        (moved.form, moved.extended_form, moved.tool) = (order.form.0, order.extended.0, order.tool);
+        Ok(())
+    }
+
+    /// Command 0x8B.
+    pub(super) fn move_pulse(&mut self, instance: u16, data: &[u8]) -> Result<(), Refusal> {
+        if data.len() != PulseMove::SIZE {
+            return Err(Refusal::Added(code::REQUEST_SIZE));
+        }
+        let order = PulseMove::parse(data).map_err(|_| Refusal::Added(code::REQUEST_SIZE))?;
+        self.may_move()?;
+        let group = self.moved_group(order.robot, order.station)?;
+        let speed = speed_of(instance, order.class, order.speed)?;
+        check_tool(order.tool)?;
+        if self.arm.groups[group].family == Family::Station {
+            let target = self.station_target(group, &order.station_axes, false)?;
+            return self.go(instance, &[target], speed);
+        }
+        check_unused(&order.station_axes)?;
+        let mut targets = vec![(group, self.pulses(group, &order.axes)?)];
+        let number = self.arm.groups[group].number;
+        targets.extend(self.base_target(number, &order.base.map(f64::from), false)?);
+        self.go(instance, &targets, speed)?;
+        self.arm.groups[group].tool = order.tool;
+        Ok(())
+    }
+
+    fn go(&mut self, instance: u16, targets: &[(usize, Pulses)], speed: Ordered) -> Result<(), Refusal> {
+        match speed {
+            Ordered::Share(share) => self.arm.joint(self.now, targets, share),
+            Ordered::Speed(speed) => {
+                if targets.iter().any(|&(group, _)| self.arm.groups[group].family == Family::Station) {
+                    // A station turns; it draws no line.
+                    return Err(Refusal::Added(code::WRONG_GROUP));
+                }
+                let speed = match speed {
+                    Speed::Linear(speed) if self.switches.guard => Speed::Linear(speed.min(GUARDED_MM_S)),
+                    speed => speed,
+                };
+                debug_assert_ne!(instance, LINK, "link moves have a share");
+                self.arm.straight(self.now, targets, speed);
+            }
+        }
+        Ok(())
+    }
+
+    /// The group that moves: robot or station, one of them, and fitted.
+    fn moved_group(&self, robot: u32, station: u32) -> Result<usize, Refusal> {
+        let (family, number) = match (robot, station) {
+            (1.., 0) => (Family::Robot, robot),
+            (0, 1..) => (Family::Station, station),
+            _ => return Err(Refusal::Added(code::GROUP)),
+        };
+        let number = u16::try_from(number).ok();
+        number.and_then(|number| self.arm.find(family, number)).ok_or(Refusal::Added(code::GROUP))
+    }
+
+    /// Pulses of a group; words of axes that it does not have must be 0.
+    fn pulses(&self, group: usize, words: &[i32]) -> Result<Pulses, Refusal> {
+        let axes = self.arm.groups[group].axes;
+        check_unused(words.get(axes..).unwrap_or_default())?;
+        let mut pulses = [0.0; AXES];
+        for (pulse, word) in pulses.iter_mut().zip(words) {
+            *pulse = f64::from(*word);
+        }
+        Ok(pulses)
+    }
+
+    fn station_target(&self, group: usize, words: &[i32; 6], increment: bool) -> Result<(usize, Pulses), Refusal> {
+        let mut to = self.pulses(group, words)?;
+        if increment {
+            to.iter_mut().zip(self.arm.groups[group].pulses).for_each(|(to, from)| *to += from);
+        }
+        Ok((group, to))
+    }
+
+    /// Where the robot's base goes, in pulses (one for each 0.001 mm); `None` for a robot that stands still.
+    fn base_target(&self, robot: u16, words: &[f64; 3], increment: bool) -> Result<Option<(usize, Pulses)>, Refusal> {
+        let base = self.arm.find(Family::Base, robot);
+        let axes = base.map_or(0, |base| self.arm.groups[base].axes);
+        if words[axes.min(3)..].iter().any(|&word| word != 0.0) {
+            return Err(Refusal::Added(code::RANGE));
+        }
+        Ok(base.map(|base| {
+            let mut pulses = [0.0; AXES];
+            for (pulse, (word, from)) in pulses.iter_mut().zip(words.iter().zip(self.arm.groups[base].pulses)) {
+                *pulse = if increment { word + from } else { *word };
+            }
+            (base, pulses)
+        }))
+    }
+
+    /// The origin and turn of the user frame where one is needed.
+    fn user_frame(&self, coordinate: PositionKind, number: u32) -> Result<[f64; 4], Refusal> {
+        if number > LAST_NUMBER || coordinate == PositionKind::User && number == 0 {
+            return Err(Refusal::Added(code::USER_FRAME));
+        }
+        if coordinate != PositionKind::User {
+            return Ok([0.0; 4]);
+        }
+        let frame = self.user_frames.iter().find(|(known, _)| *known == number);
+        frame.map(|(_, frame)| *frame).ok_or(Refusal::Added(code::USER_FRAME_NOT_TAUGHT))
+    }
+}
+
+/// A speed as ordered.
+#[derive(Debug, Clone, Copy)]
+enum Ordered {
+    /// Of the greatest joint speed.
+    Share(f64),
+    Speed(Speed),
+}
+
+/// The speed; its class must be the instance's, its value within what the robot can do.
+fn speed_of(instance: u16, class: SpeedClass, speed: u32) -> Result<Ordered, Refusal> {
+    let (scale, most) = match class {
+        SpeedClass::Percent if instance == LINK => (0.01, 100.0),
+        SpeedClass::Linear if instance != LINK => (0.1, MAX_LINEAR_MM_S),
+        SpeedClass::Angular if instance != LINK => (0.1, MAX_ANGULAR_DEG_S),
+        _ => return Err(Refusal::Added(code::SPEED)),
+    };
+    let value = f64::from(speed) * scale;
+    if speed == 0 || value > most + 1e-9 {
+        return Err(Refusal::Added(code::SPEED));
+    }
+    Ok(match class {
+        SpeedClass::Linear => Ordered::Speed(Speed::Linear(value)),
+        SpeedClass::Angular => Ordered::Speed(Speed::Angular(value)),
+        SpeedClass::Percent | SpeedClass::Other(_) => Ordered::Share(value / 100.0),
+    })
+}
+
+/// Words of axes that nothing has.
+fn check_unused(words: &[i32]) -> Result<(), Refusal> {
+    if words.iter().all(|&word| word == 0) { Ok(()) } else { Err(Refusal::Added(code::RANGE)) }
+}
+
+fn check_tool(tool: u32) -> Result<(), Refusal> {
+    if tool > LAST_NUMBER { Err(Refusal::Added(code::TOOL)) } else { Ok(()) }
+}
+
+/// The target in robot coordinates.
+fn target_pose(order: &CartesianMove, increment: bool, from: &Pose, base_mm: f64, frame: [f64; 4]) -> Pose {
+    let words = order.target.map(f64::from);
+    let (mut place, mut turn) = (
+        [words[0] / 1000.0, words[1] / 1000.0, words[2] / 1000.0],
+        [words[3] / 10_000.0, words[4] / 10_000.0, words[5] / 10_000.0],
+    );
+    match order.coordinate {
+        PositionKind::User => {
+            place = turned_about_z(place, frame[3]);
+            if !increment {
+                place = [place[0] + frame[0] - base_mm, place[1] + frame[1], place[2] + frame[2]];
+                turn[2] += frame[3];
+            }
+        }
+        PositionKind::Tool => place = turned(place, from),
+        PositionKind::Base if !increment => place[0] -= base_mm,
+        _ => {}
+    }
+    if increment {
+        for (i, value) in place.iter_mut().chain(&mut turn).enumerate() {
+            *value += from[i];
+        }
+    }
+    [place[0], place[1], place[2], turn[0], turn[1], turn[2], from[6]]
+}
+
+fn turned_about_z([x, y, z]: [f64; 3], degrees: f64) -> [f64; 3] {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    [x * cos - y * sin, x * sin + y * cos, z]
+}
+
+/// A direction of the tool in robot coordinates: about X, then Y, then Z.
+fn turned([x, y, z]: [f64; 3], pose: &Pose) -> [f64; 3] {
+    let (sin, cos) = pose[3].to_radians().sin_cos();
+    let (y, z) = (y * cos - z * sin, y * sin + z * cos);
+    let (sin, cos) = pose[4].to_radians().sin_cos();
+    let (x, z) = (x * cos + z * sin, z * cos - x * sin);
+    turned_about_z([x, y, z], pose[5])
+}

@@ -1,0 +1,317 @@
+//! The robot server: takes a request apart by the table, and reads or writes.
+//!
+//! The order of checks: command, service, instance, attribute, fitted or not, size, state, value.
+
+use super::memory::Kind;
+use super::world::{Refusal, World, code};
+use crate::controller::yerc::Model;
+use crate::controller::yerc::table::{Action, Attribute, Availability, Plural, Row, Service, service, total};
+use crate::controller::yerc::wire::RequestFrame;
+
+/// The data of an answer, or why there is none.
+pub(super) type Answer = Result<Vec<u8>, Refusal>;
+
+/// First system software of an FS100 with the newer commands.
+const FS_FULL_SOFTWARE: (u32, u32) = (1, 14);
+
+/// Answers a request of the robot server.
+pub(super) fn answer(world: &mut World, frame: &RequestFrame<'_>) -> Answer {
+    let row = Row::of(frame.command).filter(|row| has(world, row.availability)).ok_or(Refusal::Command)?;
+    let service = row.service(frame.service).ok_or(Refusal::Command)?;
+    let instance = frame.instance;
+    let span = row.instances.find(world.model, instance).ok_or(Refusal::Instance)?;
+    if span.extended {
+        // No parameter of this controller adds variables.
+        return Err(Refusal::Instance);
+    }
+    check_attribute(row, service, frame.attribute)?;
+    match (row.plural, service.action) {
+        (Some(plural), Action::Read) => read_several(world, row, plural, instance, span.last, frame.data),
+        (Some(plural), Action::Write) => write_several(world, row, plural, instance, span.last, frame.data),
+        (None, Action::Read) => {
+            let payload = world.read(row, instance)?;
+            Ok(field(row, service, frame.attribute, &payload)?.to_vec())
+        }
+        (None, Action::Write) => write_one(world, row, service, frame),
+    }
+}
+
+/// Whether this controller has something that not every one has.
+pub(super) fn has(world: &World, availability: Availability) -> bool {
+    match (availability, world.model) {
+        (Availability::Both, _) | (_, Model::Dx200) => true,
+        (Availability::Fs114, Model::Fs100) => software(&world.software) >= FS_FULL_SOFTWARE,
+        (Availability::Dx200, Model::Fs100) => false,
+    }
+}
+
+/// Major and minor of `FS1.14.00A(JP/US)-00`.
+fn software(version: &str) -> (u32, u32) {
+    let mut numbers =
+        version.trim_start_matches(|c: char| !c.is_ascii_digit()).split('.').map(|part| part.parse().ok());
+    let mut next = || numbers.next().flatten().unwrap_or(0);
+    (next(), next())
+}
+
+fn check_attribute(row: &Row, service: &Service, attribute: u8) -> Result<(), Refusal> {
+    let known = match service.attribute {
+        Attribute::Zero => attribute == 0,
+        Attribute::One => attribute == 1,
+        Attribute::OneOrZero => attribute <= 1,
+        // Position variables are also read and written whole with the single services (attribute 0), as one client does.
+        Attribute::Field => {
+            usize::from(attribute) <= row.fields.len() && (attribute != 0 || row.service(service::SET_ALL).is_some())
+        }
+    };
+    match known {
+        true => Ok(()),
+        // A controller was seen to answer A002 to a job selection with an attribute.
+        false if row.number == command::SELECT => Err(Refusal::Added(code::ATTRIBUTE)),
+        false => Err(Refusal::Attribute),
+    }
+}
+
+/// The part of a payload that was asked for. Axes that are not fitted have no field.
+fn field<'a>(row: &Row, service: &Service, attribute: u8, payload: &'a [u8]) -> Result<&'a [u8], Refusal> {
+    let Some(index) = field_index(service, attribute) else { return Ok(payload) };
+    let from = total(row.fields.get(..index).unwrap_or_default());
+    let size = total(row.fields.get(index..=index).unwrap_or_default());
+    payload.get(from..from + size).ok_or(Refusal::Added(code::ATTRIBUTE))
+}
+
+/// The field a single read or write addresses; `None` for all.
+fn field_index(service: &Service, attribute: u8) -> Option<usize> {
+    match service.attribute {
+        Attribute::Field => usize::from(attribute).checked_sub(1),
+        _ => None,
+    }
+}
+
+/// Command numbers that need a name here; everything else about them is in the table.
+pub(super) mod command {
+    pub(in super::super) const ALARM: u16 = 0x70;
+    pub(in super::super) const HISTORY: u16 = 0x71;
+    pub(in super::super) const STATUS: u16 = 0x72;
+    pub(in super::super) const JOB: u16 = 0x73;
+    pub(in super::super) const AXES: u16 = 0x74;
+    pub(in super::super) const POSITION: u16 = 0x75;
+    pub(in super::super) const POSITION_ERROR: u16 = 0x76;
+    pub(in super::super) const TORQUE: u16 = 0x77;
+    pub(in super::super) const IO: u16 = 0x78;
+    pub(in super::super) const REGISTER: u16 = 0x79;
+    pub(in super::super) const RESET: u16 = 0x82;
+    pub(in super::super) const SWITCH: u16 = 0x83;
+    pub(in super::super) const CYCLE: u16 = 0x84;
+    pub(in super::super) const MESSAGE: u16 = 0x85;
+    pub(in super::super) const START: u16 = 0x86;
+    pub(in super::super) const SELECT: u16 = 0x87;
+    pub(in super::super) const TIMES: u16 = 0x88;
+    pub(in super::super) const SYSTEM: u16 = 0x89;
+    pub(in super::super) const MOVE: u16 = 0x8A;
+    pub(in super::super) const MOVE_PULSE: u16 = 0x8B;
+    pub(in super::super) const ALARM_TEXTS: u16 = 0x30A;
+    pub(in super::super) const HISTORY_TEXTS: u16 = 0x30B;
+}
+
+/// The memory that a variable, I/O or register command addresses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Store {
+    Variable(Kind),
+    Io,
+    Register,
+}
+
+impl Store {
+    const ALL: [(u16, Self); 21] = [
+        (command::IO, Self::Io),
+        (command::REGISTER, Self::Register),
+        (0x7A, Self::Variable(Kind::B)),
+        (0x7B, Self::Variable(Kind::I)),
+        (0x7C, Self::Variable(Kind::D)),
+        (0x7D, Self::Variable(Kind::R)),
+        (0x7E, Self::Variable(Kind::S)),
+        (0x7F, Self::Variable(Kind::P)),
+        (0x80, Self::Variable(Kind::Bp)),
+        (0x81, Self::Variable(Kind::Ex)),
+        (0x8C, Self::Variable(Kind::S)),
+        (0x300, Self::Io),
+        (0x301, Self::Register),
+        (0x302, Self::Variable(Kind::B)),
+        (0x303, Self::Variable(Kind::I)),
+        (0x304, Self::Variable(Kind::D)),
+        (0x305, Self::Variable(Kind::R)),
+        (0x306, Self::Variable(Kind::S)),
+        (0x307, Self::Variable(Kind::P)),
+        (0x308, Self::Variable(Kind::Bp)),
+        (0x309, Self::Variable(Kind::Ex)),
+    ];
+
+    pub(super) fn of(command: u16) -> Option<Self> {
+        if command == 0x30C {
+            return Some(Self::Variable(Kind::S));
+        }
+        Self::ALL.into_iter().find(|(number, _)| *number == command).map(|(_, store)| store)
+    }
+}
+
+impl World {
+    /// The bytes of an element as the command shows them: all of it, or the first 16 of a long string.
+    pub(super) fn read_element(&self, store: Store, instance: u16, size: usize) -> Answer {
+        let bytes = match store {
+            Store::Io => vec![self.io(instance)],
+            Store::Register => self.memory.register(instance).ok_or(Refusal::Instance)?.to_le_bytes().to_vec(),
+            Store::Variable(kind) => self
+                .memory
+                .element(kind, usize::from(instance))
+                .ok_or(Refusal::Added(code::UNDEFINED_DATA))?
+                .iter()
+                .copied()
+                .take(size)
+                .collect(),
+        };
+        Ok(bytes)
+    }
+
+    /// Stores an element whose bytes were checked.
+    fn write_element(&mut self, store: Store, instance: u16, bytes: &[u8]) {
+        match (store, bytes) {
+            (Store::Io, &[byte]) => self.memory.set_io(instance, byte),
+            (Store::Register, &[low, high]) => {
+                self.memory.write_register(instance, u16::from_le_bytes([low, high]));
+            }
+            (Store::Variable(kind), bytes) => self.memory.store(kind, usize::from(instance), bytes),
+            (Store::Io | Store::Register, _) => {}
+        }
+    }
+}
+
+/// Count and elements of a plural read.
+fn read_several(world: &World, row: &Row, plural: Plural, first: u16, last: u16, data: &[u8]) -> Answer {
+    let store = Store::of(row.number).ok_or(Refusal::Command)?;
+    let Ok(count) = <[u8; 4]>::try_from(data) else { return Err(Refusal::Added(code::REQUEST_SIZE)) };
+    let count = u32::from_le_bytes(count);
+    let range = plural_range(plural, count, first, last, code::ANSWER_SIZE)?;
+    let mut out = count.to_le_bytes().to_vec();
+    for instance in range {
+        out.extend(world.read_element(store, instance, row.size())?);
+    }
+    Ok(out)
+}
+
+/// Writes all elements, or none.
+fn write_several(world: &mut World, row: &Row, plural: Plural, first: u16, last: u16, data: &[u8]) -> Answer {
+    let store = Store::of(row.number).ok_or(Refusal::Command)?;
+    let Some((count, elements)) = data.split_first_chunk::<4>() else {
+        return Err(Refusal::Added(code::REQUEST_SIZE));
+    };
+    let count = u32::from_le_bytes(*count);
+    let range = plural_range(plural, count, first, last, code::REQUEST_SIZE)?;
+    if elements.len() != range.len() * row.size() {
+        return Err(Refusal::Added(code::REQUEST_SIZE));
+    }
+    world.may_write()?;
+    check_writable(world, row, *range.start())?;
+    check_writable(world, row, *range.end())?;
+    for element in elements.chunks_exact(row.size()) {
+        check_value(store, element)?;
+    }
+    for (instance, element) in range.zip(elements.chunks_exact(row.size())) {
+        world.write_element(store, instance, element);
+    }
+    Ok(Vec::new())
+}
+
+/// The instances of a plural request; they must stay inside the span that the first is in.
+fn plural_range(
+    plural: Plural,
+    count: u32,
+    first: u16,
+    last: u16,
+    too_many: u16,
+) -> Result<std::ops::RangeInclusive<u16>, Refusal> {
+    let Ok(count) = u16::try_from(count) else { return Err(Refusal::Added(too_many)) };
+    if count > plural.max {
+        return Err(Refusal::Added(too_many));
+    }
+    if count == 0 || plural.even && count % 2 == 1 {
+        return Err(Refusal::Added(code::OPERAND_RANGE));
+    }
+    match first.checked_add(count - 1).filter(|&end| end <= last) {
+        Some(end) => Ok(first..=end),
+        None => Err(Refusal::Instance),
+    }
+}
+
+fn write_one(world: &mut World, row: &Row, service: &Service, frame: &RequestFrame<'_>) -> Answer {
+    let Some(store) = Store::of(row.number) else { return world.operate(row, frame.instance, frame.data) };
+    let (instance, data) = (frame.instance, frame.data);
+    let element = match field_index(service, frame.attribute) {
+        None => whole_element(row, data)?,
+        // One word of a position: the rest stays, so there must be a rest.
+        Some(index) => {
+            let Ok(value) = <[u8; 4]>::try_from(data) else { return Err(Refusal::Added(code::REQUEST_SIZE)) };
+            let mut element = world.read_element(store, instance, row.size())?;
+            element[4 * index..][..4].copy_from_slice(&value);
+            element
+        }
+    };
+    world.may_write()?;
+    check_writable(world, row, instance)?;
+    check_value(store, &element)?;
+    world.write_element(store, instance, &element);
+    Ok(Vec::new())
+}
+
+/// The bytes of an element from a request's data: its own size, or four bytes that hold no more than it can.
+fn whole_element(row: &Row, data: &[u8]) -> Answer {
+    let size = row.size();
+    if data.len() == size {
+        return Ok(data.to_vec());
+    }
+    if size > 4 || data.len() != 4 {
+        return Err(Refusal::Added(code::REQUEST_SIZE));
+    }
+    let (value, fill) = data.split_at(size);
+    let negative = value.last().is_some_and(|byte| byte & 0x80 != 0) && row.number == INTEGER;
+    let fits = fill.iter().all(|&byte| byte == 0 || negative && byte == 0xFF);
+    if fits { Ok(value.to_vec()) } else { Err(Refusal::Added(code::RANGE)) }
+}
+
+/// The signed variables with fewer than four bytes.
+const INTEGER: u16 = 0x7B;
+
+fn check_writable(world: &World, row: &Row, instance: u16) -> Result<(), Refusal> {
+    match row.instances.find(world.model, instance) {
+        Some(span) if span.writable => Ok(()),
+        _ => Err(Refusal::Added(code::NO_ACCESS)),
+    }
+}
+
+/// What a position may hold: known type, tool, frame and forms (DX 3.3.16 to 3.3.18). Other elements hold anything.
+fn check_value(store: Store, element: &[u8]) -> Result<(), Refusal> {
+    let word = |index: usize| {
+        let bytes = element.get(4 * index..4 * index + 4).and_then(|bytes| <[u8; 4]>::try_from(bytes).ok());
+        bytes.map_or(0, u32::from_le_bytes)
+    };
+    let valid = match store {
+        Store::Variable(Kind::P) => {
+            matches!(word(0), 0 | 16..=19) && word(1) <= 0xFF && word(2) <= 63 && word(3) <= 63 && word(4) <= 0x1F
+        }
+        Store::Variable(Kind::Bp) => matches!(word(0), 0 | 16),
+        Store::Variable(Kind::Ex) => word(0) == 0,
+        Store::Variable(_) | Store::Io | Store::Register => true,
+    };
+    if valid { Ok(()) } else { Err(Refusal::Added(code::RANGE)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn software_versions_compare_by_number() {
+        assert_eq!(software("FS1.14.00A(JP/US)-00"), (1, 14));
+        assert!(software("FS1.3.00A(JP/US)-00") < FS_FULL_SOFTWARE);
+        assert_eq!(software("nonsense"), (0, 0));
+    }
+}

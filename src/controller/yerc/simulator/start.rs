@@ -1,0 +1,528 @@
+//! The start state: what a TOML file can say about the controller to be simulated.
+//!
+//! Everything has a default, so an empty file is a DX200 in play mode with command remote and servo power. What the
+//! file names comes on top of what a fresh controller has in it. Each mistake is told with its line.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use jiff::civil::DateTime;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::alarms::{AlarmLog, Class, alarm, sjis};
+use super::console;
+use super::defaults;
+use super::memory::{Kind, Memory};
+use super::motion::{AXES, Arm, Family, Group};
+use super::playback::Player;
+use super::storage::{Content, Storage, check_name};
+use super::world::{Holds, Meters, Mode, Switches, World};
+use crate::controller::Now;
+use crate::controller::yerc::Model;
+use crate::controller::yerc::payload::{
+    Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind,
+};
+
+/// What a simulated controller is like when it starts; [`Start::parse`] reads it, [`Start::default`] is a DX200.
+#[derive(Debug, Clone)]
+pub struct Start {
+    pub(super) world: World,
+    pub(super) seed: u64,
+    pub(super) answer_delay: Duration,
+    pub(super) busy: f64,
+    pub(super) backup_time: Duration,
+    pub(super) backup_size: u64,
+    pub(super) idle_limit: Duration,
+}
+
+impl Default for Start {
+    fn default() -> Self {
+        Self::for_model(Model::Dx200)
+    }
+}
+
+impl Start {
+    /// The default state of a model.
+    ///
+    /// # Panics
+    /// Never: the defaults are correct.
+    pub fn for_model(model: Model) -> Self {
+        let entries = Entries { model, ..Entries::default() };
+        build(&entries, "", &mut |_| Err(String::new())).expect("the defaults are correct")
+    }
+
+    /// Reads a start state. `read` fetches the files that entries name by `path`.
+    ///
+    /// The error says what is wrong, and in which line.
+    pub fn parse(text: &str, mut read: impl FnMut(&str) -> Result<Vec<u8>, String>) -> Result<Self, String> {
+        let entries: Entries = toml::from_str(text).map_err(|error| error.to_string())?;
+        build(&entries, text, &mut read)
+    }
+
+    /// The model it describes.
+    pub fn model(&self) -> Model {
+        self.world.model
+    }
+
+    /// Another seed for everything random.
+    #[must_use]
+    pub fn with_seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+
+    /// Refuses a share of robot requests as busy (D8FA), 0.0 to 1.0.
+    #[must_use]
+    pub fn with_busy(self, busy: f64) -> Self {
+        Self { busy: busy.clamp(0.0, 1.0), ..self }
+    }
+}
+
+/// The keys of the file.
+#[derive(Debug, Deserialize)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a key of its own")]
+#[serde(default, deny_unknown_fields)]
+struct Entries {
+    #[serde(deserialize_with = "model")]
+    model: Model,
+    seed: u64,
+    mode: Mode,
+    remote: bool,
+    servo: bool,
+    cycle: Spanned<String>,
+    /// Whether variables can be written in play mode (S2C541 = 0).
+    play_write: bool,
+    /// Date and time at the start.
+    clock: Spanned<String>,
+    /// Date and time from which running times count.
+    installed: Spanned<String>,
+    software: Option<String>,
+    robot_model: Option<String>,
+    application: Option<String>,
+    parameter_version: Option<String>,
+    /// Control groups, `R1` first.
+    groups: Vec<Spanned<String>>,
+    /// 6 or 7.
+    robot_axes: Spanned<usize>,
+    hours: Hours,
+    answer_delay_ms: u64,
+    busy: Spanned<f64>,
+    backup_seconds: u64,
+    backup_size: u64,
+    transfer_timeout_ms: u64,
+    capacity: u64,
+    replace_jobs: bool,
+    /// The job to execute.
+    job: Option<Spanned<String>>,
+    ladder_registers: Vec<Spanned<u16>>,
+    variables: BTreeMap<String, Spanned<Value>>,
+    registers: BTreeMap<String, Spanned<u16>>,
+    io: BTreeMap<String, Spanned<bool>>,
+    /// Pulses by group.
+    positions: BTreeMap<String, Spanned<Vec<i32>>>,
+    /// X, Y, Z in mm and a turn about Z in degrees, by number.
+    user_frames: BTreeMap<String, Spanned<[f64; 4]>>,
+    #[serde(rename = "alarm")]
+    alarms: Vec<AlarmEntry>,
+    history: Option<Vec<AlarmEntry>>,
+    #[serde(rename = "file")]
+    files: Vec<Spanned<FileEntry>>,
+    /// Whether the files of a fresh controller are there.
+    stock_files: bool,
+    #[serde(rename = "event")]
+    events: Vec<Spanned<Event>>,
+}
+
+impl Default for Entries {
+    fn default() -> Self {
+        let text = |text: &str| Spanned::new(0..0, text.to_owned());
+        Self {
+            model: Model::Dx200,
+            seed: 0,
+            mode: Mode::Play,
+            remote: true,
+            servo: true,
+            cycle: text("once"),
+            play_write: true,
+            clock: text("2026/03/14 08:00"),
+            installed: text("2025/10/10 15:49"),
+            software: None,
+            robot_model: None,
+            application: None,
+            parameter_version: None,
+            groups: ["R1", "B1", "S1"].map(text).to_vec(),
+            robot_axes: Spanned::new(0..0, 6),
+            hours: Hours::default(),
+            answer_delay_ms: 0,
+            busy: Spanned::new(0..0, 0.0),
+            backup_seconds: 3,
+            backup_size: 100_000,
+            transfer_timeout_ms: 5_000,
+            capacity: 256 << 20,
+            replace_jobs: false,
+            job: None,
+            ladder_registers: (540..550).map(|register| Spanned::new(0..0, register)).collect(),
+            variables: BTreeMap::new(),
+            registers: BTreeMap::new(),
+            io: BTreeMap::new(),
+            positions: BTreeMap::new(),
+            user_frames: BTreeMap::from([("1".to_owned(), Spanned::new(0..0, [500.0, 0.0, 0.0, 0.0]))]),
+            alarms: Vec::new(),
+            history: None,
+            files: Vec::new(),
+            stock_files: true,
+            events: Vec::new(),
+        }
+    }
+}
+
+/// Running times before the start.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Hours {
+    control: u32,
+    servo: u32,
+    playback: u32,
+    motion: u32,
+}
+
+impl Default for Hours {
+    fn default() -> Self {
+        Self { control: 2345, servo: 1890, playback: 1234, motion: 987 }
+    }
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+enum Value {
+    Integer(i64),
+    Real(f64),
+    Text(String),
+    Position(PositionEntry),
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PositionEntry {
+    /// pulse, base, robot, user or tool.
+    #[serde(rename = "type")]
+    kind: String,
+    axes: Vec<i32>,
+    #[serde(default)]
+    form: u8,
+    #[serde(default)]
+    extended_form: u8,
+    #[serde(default)]
+    tool: u8,
+    #[serde(default)]
+    user: u8,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AlarmEntry {
+    code: u32,
+    #[serde(default)]
+    data: u32,
+    #[serde(default, rename = "type")]
+    kind: u32,
+    time: Option<String>,
+    name: Option<String>,
+    class: Option<Class>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileEntry {
+    name: String,
+    text: Option<String>,
+    path: Option<String>,
+    size: Option<u64>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Event {
+    at_ms: u64,
+    #[serde(rename = "do")]
+    line: String,
+}
+
+fn model<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Model, D::Error> {
+    String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+}
+
+/// Says what is wrong with an entry, and where.
+struct Place<'a> {
+    text: &'a str,
+}
+
+impl Place<'_> {
+    fn wrong<T>(&self, entry: &Spanned<T>, what: impl std::fmt::Display) -> String {
+        let line = 1 + self.text.bytes().take(entry.span().start).filter(|&byte| byte == b'\n').count();
+        format!("line {line}: {what}")
+    }
+}
+
+fn build(
+    entries: &Entries,
+    text: &str,
+    read: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+) -> Result<Start, String> {
+    let at = Place { text };
+    let busy = *entries.busy.get_ref();
+    if !(0.0..=1.0).contains(&busy) {
+        return Err(at.wrong(&entries.busy, "busy is a share from 0 to 1"));
+    }
+    let mut world = bare_world(entries, &at)?;
+    if entries.stock_files {
+        defaults::fill(&mut world);
+    }
+    for (name, value) in &entries.variables {
+        let (kind, index) = Kind::parse(name).ok_or_else(|| at.wrong(value, format!("'{name}' is no variable")))?;
+        let bytes = element(kind, value.get_ref()).map_err(|what| at.wrong(value, format!("{name}: {what}")))?;
+        world.memory.store(kind, index, &bytes);
+    }
+    for (name, value) in &entries.registers {
+        let written = name.parse().is_ok_and(|number| world.memory.force_register(number, *value.get_ref()));
+        written.then_some(()).ok_or_else(|| at.wrong(value, format!("'{name}' is no register (0 to 999)")))?;
+    }
+    for (name, on) in &entries.io {
+        let written = name.parse().is_ok_and(|number| world.memory.set_signal(number, *on.get_ref()));
+        written.then_some(()).ok_or_else(|| at.wrong(on, format!("'{name}' is no signal of this model")))?;
+    }
+    for (name, pulses) in &entries.positions {
+        let group = world.arm.groups.iter_mut().find(|group| group.name() == *name);
+        let group = group.ok_or_else(|| at.wrong(pulses, format!("group '{name}' is not fitted")))?;
+        let values = pulses.get_ref();
+        if values.len() != group.axes {
+            return Err(at.wrong(pulses, format!("{name} has {} axes, not {}", group.axes, values.len())));
+        }
+        group.pulses.iter_mut().zip(values).for_each(|(pulse, value)| *pulse = f64::from(*value));
+    }
+    files(&mut world, &entries.files, &at, read)?;
+    alarms(&mut world, entries);
+    if let Some(job) = &entries.job {
+        let name = sjis(job.get_ref());
+        let program = world.files.program(&name);
+        let program = program.ok_or_else(|| at.wrong(job, format!("there is no job '{}'", job.get_ref())))?;
+        world.player.select(&name, program, 0);
+    }
+    events(&mut world, &entries.events, &at)?;
+    Ok(Start {
+        world,
+        seed: entries.seed,
+        answer_delay: Duration::from_millis(entries.answer_delay_ms),
+        busy,
+        backup_time: Duration::from_secs(entries.backup_seconds),
+        backup_size: entries.backup_size,
+        idle_limit: Duration::from_millis(entries.transfer_timeout_ms),
+    })
+}
+
+/// The controller with nothing in it.
+fn bare_world(entries: &Entries, at: &Place<'_>) -> Result<World, String> {
+    let [software, robot_model, application, parameter_version] = defaults::versions(entries.model);
+    let or = |entry: &Option<String>, default: &str| entry.clone().unwrap_or_else(|| default.to_owned());
+    let hours = |hours: u32| Duration::from_secs(3600 * u64::from(hours));
+    let mut memory = Memory::new(entries.model);
+    for register in &entries.ladder_registers {
+        if memory.register(*register.get_ref()).is_none() {
+            return Err(at.wrong(register, "registers are 0 to 999"));
+        }
+        memory.ladder.push(*register.get_ref());
+    }
+    let mut user_frames = Vec::new();
+    for (name, frame) in &entries.user_frames {
+        let number = name.parse().ok().filter(|number| (1..=63).contains(number));
+        user_frames.push((number.ok_or_else(|| at.wrong(frame, "user frames are 1 to 63"))?, *frame.get_ref()));
+    }
+    let cycle = console::cycle(entries.cycle.get_ref());
+    let time = |entry: &Spanned<String>| {
+        DateTime::strptime("%Y/%m/%d %H:%M", entry.get_ref())
+            .map_err(|_| at.wrong(entry, "a time looks like \"2026/03/14 08:00\""))
+    };
+    Ok(World {
+        model: entries.model,
+        software: or(&entries.software, software),
+        robot_model: or(&entries.robot_model, robot_model),
+        application: or(&entries.application, application),
+        parameter_version: or(&entries.parameter_version, parameter_version),
+        clock: time(&entries.clock)?,
+        installed: time(&entries.installed)?,
+        now: Now::ZERO,
+        switches: Switches {
+            mode: entries.mode,
+            remote: entries.remote,
+            servo: entries.servo,
+            cycle: cycle.ok_or_else(|| at.wrong(&entries.cycle, "cycle is step, once or continuous"))?,
+            hold: Holds::default(),
+            guard: false,
+            hlock: false,
+            estop: false,
+            editing: false,
+            converting: false,
+            play_lock: !entries.play_write,
+            error: false,
+            message: Vec::new(),
+        },
+        alarms: AlarmLog::default(),
+        memory,
+        arm: Arm::new(groups(entries, at)?),
+        player: Player::default(),
+        files: Storage::new(entries.capacity, entries.replace_jobs),
+        meters: Meters {
+            control: hours(entries.hours.control),
+            servo: hours(entries.hours.servo),
+            playback: hours(entries.hours.playback),
+            motion: hours(entries.hours.motion),
+        },
+        user_frames,
+        events: std::collections::VecDeque::new(),
+        mode_changes: 0,
+    })
+}
+
+fn groups(entries: &Entries, at: &Place<'_>) -> Result<Vec<Group>, String> {
+    let axes = *entries.robot_axes.get_ref();
+    if !(6..=7).contains(&axes) {
+        return Err(at.wrong(&entries.robot_axes, "a robot has 6 or 7 axes"));
+    }
+    let most = |family| match (family, entries.model) {
+        (Family::Station, Model::Fs100) => 3,
+        (Family::Station, Model::Dx200) => 24,
+        (Family::Robot | Family::Base, Model::Fs100) => 2,
+        (Family::Robot | Family::Base, Model::Dx200) => 8,
+    };
+    let mut groups = Vec::<Group>::new();
+    for name in &entries.groups {
+        let group = Group::parse(name.get_ref(), axes).filter(|group| group.number <= most(group.family));
+        let group = group.ok_or_else(|| at.wrong(name, format!("'{}' is no group of this model", name.get_ref())))?;
+        if groups.iter().any(|other| other.name() == group.name()) {
+            return Err(at.wrong(name, format!("{} is listed twice", group.name())));
+        }
+        groups.push(group);
+    }
+    Ok(groups)
+}
+
+/// The bytes of a variable.
+fn element(kind: Kind, value: &Value) -> Result<Vec<u8>, String> {
+    let range = |text: &str| format!("the value must be {text}");
+    match (kind, value) {
+        (Kind::B, &Value::Integer(value)) => {
+            u8::try_from(value).map(|value| vec![value]).map_err(|_| range("0 to 255"))
+        }
+        (Kind::I, &Value::Integer(value)) => {
+            i16::try_from(value).map(|value| value.to_le_bytes().to_vec()).map_err(|_| range("-32768 to 32767"))
+        }
+        (Kind::D, &Value::Integer(value)) => {
+            i32::try_from(value).map(|value| value.to_le_bytes().to_vec()).map_err(|_| range("32 bits, signed"))
+        }
+        (Kind::R, &Value::Real(value)) => Ok(single(value).to_le_bytes().to_vec()),
+        (Kind::R, &Value::Integer(value)) => {
+            i32::try_from(value).map(|value| single(value.into()).to_le_bytes().to_vec()).map_err(|_| range("smaller"))
+        }
+        (Kind::S, Value::Text(text)) => {
+            let bytes = sjis(text);
+            if bytes.len() > 32 { Err(range("at most 32 bytes")) } else { Ok(bytes) }
+        }
+        (Kind::P | Kind::Bp | Kind::Ex, Value::Position(entry)) => position(kind, entry),
+        _ => Err("the value has the wrong type for this variable".into()),
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "R variables hold single precision")]
+fn single(value: f64) -> f32 {
+    value as f32
+}
+
+fn position(kind: Kind, entry: &PositionEntry) -> Result<Vec<u8>, String> {
+    let named = PositionKind::ALL.into_iter().find(|(_, _, name)| *name == entry.kind);
+    let allowed = |known: PositionKind| match kind {
+        Kind::P => true,
+        Kind::Bp => matches!(known, PositionKind::Pulse | PositionKind::Base),
+        _ => known == PositionKind::Pulse,
+    };
+    let Some((word, ..)) = named.filter(|(known, ..)| allowed(*known)) else {
+        return Err(format!("a type '{}' is not possible here", entry.kind));
+    };
+    if entry.axes.len() > AXES || entry.tool > 63 || entry.user > 63 || entry.extended_form > 0x1F {
+        return Err("at most 8 axes, tool and user 0 to 63, extended_form 0 to 31".into());
+    }
+    let mut values = [0; AXES];
+    values.iter_mut().zip(&entry.axes).for_each(|(value, axis)| *value = *axis);
+    let axes = Axes::full(values);
+    Ok(match kind {
+        Kind::P => Position {
+            kind: word,
+            form: Form(entry.form.into()),
+            tool: entry.tool.into(),
+            user: entry.user.into(),
+            extended: ExtendedForm(entry.extended_form.into()),
+            axes,
+        }
+        .emit(),
+        Kind::Bp => BasePosition { kind: word, axes }.emit(),
+        _ => ExternalPosition { kind: word, axes }.emit(),
+    })
+}
+
+fn files(
+    world: &mut World,
+    entries: &[Spanned<FileEntry>],
+    at: &Place<'_>,
+    read: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+) -> Result<(), String> {
+    for spanned in entries {
+        let entry = spanned.get_ref();
+        let name = sjis(&entry.name);
+        if check_name(&name).is_err() {
+            return Err(at.wrong(spanned, format!("'{}' is no file name a controller has", entry.name)));
+        }
+        let content = match (&entry.text, &entry.path, entry.size) {
+            (Some(text), None, None) => sjis(&text.replace("\r\n", "\n").replace('\n', "\r\n")).into(),
+            (None, Some(path), None) => read(path).map_err(|what| at.wrong(spanned, format!("{path}: {what}")))?.into(),
+            (None, None, Some(size)) => Content::Generated { seed: size ^ name.len() as u64, size },
+            _ => return Err(at.wrong(spanned, "a file has one of text, path and size")),
+        };
+        world.files.install(&name, content);
+        let stem = name.strip_suffix(b".JBI");
+        if stem.is_some_and(|stem| world.files.program(stem).is_none()) {
+            return Err(at.wrong(spanned, format!("'{}' does not hold a job of that name", entry.name)));
+        }
+    }
+    Ok(())
+}
+
+fn alarms(world: &mut World, entries: &Entries) {
+    let now = world.timestamp();
+    let make = |entry: &AlarmEntry| {
+        let time = entry.time.as_deref().unwrap_or(&now);
+        alarm(entry.code, entry.data, entry.kind, time, entry.name.as_deref())
+    };
+    if let Some(history) = &entries.history {
+        world.alarms = AlarmLog::default();
+        for entry in history {
+            world.alarms.record(entry.class.unwrap_or_else(|| Class::of(entry.code)), make(entry));
+        }
+    }
+    for entry in &entries.alarms {
+        world.alarms.raise(make(entry));
+    }
+    if !entries.alarms.is_empty() {
+        world.switches.servo = false;
+    }
+}
+
+fn events(world: &mut World, entries: &[Spanned<Event>], at: &Place<'_>) -> Result<(), String> {
+    let mut sorted: Vec<_> = entries.iter().map(Spanned::get_ref).cloned().collect();
+    sorted.sort_by_key(|event| event.at_ms);
+    // Carried out in order on a copy, so that a mistake shows now and not in the middle of a run.
+    let mut copy = world.clone();
+    for entry in entries {
+        console::execute(&mut copy, &entry.get_ref().line).map_err(|what| at.wrong(entry, what))?;
+    }
+    world.events = sorted.into_iter().map(|event| (Duration::from_millis(event.at_ms), event.line)).collect();
+    Ok(())
+}

@@ -1,0 +1,281 @@
+//! The files of the controller: jobs, data, parameters, system and list files, and the batch backup.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::job::Program;
+use super::world::{Refusal, World, code};
+use crate::controller::yerc::Model;
+use crate::controller::yerc::table::BATCH_BACKUP_PATH;
+
+/// The extensions that can be listed, in the order of the manual (DX 3.4.4).
+const EXTENSIONS: [&[u8]; 6] = [JOB, b".DAT", b".CND", b".PRM", b".SYS", b".LST"];
+const JOB: &[u8] = b".JBI";
+/// Files that the controller writes itself: a client cannot replace them.
+const OWN: [&[u8]; 2] = [b".SYS", b".LST"];
+/// Longest job name, and longest path.
+const NAME_LEN: usize = 32;
+const PATH_LEN: usize = 64;
+
+/// What a file holds; large ones are made up as they are read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Content {
+    Bytes(Arc<[u8]>),
+    /// So many bytes that follow from a seed.
+    Generated {
+        seed: u64,
+        size: u64,
+    },
+}
+
+impl Content {
+    pub(super) fn size(&self) -> u64 {
+        match self {
+            Self::Bytes(bytes) => bytes.len() as u64,
+            Self::Generated { size, .. } => *size,
+        }
+    }
+
+    /// At most `len` bytes from `offset`.
+    pub(super) fn piece(&self, offset: u64, len: usize) -> Vec<u8> {
+        match self {
+            Self::Bytes(bytes) => {
+                let from = usize::try_from(offset).unwrap_or(usize::MAX).min(bytes.len());
+                bytes[from..bytes.len().min(from.saturating_add(len))].to_vec()
+            }
+            Self::Generated { seed, size } => {
+                let end = offset.saturating_add(len as u64).min(*size);
+                (offset..end).map(|at| scrambled(*seed, at / 8)[usize::from(at.to_le_bytes()[0] % 8)]).collect()
+            }
+        }
+    }
+}
+
+impl From<Vec<u8>> for Content {
+    fn from(bytes: Vec<u8>) -> Self {
+        Self::Bytes(bytes.into())
+    }
+}
+
+/// Eight bytes for a position (SplitMix64): each value occurs, NUL and line ends included.
+fn scrambled(seed: u64, word: u64) -> [u8; 8] {
+    let mut x = seed.wrapping_add(word.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    x = (x ^ x >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    x = (x ^ x >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+    (x ^ x >> 31).to_le_bytes()
+}
+
+/// A file and whether clients may delete it.
+#[derive(Debug, Clone)]
+struct File {
+    content: Content,
+    protected: bool,
+}
+
+/// All files by name, which is bytes in the pendant's language.
+#[derive(Debug, Clone)]
+pub(super) struct Storage {
+    files: BTreeMap<Vec<u8>, File>,
+    /// The batch backup, while one is on the RAM disk.
+    pub(super) backup: Option<Content>,
+    /// Bytes that all files together may have.
+    pub(super) capacity: u64,
+    /// Whether loading replaces a job of the same name; otherwise 4030.
+    pub(super) replace_jobs: bool,
+}
+
+impl Storage {
+    pub(super) fn new(capacity: u64, replace_jobs: bool) -> Self {
+        Self { files: BTreeMap::new(), backup: None, capacity, replace_jobs }
+    }
+
+    /// Puts a file there at the start; jobs can be deleted later, the rest belongs to the controller.
+    pub(super) fn install(&mut self, name: &[u8], content: Content) {
+        let protected = !name.ends_with(JOB);
+        self.files.insert(name.to_vec(), File { content, protected });
+    }
+
+    pub(super) fn get(&self, name: &[u8]) -> Option<&Content> {
+        self.files.get(name).map(|file| &file.content)
+    }
+
+    /// A job by its name without extension, ready to run.
+    pub(super) fn program(&self, name: &[u8]) -> Option<Program> {
+        let file = self.get(&[name, JOB].concat())?;
+        // Only what parses is ever stored as a job.
+        Program::parse(name, &file.piece(0, usize::try_from(file.size()).ok()?)).ok()
+    }
+
+    /// Bytes not in use.
+    pub(super) fn free(&self) -> u64 {
+        self.capacity.saturating_sub(self.files.values().map(|file| file.content.size()).sum())
+    }
+
+    /// The names that match a filter, each followed by CR LF; `None` for a filter that is none.
+    fn list(&self, filter: &[u8]) -> Option<Vec<u8>> {
+        let extension = match filter {
+            b"" | b"*.*" => JOB,
+            _ => filter.strip_prefix(b"*").filter(|extension| EXTENSIONS.contains(extension))?,
+        };
+        let names = self.files.keys().filter(|name| name.ends_with(extension));
+        Some(names.flat_map(|name| [name, &b"\r\n"[..]].concat()).collect())
+    }
+}
+
+/// What comes of a request for a list or a file.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Found {
+    /// These bytes.
+    Content(Content),
+    /// Nothing, with the added status that says so beside a good status.
+    Nothing(u16),
+}
+
+impl World {
+    /// Service 0x32.
+    pub(super) fn list_files(&self, filter: &[u8]) -> Result<Found, Refusal> {
+        let names = self.files.list(filter).ok_or(Refusal::Added(code::PATH))?;
+        match (names.is_empty(), self.model) {
+            (false, _) => Ok(Found::Content(names.into())),
+            (true, Model::Dx200) => Ok(Found::Nothing(code::NO_MATCH)),
+            (true, Model::Fs100) => Err(Refusal::Added(code::NO_SUCH_FILE)),
+        }
+    }
+
+    /// Service 0x16 for anything but the batch backup.
+    pub(super) fn read_file(&self, name: &[u8]) -> Result<Found, Refusal> {
+        check_name(name)?;
+        match (self.files.get(name), self.model) {
+            (Some(content), _) if content.size() > 0 => Ok(Found::Content(content.clone())),
+            (_, Model::Dx200) => Ok(Found::Nothing(code::NO_DATA)),
+            (None, Model::Fs100) if name.ends_with(JOB) => Err(Refusal::Added(code::NO_SUCH_JOB)),
+            (_, Model::Fs100) => Err(Refusal::Added(code::NO_SUCH_FILE)),
+        }
+    }
+
+    /// Service 0x09.
+    pub(super) fn delete_file(&mut self, name: &[u8]) -> Result<(), Refusal> {
+        self.may_change_files()?;
+        if name == BATCH_BACKUP_PATH {
+            return self.files.backup.take().map(drop).ok_or(Refusal::Added(code::NO_SUCH_FILE));
+        }
+        check_name(name)?;
+        let stem = name.strip_suffix(JOB);
+        match self.files.files.get(name) {
+            Some(File { protected: true, .. }) => return Err(Refusal::Added(code::NO_DELETE)),
+            Some(_) => {}
+            None if stem.is_some() => return Err(Refusal::Added(code::NO_SUCH_JOB)),
+            None => return Err(Refusal::Added(code::NO_SUCH_FILE)),
+        }
+        self.files.files.remove(name);
+        if let Some(stem) = stem {
+            self.player.forget(stem);
+        }
+        Ok(())
+    }
+
+    /// Whether a file of this name may be loaded (service 0x15), as far as can be said before its content is here.
+    pub(super) fn may_load(&self, name: &[u8]) -> Result<(), Refusal> {
+        self.may_change_files()?;
+        check_name(name)?;
+        if name.ends_with(JOB) && !self.files.replace_jobs && self.files.get(name).is_some() {
+            return Err(Refusal::Added(code::JOB_EXISTS));
+        }
+        if OWN.iter().any(|extension| name.ends_with(extension)) {
+            let code = match self.model {
+                Model::Dx200 => code::NO_OVERWRITE,
+                Model::Fs100 => code::NOT_LOADED,
+            };
+            return Err(Refusal::Added(code));
+        }
+        Ok(())
+    }
+
+    /// Stores a loaded file; a job must be one.
+    pub(super) fn load_file(&mut self, name: &[u8], bytes: Vec<u8>) -> Result<(), Refusal> {
+        self.may_load(name)?;
+        if let Some(stem) = name.strip_suffix(JOB) {
+            Program::parse(stem, &bytes).map_err(Refusal::Added)?;
+            self.player.forget(stem);
+        }
+        let protected = self.files.files.get(name).is_some_and(|file| file.protected);
+        self.files.files.insert(name.to_vec(), File { content: bytes.into(), protected });
+        Ok(())
+    }
+
+    fn may_change_files(&self) -> Result<(), Refusal> {
+        self.may_command()?;
+        if self.switches.editing {
+            return Err(Refusal::Added(code::EDITING));
+        }
+        if self.is_running() {
+            return Err(Refusal::Added(code::MOVING));
+        }
+        Ok(())
+    }
+
+    /// Whether a batch backup can be made now (DX 3.4.5).
+    pub(super) fn may_back_up(&self) -> Result<(), Refusal> {
+        if !self.switches.remote {
+            return Err(Refusal::Added(match self.model {
+                Model::Dx200 => code::BACKUP_MODE,
+                Model::Fs100 => code::MODE,
+            }));
+        }
+        if self.is_running() {
+            return Err(Refusal::Added(code::OPERATING));
+        }
+        Ok(())
+    }
+}
+
+/// A name with one of the known extensions, without folders, and without the NUL that a controller takes for an empty name.
+pub(super) fn check_name(name: &[u8]) -> Result<(), Refusal> {
+    let refuse = |code| Err(Refusal::Added(code));
+    if name.is_empty() || name.contains(&0) {
+        return refuse(code::DATA_SIZE_ZERO);
+    }
+    if name.len() > PATH_LEN {
+        return refuse(code::PATH_LENGTH);
+    }
+    let Some(extension) = EXTENSIONS.into_iter().find(|extension| name.ends_with(extension)) else {
+        return refuse(code::PATH);
+    };
+    let stem = &name[..name.len() - extension.len()];
+    // 0x5C may be half of a Shift_JIS character, so only the slash is a folder here.
+    if stem.is_empty() || stem.contains(&b'/') || stem.contains(&b':') {
+        return refuse(code::PATH);
+    }
+    let invalid = |byte: &u8| *byte < b' ' || *byte == 0x7F || b"\"*?<>|,".contains(byte);
+    if stem.len() > NAME_LEN || stem.iter().any(invalid) {
+        return refuse(code::JOB_NAME);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn generated_content_is_the_same_however_it_is_cut() {
+        let content = Content::Generated { seed: 7, size: 1000 };
+        let whole = content.piece(0, 5000);
+        assert_eq!(whole.len(), 1000);
+        let pieces: Vec<u8> = (0..3).flat_map(|block| content.piece(block * 479, 479)).collect();
+        assert_eq!(pieces, whole);
+        assert_ne!(whole[..100], whole[100..200]);
+    }
+
+    #[test]
+    fn names_that_are_none() {
+        let code = |name: &[u8]| check_name(name).err();
+        assert_eq!(code(b"A.JBI"), None);
+        assert_eq!(code(b"\x83e\x83X\x83g.JBI"), None);
+        assert_eq!(code(b"A.JBI\0"), Some(Refusal::Added(code::DATA_SIZE_ZERO)));
+        assert_eq!(code(b"A.TXT"), Some(Refusal::Added(code::PATH)));
+        assert_eq!(code(b"../A.JBI"), Some(Refusal::Added(code::PATH)));
+        assert_eq!(code(&[b'A'; 70]), Some(Refusal::Added(code::PATH_LENGTH)));
+        assert_eq!(code(b"A*.JBI"), Some(Refusal::Added(code::JOB_NAME)));
+    }
+}

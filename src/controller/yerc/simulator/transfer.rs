@@ -1,0 +1,370 @@
+//! The file server: block transfers (DX 3.2.3 to 3.2.6, 3.4).
+//!
+//! The manual says nothing about loss. Here, what is repeated is answered again: a repeated ACK or request by the block
+//! that is waiting for its ACK, a repeated data block by its ACK. Repeats that come close upon the last frame are
+//! network echoes and get nothing, lest every copy breed another. One transfer is served at a time; it is dropped when
+//! nothing comes for a while (E28B) and when the mode changes (FFFE).
+//!
+//! The batch backup shares service and path with fetching its file, and no manual says how the two differ. Here the
+//! first request makes a backup and is answered without data when it is done; the next one fetches the file; once it
+//! was fetched to its end, another request makes a new one.
+
+use std::time::Duration;
+
+use super::robot::has;
+use super::storage::{Content, Found};
+use super::world::{Refusal, World, code};
+use crate::controller::Now;
+use crate::controller::yerc::Model;
+use crate::controller::yerc::table::{BATCH_BACKUP_PATH, Row, service};
+use crate::controller::yerc::wire::{AnswerFrame, Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
+
+/// A repeat within this time of the last frame is an echo.
+const ECHO: Duration = Duration::from_millis(20);
+/// A request within this time of the last frame of the same transfer is a copy of the one that began it.
+const COPY: Duration = Duration::from_millis(500);
+
+/// Where a transfer is.
+#[derive(Debug, Clone)]
+enum Stage {
+    /// Blocks go out; `block` waits for its ACK.
+    Sending { content: Content, block: u32, is_backup: bool },
+    /// Blocks come in; `received` of them have.
+    Receiving { name: Vec<u8>, bytes: Vec<u8>, received: u32 },
+    /// The backup is being written.
+    BackingUp { done: Now },
+    /// All is done; the last frame can still be repeated.
+    Finished { block: u32 },
+    /// Dropped; the next frame of it is told why.
+    Dropped(u16),
+}
+
+/// The conversation with one peer.
+#[derive(Debug, Clone)]
+struct Transfer {
+    peer: u64,
+    service: u8,
+    /// Id and data of the request that began it.
+    request: (u8, Vec<u8>),
+    /// Id of the latest frame, which answers bear.
+    id: u8,
+    stage: Stage,
+    last_frame: Vec<u8>,
+    sent: Now,
+    /// When the peer was heard last.
+    heard: Now,
+    mode_changes: u64,
+}
+
+impl Transfer {
+    /// Whether it still goes on.
+    fn is_open(&self) -> bool {
+        matches!(self.stage, Stage::Sending { .. } | Stage::Receiving { .. } | Stage::BackingUp { .. })
+    }
+
+    /// Whether a request is a late copy of the one that has just loaded a file. Beginning anew would spoil the repeated
+    /// last block of a client that did not get its ACK.
+    fn loaded_by(&self, peer: u64, request: &RequestFrame<'_>, now: Now) -> bool {
+        matches!(self.stage, Stage::Finished { .. })
+            && (self.peer, self.service, service::LOAD) == (peer, request.service, request.service)
+            && (self.request.0, self.request.1.as_slice()) == (request.id, request.data)
+            && AnswerFrame::parse(&self.last_frame).is_ok_and(|ack| ack.status.is_ok())
+            && now < self.heard + COPY
+    }
+
+    /// Whether it keeps others waiting. Once the last block is out only its ACK is missing, and that may be lost.
+    fn is_busy(&self) -> bool {
+        match &self.stage {
+            Stage::Sending { content, block, .. } => !is_last(content, *block),
+            _ => self.is_open(),
+        }
+    }
+}
+
+/// The file server's own state.
+#[derive(Debug, Clone)]
+pub(super) struct FileServer {
+    transfer: Option<Transfer>,
+    pub(super) backup_time: Duration,
+    pub(super) backup_size: u64,
+    pub(super) idle_limit: Duration,
+    backups: u64,
+}
+
+/// A frame for a peer.
+pub(super) type Reply = Option<(u64, Vec<u8>)>;
+
+impl FileServer {
+    pub(super) fn new(backup_time: Duration, backup_size: u64, idle_limit: Duration) -> Self {
+        Self { transfer: None, backup_time, backup_size, idle_limit, backups: 0 }
+    }
+
+    /// When a transfer times out or a backup is done.
+    pub(super) fn wake(&self) -> Option<Now> {
+        let transfer = self.transfer.as_ref()?;
+        match transfer.stage {
+            Stage::BackingUp { done } => Some(done),
+            Stage::Sending { .. } | Stage::Receiving { .. } => Some(transfer.heard.saturating_add(self.idle_limit)),
+            Stage::Finished { .. } | Stage::Dropped(_) => None,
+        }
+    }
+
+    /// Drops what has waited too long, and finishes a backup.
+    pub(super) fn advance(&mut self, world: &mut World, now: Now) -> Reply {
+        let due = self.wake().is_some_and(|at| at <= now);
+        let transfer = self.transfer.as_mut()?;
+        if transfer.is_open() && transfer.mode_changes != world.mode_changes {
+            transfer.stage = Stage::Dropped(code::MODE_CHANGED);
+        }
+        if !due {
+            return None;
+        }
+        match transfer.stage {
+            Stage::BackingUp { .. } => {
+                self.backups += 1;
+                world.files.backup = Some(Content::Generated { seed: self.backups, size: self.backup_size });
+                transfer.stage = Stage::Finished { block: LAST_BLOCK };
+                transfer.sent = now;
+                transfer.last_frame = frame(transfer.service, transfer.id, LAST_BLOCK, Status::OK, &[]);
+                Some((transfer.peer, transfer.last_frame.clone()))
+            }
+            Stage::Sending { .. } | Stage::Receiving { .. } => {
+                transfer.stage = Stage::Dropped(code::TIMED_OUT);
+                None
+            }
+            Stage::Finished { .. } | Stage::Dropped(_) => None,
+        }
+    }
+
+    /// Takes a frame of a client.
+    pub(super) fn receive(&mut self, world: &mut World, now: Now, peer: u64, request: &RequestFrame<'_>) -> Reply {
+        let reply = if request.ack {
+            self.continues(world, now, peer, request)
+        } else {
+            self.begins(world, now, peer, request)
+        };
+        reply.map(|bytes| (peer, bytes))
+    }
+
+    fn begins(&mut self, world: &mut World, now: Now, peer: u64, request: &RequestFrame<'_>) -> Option<Vec<u8>> {
+        if let Some(transfer) = self.transfer.as_mut().filter(|transfer| transfer.is_open()) {
+            if transfer.peer != peer && transfer.is_busy() {
+                let busy = match world.model {
+                    Model::Dx200 => code::FILE_BUSY,
+                    Model::Fs100 => code::FILE_IN_USE,
+                };
+                return Some(refusal(world, request, Refusal::Added(busy)));
+            }
+            let same =
+                transfer.peer == peer && transfer.service == request.service && transfer.request.1 == request.data;
+            if same && matches!(transfer.stage, Stage::BackingUp { .. }) {
+                // Asked again while the answer is being made.
+                transfer.id = request.id;
+                return None;
+            }
+            let at_start = match transfer.stage {
+                Stage::Sending { block, .. } => block == 1,
+                Stage::Receiving { received, .. } => received == 0,
+                _ => false,
+            };
+            if same && (at_start || transfer.request.0 == request.id && now < transfer.heard + COPY) {
+                return repeat(transfer, now, request.id);
+            }
+        }
+        if self.transfer.as_ref().is_some_and(|transfer| transfer.loaded_by(peer, request, now)) {
+            return None;
+        }
+        let result = self.open(world, now, peer, request);
+        Some(result.unwrap_or_else(|refused| refusal(world, request, refused))).filter(|bytes| !bytes.is_empty())
+    }
+
+    /// Starts what a request asks for; an empty frame where the answer comes later.
+    fn open(&mut self, world: &mut World, now: Now, peer: u64, request: &RequestFrame<'_>) -> Result<Vec<u8>, Refusal> {
+        let row =
+            Row::of_file(request.service, request.data).filter(|_| request.command == 0).ok_or(Refusal::Command)?;
+        if request.instance != 0 {
+            return Err(Refusal::Instance);
+        }
+        if request.attribute != 0 {
+            return Err(Refusal::Attribute);
+        }
+        if request.block != 0 {
+            return Err(Refusal::Added(code::BLOCK));
+        }
+        let stage = match request.service {
+            service::DELETE => {
+                world.delete_file(request.data)?;
+                return Ok(frame(request.service, request.id, LAST_BLOCK, Status::OK, &[]));
+            }
+            service::LOAD => {
+                world.may_load(request.data)?;
+                Stage::Receiving { name: request.data.to_vec(), bytes: Vec::new(), received: 0 }
+            }
+            _ if request.data == BATCH_BACKUP_PATH => {
+                if !has(world, row.availability) {
+                    return Err(Refusal::Added(code::PATH));
+                }
+                if let Some(content) = world.files.backup.clone() {
+                    Stage::Sending { content, block: 1, is_backup: true }
+                } else {
+                    world.may_back_up()?;
+                    Stage::BackingUp { done: now.saturating_add(self.backup_time) }
+                }
+            }
+            number => {
+                let found = if number == service::LIST {
+                    world.list_files(request.data)?
+                } else {
+                    world.read_file(request.data)?
+                };
+                match found {
+                    Found::Content(content) => Stage::Sending { content, block: 1, is_backup: false },
+                    Found::Nothing(added) => {
+                        let status = Status { code: 0, added_size: 1, added: added.into() };
+                        return Ok(frame(number, request.id, LAST_BLOCK, status, &[]));
+                    }
+                }
+            }
+        };
+        let last_frame = match &stage {
+            Stage::Sending { content, .. } => data_frame(request.service, request.id, content, 1),
+            Stage::Receiving { .. } => frame(request.service, request.id, 0, Status::OK, &[]),
+            _ => Vec::new(),
+        };
+        self.transfer = Some(Transfer {
+            peer,
+            service: request.service,
+            request: (request.id, request.data.to_vec()),
+            id: request.id,
+            stage,
+            last_frame: last_frame.clone(),
+            sent: now,
+            heard: now,
+            mode_changes: world.mode_changes,
+        });
+        Ok(last_frame)
+    }
+
+    /// A data block or an ACK.
+    fn continues(&mut self, world: &mut World, now: Now, peer: u64, request: &RequestFrame<'_>) -> Option<Vec<u8>> {
+        let known = |transfer: &&mut Transfer| transfer.peer == peer && transfer.service == request.service;
+        let Some(transfer) = self.transfer.as_mut().filter(known) else {
+            // An ACK that nothing waits for is a late copy; data that nobody asked for is an error.
+            let stray = request.service == service::LOAD;
+            return stray.then(|| refusal(world, request, Refusal::Added(code::ACK)));
+        };
+        transfer.id = request.id;
+        transfer.heard = now;
+        match &mut transfer.stage {
+            Stage::Dropped(reason) => {
+                let reason = *reason;
+                self.transfer = None;
+                Some(refusal(world, request, Refusal::Added(reason)))
+            }
+            Stage::BackingUp { .. } => None,
+            Stage::Finished { block } => {
+                let repeats = request.service == service::LOAD && request.block == *block;
+                if repeats { repeat(transfer, now, request.id) } else { None }
+            }
+            Stage::Sending { content, block, is_backup } => {
+                let current = if is_last(content, *block) { *block | LAST_BLOCK } else { *block };
+                if request.block == current {
+                    if current & LAST_BLOCK != 0 {
+                        if *is_backup {
+                            world.files.backup = None;
+                        }
+                        transfer.stage = Stage::Finished { block: current };
+                        return None;
+                    }
+                    *block += 1;
+                    transfer.last_frame = data_frame(transfer.service, request.id, content, *block);
+                    transfer.sent = now;
+                    Some(transfer.last_frame.clone())
+                } else if request.block < *block {
+                    repeat(transfer, now, request.id)
+                } else {
+                    self.transfer = None;
+                    Some(refusal(world, request, Refusal::Added(code::ACK)))
+                }
+            }
+            Stage::Receiving { .. } => {
+                let (reply, goes_on) = take_block(transfer, world, now, request);
+                if !goes_on {
+                    self.transfer = None;
+                }
+                reply
+            }
+        }
+    }
+}
+
+/// Takes a data block of a load; says what to reply and whether the transfer goes on.
+fn take_block(
+    transfer: &mut Transfer,
+    world: &mut World,
+    now: Now,
+    request: &RequestFrame<'_>,
+) -> (Option<Vec<u8>>, bool) {
+    let Stage::Receiving { name, bytes, received } = &mut transfer.stage else { return (None, true) };
+    let last = request.block & LAST_BLOCK != 0;
+    let number = request.block & !LAST_BLOCK;
+    // A single block numbered 0x80000000 is what some clients send for 0x80000001.
+    let next = number == *received + 1 || last && number == 0 && *received == 0;
+    if !next && number == *received {
+        return (repeat(transfer, now, request.id), true);
+    }
+    if !next && number < *received {
+        return (None, true);
+    }
+    let refused = [
+        (!next, code::BLOCK),
+        (request.data.is_empty(), code::DATA_SIZE_ZERO),
+        ((bytes.len() + request.data.len()) as u64 > world.files.free(), code::MEMORY_FULL),
+    ]
+    .into_iter()
+    .find_map(|(refused, code)| refused.then_some(code));
+    if let Some(code) = refused {
+        return (Some(refusal(world, request, Refusal::Added(code))), false);
+    }
+    bytes.extend_from_slice(request.data);
+    *received += 1;
+    let status = if last {
+        let (name, bytes) = (std::mem::take(name), std::mem::take(bytes));
+        transfer.stage = Stage::Finished { block: request.block };
+        world.load_file(&name, bytes).map_or_else(|refused| refused.status(world.model), |()| Status::OK)
+    } else {
+        Status::OK
+    };
+    transfer.last_frame = frame(transfer.service, request.id, request.block, status, &[]);
+    transfer.sent = now;
+    (Some(transfer.last_frame.clone()), true)
+}
+
+/// The last frame once more, with the id of what asked for it; nothing for an echo.
+fn repeat(transfer: &mut Transfer, now: Now, id: u8) -> Option<Vec<u8>> {
+    if now < transfer.sent + ECHO {
+        return None;
+    }
+    transfer.sent = now;
+    transfer.id = id;
+    let last = AnswerFrame::parse(&transfer.last_frame).ok()?;
+    Some(AnswerFrame { id, ..last }.emit())
+}
+
+fn is_last(content: &Content, block: u32) -> bool {
+    u64::from(block) * MAX_DATA as u64 >= content.size()
+}
+
+fn data_frame(service: u8, id: u8, content: &Content, block: u32) -> Vec<u8> {
+    let data = content.piece(u64::from(block - 1) * MAX_DATA as u64, MAX_DATA);
+    let number = if is_last(content, block) { block | LAST_BLOCK } else { block };
+    frame(service, id, number, Status::OK, &data)
+}
+
+fn refusal(world: &World, request: &RequestFrame<'_>, refused: Refusal) -> Vec<u8> {
+    frame(request.service, request.id, LAST_BLOCK, refused.status(world.model), &[])
+}
+
+fn frame(service: u8, id: u8, block: u32, status: Status, data: &[u8]) -> Vec<u8> {
+    super::answer_frame(Division::File, service, id, block, status, data)
+}

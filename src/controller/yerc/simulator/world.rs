@@ -1,0 +1,391 @@
+//! The controller as a machine: switches, power, alarms, what may be done when, and the passing of time.
+
+use std::collections::VecDeque;
+
+use jiff::SignedDuration;
+use jiff::civil::DateTime;
+
+use super::alarms::{AlarmLog, alarm};
+use super::console;
+use super::memory::Memory;
+use super::motion::{Arm, End};
+use super::playback::Player;
+use super::storage::Storage;
+use crate::controller::Now;
+use crate::controller::yerc::Model;
+use crate::controller::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
+use crate::controller::yerc::wire::Status;
+
+/// Added status codes (DX chapter 4) that several parts answer.
+pub(super) mod code {
+    pub(in super::super) const OPERAND_RANGE: u16 = 0x1012;
+    pub(in super::super) const MOVING: u16 = 0x2010;
+    pub(in super::super) const HOLD_PENDANT: u16 = 0x2020;
+    pub(in super::super) const HOLD_EXTERNAL: u16 = 0x2040;
+    pub(in super::super) const HOLD_COMMAND: u16 = 0x2050;
+    pub(in super::super) const ALARM: u16 = 0x2060;
+    pub(in super::super) const SERVO_OFF: u16 = 0x2070;
+    pub(in super::super) const MODE: u16 = 0x2080;
+    pub(in super::super) const FILE_IN_USE: u16 = 0x2090;
+    pub(in super::super) const NOT_REMOTE: u16 = 0x2100;
+    pub(in super::super) const NO_ACCESS: u16 = 0x2110;
+    pub(in super::super) const NOT_LOADED: u16 = 0x2120;
+    pub(in super::super) const EDITING: u16 = 0x2130;
+    pub(in super::super) const CONVERTING: u16 = 0x2150;
+    pub(in super::super) const USER_FRAME_NOT_TAUGHT: u16 = 0x3350;
+    pub(in super::super) const WRONG_GROUP: u16 = 0x3370;
+    pub(in super::super) const SERVO_REFUSED: u16 = 0x3450;
+    pub(in super::super) const MEMORY_FULL: u16 = 0x4010;
+    pub(in super::super) const JOB_EXISTS: u16 = 0x4030;
+    pub(in super::super) const NO_SUCH_JOB: u16 = 0x4040;
+    pub(in super::super) const NO_JOB_SET: u16 = 0x4060;
+    pub(in super::super) const JOB_NAME: u16 = 0x4190;
+    pub(in super::super) const OPERATING: u16 = 0x6010;
+    pub(in super::super) const UNDEFINED_COMMAND: u16 = 0xA000;
+    pub(in super::super) const INSTANCE: u16 = 0xA001;
+    pub(in super::super) const ATTRIBUTE: u16 = 0xA002;
+    pub(in super::super) const ANSWER_SIZE: u16 = 0xA101;
+    pub(in super::super) const REQUEST_SIZE: u16 = 0xB003;
+    pub(in super::super) const RANGE: u16 = 0xB004;
+    pub(in super::super) const UNDEFINED_DATA: u16 = 0xB005;
+    pub(in super::super) const GROUP: u16 = 0xB008;
+    pub(in super::super) const SPEED: u16 = 0xB009;
+    pub(in super::super) const COORDINATE: u16 = 0xB00B;
+    pub(in super::super) const FORM: u16 = 0xB00C;
+    pub(in super::super) const TOOL: u16 = 0xB00D;
+    pub(in super::super) const USER_FRAME: u16 = 0xB00E;
+    pub(in super::super) const BUSY: u16 = 0xD8FA;
+    pub(in super::super) const BACKUP_MODE: u16 = 0xE250;
+    pub(in super::super) const TIMED_OUT: u16 = 0xE28B;
+    pub(in super::super) const NO_OVERWRITE: u16 = 0xE28C;
+    pub(in super::super) const NO_DATA: u16 = 0xE29C;
+    pub(in super::super) const PATH: u16 = 0xE2A0;
+    pub(in super::super) const NO_MATCH: u16 = 0xE2A7;
+    pub(in super::super) const NO_DELETE: u16 = 0xE2AF;
+    pub(in super::super) const NO_SUCH_FILE: u16 = 0xE2B3;
+    pub(in super::super) const PATH_LENGTH: u16 = 0xE2B4;
+    pub(in super::super) const FILE_BUSY: u16 = 0xE444;
+    pub(in super::super) const DATA_SIZE_ZERO: u16 = 0xE49D;
+    pub(in super::super) const FRAME_TOO_LONG: u16 = 0xE49E;
+    pub(in super::super) const BLOCK: u16 = 0xE4A1;
+    pub(in super::super) const ACK: u16 = 0xE4A2;
+    pub(in super::super) const DIVISION: u16 = 0xE4A3;
+    pub(in super::super) const HEADER_SIZE: u16 = 0xE4A5;
+    pub(in super::super) const IDENTIFIER: u16 = 0xE4A6;
+    pub(in super::super) const SIZE_DIFFERS: u16 = 0xE4A7;
+    pub(in super::super) const MODE_CHANGED: u16 = 0xFFFE;
+}
+
+/// Why a request is not carried out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Refusal {
+    /// Command or service not known.
+    Command,
+    /// Attribute number not known.
+    Attribute,
+    /// Instance number not known.
+    Instance,
+    /// Anything with an added status.
+    Added(u16),
+}
+
+impl Refusal {
+    /// How a model says it. The FS100 manual prints no status but 0x1F, so that model answers its A000 to A002.
+    pub(super) fn status(self, model: Model) -> Status {
+        let plain = |code| Status { code, ..Status::OK };
+        match (self, model) {
+            (Self::Command, Model::Dx200) => plain(0x08),
+            (Self::Attribute, Model::Dx200) => plain(0x09),
+            (Self::Instance, Model::Dx200) => plain(0x28),
+            (Self::Command, Model::Fs100) => Status::refused(code::UNDEFINED_COMMAND),
+            (Self::Attribute, Model::Fs100) => Status::refused(code::ATTRIBUTE),
+            (Self::Instance, Model::Fs100) => Status::refused(code::INSTANCE),
+            (Self::Added(added), _) => Status::refused(added),
+        }
+    }
+}
+
+/// The mode switch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Mode {
+    Teach,
+    Play,
+}
+
+/// The three sources of hold.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Holds {
+    pub(super) pendant: bool,
+    pub(super) external: bool,
+    pub(super) command: bool,
+}
+
+impl Holds {
+    /// The added status that names the source.
+    fn refusal(self) -> Option<u16> {
+        [(self.pendant, code::HOLD_PENDANT), (self.external, code::HOLD_EXTERNAL), (self.command, code::HOLD_COMMAND)]
+            .into_iter()
+            .find_map(|(held, code)| held.then_some(code))
+    }
+}
+
+/// Everything an operator can switch.
+#[derive(Debug, Clone)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+pub(super) struct Switches {
+    pub(super) mode: Mode,
+    /// Command remote (#82015).
+    pub(super) remote: bool,
+    pub(super) servo: bool,
+    pub(super) cycle: CycleMode,
+    pub(super) hold: Holds,
+    pub(super) guard: bool,
+    pub(super) hlock: bool,
+    pub(super) estop: bool,
+    /// Somebody edits a job on the pendant.
+    pub(super) editing: bool,
+    /// One of the screens is open during which axis names cannot be read (DX 3.3.5).
+    pub(super) converting: bool,
+    /// Parameter S2C541: variables and I/O may not be written in play mode.
+    pub(super) play_lock: bool,
+    /// An error (not an alarm) is shown.
+    pub(super) error: bool,
+    /// What command 0x85 put on the pendant.
+    pub(super) message: Vec<u8>,
+}
+
+/// Running-time counters (DX 3.3.25).
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Meters {
+    pub(super) control: Now,
+    pub(super) servo: Now,
+    pub(super) playback: Now,
+    pub(super) motion: Now,
+}
+
+/// The controller.
+#[derive(Debug, Clone)]
+pub(super) struct World {
+    pub(super) model: Model,
+    /// System software version, e.g. `FS1.14.00A(JP/US)-00`.
+    pub(super) software: String,
+    pub(super) robot_model: String,
+    pub(super) application: String,
+    pub(super) parameter_version: String,
+    /// Date and time when `Now` was zero.
+    pub(super) clock: DateTime,
+    /// When its running times began to count.
+    pub(super) installed: DateTime,
+    pub(super) now: Now,
+    pub(super) switches: Switches,
+    pub(super) alarms: AlarmLog,
+    pub(super) memory: Memory,
+    pub(super) arm: Arm,
+    pub(super) player: Player,
+    pub(super) files: Storage,
+    /// Counters when `Now` was zero and since.
+    pub(super) meters: Meters,
+    /// User frames that were taught: number and origin with its turn about Z.
+    pub(super) user_frames: Vec<(u32, [f64; 4])>,
+    /// Console lines to carry out at their time, in order.
+    pub(super) events: VecDeque<(Now, String)>,
+    /// Counts changes of mode and remote, on which file transfers are dropped.
+    pub(super) mode_changes: u64,
+}
+
+/// Steps of one call to [`World::advance`]; a longer gap passes at rest.
+const MAX_STEPS: u32 = 1_000_000;
+
+impl World {
+    /// Lets time pass up to `to`.
+    pub(super) fn advance(&mut self, to: Now) {
+        for _ in 0..MAX_STEPS {
+            let Some(next) = self.wake().filter(|&next| next <= to) else { break };
+            self.pass(next.max(self.now));
+            self.act();
+        }
+        self.pass(to.max(self.now));
+        self.act();
+    }
+
+    /// When something happens by itself.
+    pub(super) fn wake(&self) -> Option<Now> {
+        [self.arm.motion_end(), self.player.due(), self.events.front().map(|(at, _)| *at)].into_iter().flatten().min()
+    }
+
+    /// Counts the time from `now` to `to`, in which nothing switches.
+    fn pass(&mut self, to: Now) {
+        let span = to.saturating_sub(self.now);
+        self.meters.control += span;
+        for (counts, meter) in [
+            (self.switches.servo, &mut self.meters.servo),
+            (self.player.is_running(), &mut self.meters.playback),
+            (self.arm.is_moving(), &mut self.meters.motion),
+        ] {
+            if counts {
+                *meter += span;
+            }
+        }
+        self.now = to;
+    }
+
+    /// Does what is due now.
+    fn act(&mut self) {
+        match self.arm.advance(self.now) {
+            Some(End::Arrived) => self.motion_done(),
+            Some(End::Limit(group, axis)) => {
+                // Alarm type 21 names a group and the axis at its limit.
+                self.raise(4416, 1 << axis | u32::try_from(group).unwrap_or(0) << 16, 21, None);
+            }
+            Some(End::Stopped) | None => {}
+        }
+        self.play();
+        while self.events.front().is_some_and(|(at, _)| *at <= self.now) {
+            if let Some((_, line)) = self.events.pop_front() {
+                // Lines were tried when the start state was read; one that is refused by now has no effect, as on a pendant.
+                let _refused = console::execute(self, &line);
+            }
+        }
+    }
+
+    /// Date and time as alarms carry them.
+    pub(super) fn timestamp(&self) -> String {
+        let passed = SignedDuration::try_from(self.now).unwrap_or(SignedDuration::MAX);
+        format_time(self.clock.saturating_add(passed))
+    }
+
+    /// Raises an alarm: everything stops, and but for user alarms power goes off.
+    pub(super) fn raise(&mut self, code: u32, data: u32, kind: u32, name: Option<&str>) {
+        self.alarms.raise(alarm(code, data, kind, &self.timestamp(), name));
+        if code < 8000 {
+            self.power_off();
+        } else {
+            self.stop();
+        }
+    }
+
+    /// Brings motion to rest and leaves the job where it is.
+    pub(super) fn stop(&mut self) {
+        self.arm.brake(self.now);
+        self.player.stop();
+    }
+
+    /// Servo power off: brakes hold the axes where they are.
+    pub(super) fn power_off(&mut self) {
+        self.switches.servo = false;
+        self.arm.halt(self.now);
+        self.player.stop();
+    }
+
+    /// Whether a job runs or anything moves.
+    pub(super) fn is_running(&self) -> bool {
+        self.player.is_running() || self.arm.is_moving()
+    }
+
+    /// The two words of 0x72.
+    pub(super) fn status(&self) -> ControllerStatus {
+        let Switches { mode, remote, servo, cycle, hold, guard, error, .. } = self.switches;
+        [
+            (StatusBit::Step, cycle == CycleMode::Step),
+            (StatusBit::OneCycle, cycle == CycleMode::Once),
+            (StatusBit::Continuous, cycle == CycleMode::Continuous),
+            (StatusBit::Running, self.is_running()),
+            (StatusBit::Guarded, guard),
+            (StatusBit::Teach, mode == Mode::Teach),
+            (StatusBit::Play, mode == Mode::Play),
+            (StatusBit::CommandRemote, remote),
+            (StatusBit::HoldPendant, hold.pendant),
+            (StatusBit::HoldExternal, hold.external),
+            (StatusBit::HoldCommand, hold.command),
+            (StatusBit::Alarm, self.alarms.is_active()),
+            (StatusBit::Error, error),
+            (StatusBit::ServoOn, servo),
+        ]
+        .into_iter()
+        .fold(ControllerStatus::default(), |status, (bit, on)| status.with(bit, on))
+    }
+
+    /// An I/O byte; system outputs follow the state. Their places are this simulator's, after the usual ladder.
+    pub(super) fn io(&self, instance: u16) -> u8 {
+        let Switches { mode, remote, servo, hold, error, .. } = &self.switches;
+        let signals: &[(u8, bool)] = match instance {
+            5001 => &[
+                (0, self.alarms.major_is_active()),
+                (1, self.alarms.is_active() && !self.alarms.major_is_active()),
+                (4, *error),
+            ],
+            5005 => &[(0, *remote), (3, *mode == Mode::Play), (4, *mode == Mode::Teach)],
+            5007 => &[(0, self.is_running()), (1, hold.refusal().is_some()), (3, *servo)],
+            8201 => &[(5, *remote)],
+            _ => &[],
+        };
+        signals.iter().fold(self.memory.io(instance), |byte, &(bit, on)| byte & !(1 << bit) | u8::from(on) << bit)
+    }
+
+    /// Whether commands that change anything are taken at all.
+    pub(super) fn may_command(&self) -> Result<(), Refusal> {
+        if self.switches.remote { Ok(()) } else { Err(Refusal::Added(code::NOT_REMOTE)) }
+    }
+
+    /// Whether variables, I/O and registers may be written.
+    pub(super) fn may_write(&self) -> Result<(), Refusal> {
+        self.may_command()?;
+        let Switches { mode, editing, play_lock, .. } = self.switches;
+        if editing {
+            return Err(Refusal::Added(code::EDITING));
+        }
+        if play_lock && mode == Mode::Play {
+            return Err(Refusal::Added(code::NO_ACCESS));
+        }
+        Ok(())
+    }
+
+    /// Whether a motion or a job may begin.
+    pub(super) fn may_move(&self) -> Result<(), Refusal> {
+        let Switches { mode, servo, hold, editing, .. } = self.switches;
+        if mode == Mode::Teach {
+            return Err(Refusal::Added(code::MODE));
+        }
+        self.may_command()?;
+        let obstacle = [
+            (editing, code::EDITING),
+            (self.alarms.is_active() || self.switches.error, code::ALARM),
+            (!servo, code::SERVO_OFF),
+        ]
+        .into_iter()
+        .find_map(|(obstacle, code)| obstacle.then_some(code))
+        .or(hold.refusal())
+        .or(self.is_running().then_some(code::MOVING));
+        obstacle.map_or(Ok(()), |code| Err(Refusal::Added(code)))
+    }
+
+    /// Whether servo power may be switched on.
+    pub(super) fn may_power(&self) -> Result<(), Refusal> {
+        if self.alarms.is_active() {
+            return Err(Refusal::Added(code::ALARM));
+        }
+        if self.switches.estop {
+            return Err(Refusal::Added(code::SERVO_REFUSED));
+        }
+        Ok(())
+    }
+
+    /// Switches mode or remote; running work and transfers do not survive it.
+    pub(super) fn set_mode(&mut self, mode: Mode, remote: bool) {
+        if (self.switches.mode, self.switches.remote) == (mode, remote) {
+            return;
+        }
+        if self.switches.mode != mode {
+            self.stop();
+        }
+        self.switches.mode = mode;
+        self.switches.remote = remote;
+        self.mode_changes += 1;
+    }
+}
+
+/// `YYYY/MM/DD HH:MM`.
+pub(super) fn format_time(time: DateTime) -> String {
+    time.strftime("%Y/%m/%d %H:%M").to_string()
+}

@@ -1,0 +1,129 @@
+//! Pairs of request and answer captured from a controller, replayed where their file exists.
+//!
+//! The file is not part of the project; `ARMCTL_YERC_CAPTURES` names it. The controller is a YRC1000, whose requests for
+//! these commands are those of a DX200.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+#![expect(clippy::needless_pass_by_value, reason = "queries are built where they are sent")]
+
+use armctl::controller::yerc::Model::Dx200;
+use armctl::controller::yerc::describe::{Sender, describe};
+use armctl::controller::yerc::group::Group;
+use armctl::controller::yerc::payload::PositionKind;
+use armctl::controller::yerc::query::{
+    AlarmClass, Coordinates, Query, ReadAlarm, ReadAlarmHistory, ReadAxes, ReadJob, ReadManagementTime, ReadPosition,
+    ReadStatus, ReadSystemInfo, ReadTorque, SystemPart, TimeCounter,
+};
+use armctl::controller::yerc::request::Request;
+use armctl::controller::yerc::wire::{AnswerFrame, RequestFrame, Status};
+
+#[test]
+fn captured_pairs_replay() {
+    let Some(path) = std::env::var_os("ARMCTL_YERC_CAPTURES") else {
+        println!("skipped: ARMCTL_YERC_CAPTURES does not name the file of captured pairs");
+        return;
+    };
+    let json: serde_json::Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+    let pairs = json["pairs"].as_array().unwrap();
+    assert_eq!(pairs.len(), 15);
+    for pair in pairs {
+        let (sent, received) = (from_hex(pair["tx"].as_str().unwrap()), from_hex(pair["rx"].as_str().unwrap()));
+        let frame = RequestFrame::parse(&sent).unwrap();
+        let answer = AnswerFrame::parse(&received).unwrap();
+        assert_eq!(answer.emit(), received);
+        assert_eq!((answer.id, answer.service), (frame.id, frame.service + 0x80));
+        let request = Request {
+            command: frame.command,
+            instance: frame.instance,
+            attribute: frame.attribute,
+            service: frame.service,
+            data: frame.data.to_vec(),
+        };
+        replay(&request, &sent, frame.id, &answer);
+        for (frame, sender) in [(&sent, Sender::Client), (&received, Sender::Controller)] {
+            assert_eq!(Sender::guess(frame), sender);
+            let description = describe(frame, sender, Some(&request));
+            assert_eq!(description.problem, None);
+            assert_eq!(description.fields.iter().map(|field| field.size).sum::<usize>(), frame.len());
+        }
+    }
+}
+
+fn replay(request: &Request, sent: &[u8], id: u8, answer: &AnswerFrame<'_>) {
+    // Only running-time counters have instances beyond a byte, and those are told apart further on.
+    let instance = u8::try_from(request.instance).unwrap_or(u8::MAX);
+    match (request.command, instance) {
+        (0x70, slot) => {
+            let alarm = decoded(ReadAlarm::new(slot, false).unwrap(), sent, id, answer);
+            assert!(alarm.is_none());
+        }
+        (0x71, number) => {
+            let query = ReadAlarmHistory::new(AlarmClass::Major, number, false).unwrap();
+            let alarm = decoded(query, sent, id, answer);
+            assert!(!alarm.is_none() && alarm.kind.meaning().is_some());
+            assert_eq!(alarm.emit(), answer.data);
+        }
+        (0x72, 1) => {
+            let status = decoded(ReadStatus, sent, id, answer);
+            assert!(status.cycle().is_some());
+            assert_eq!(status.emit(), answer.data);
+        }
+        (0x73, 1) => {
+            let job = decoded(ReadJob::new(Dx200, 0).unwrap(), sent, id, answer);
+            assert!(!job.name.is_empty());
+            assert_eq!(job.emit(), answer.data);
+        }
+        (0x73, instance) => {
+            assert_eq!(ReadJob::new(Dx200, instance - 1).unwrap().request().frame(id), sent);
+            assert_eq!(answer.status, Status::refused(0xA001));
+        }
+        (0x74, 1) => {
+            let query = ReadAxes::new(Dx200, Group::R1, Coordinates::Pulse).unwrap();
+            let names = decoded(query, sent, id, answer);
+            assert_eq!(names.emit(), answer.data);
+        }
+        (0x75, 1) => {
+            let query = ReadPosition::new(Dx200, Group::R1, Coordinates::Pulse).unwrap();
+            let position = decoded(query, sent, id, answer);
+            assert_eq!((position.kind, position.axes.as_slice().len()), (PositionKind::Pulse, 6));
+            assert_eq!(position.emit_fitted(), answer.data);
+        }
+        (0x77, 1) => {
+            let torque = decoded(ReadTorque::new(Dx200, Group::R1).unwrap(), sent, id, answer);
+            assert_eq!((torque.as_slice().len(), torque.emit().as_slice()), (6, answer.data));
+        }
+        (0x88, _) => replay_time(request.instance, sent, id, answer),
+        (0x89, 11) => {
+            let query = ReadSystemInfo::new(Dx200, SystemPart::Group(Group::R1)).unwrap();
+            assert_eq!(decoded(query, sent, id, answer).emit(), answer.data);
+        }
+        (0x89, instance) => {
+            let query = ReadSystemInfo::new(Dx200, SystemPart::Application(instance - 100)).unwrap();
+            assert_eq!(decoded(query, sent, id, answer).emit(), answer.data);
+        }
+        other => panic!("no replay for {other:x?}"),
+    }
+}
+
+fn replay_time(instance: u16, sent: &[u8], id: u8, answer: &AnswerFrame<'_>) {
+    let counter = match instance {
+        1 => TimeCounter::ControlPower,
+        10 => TimeCounter::Servo(None),
+        110 => TimeCounter::Playback(None),
+        210 => TimeCounter::Motion(None),
+        _ => TimeCounter::Application(1),
+    };
+    let time = decoded(ReadManagementTime::new(Dx200, counter).unwrap(), sent, id, answer);
+    assert!(time.seconds().is_some());
+    assert_eq!(time.emit(), answer.data);
+}
+
+fn decoded<Q: Query>(query: Q, sent: &[u8], id: u8, answer: &AnswerFrame<'_>) -> Q::Answer {
+    assert_eq!(query.request().frame(id), sent);
+    assert!(answer.status.is_ok());
+    query.decode(answer.data).unwrap()
+}
+
+fn from_hex(text: &str) -> Vec<u8> {
+    (0..text.len()).step_by(2).map(|i| u8::from_str_radix(&text[i..i + 2], 16).unwrap()).collect()
+}
