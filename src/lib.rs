@@ -4,8 +4,11 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | [`app`] | from the words of a command line to an exit code |
+//! | [`cli`] | the command line: global flags and the first word |
 //! | [`settings`] | which robots, and every setting with where it came from; target URLs; the inventory |
 //! | [`gate`] | what stands between a typed command and a machine |
+//! | [`command`] | what the operator types: arguments, report, run; no bytes, no sockets |
 //! | [`controller`] | what each controller understands: tables, codecs, sessions, simulators; no sockets, no clock, no clap |
 //! | [`transport`] | moves bytes or images, knows no meaning |
 //! | [`output`] | the only writer to stdout and stderr; text made harmless for terminals |
@@ -14,6 +17,9 @@
 //! Dependencies run one way: command to controller, transport and output; controller and transport never see each other.
 //! A test holds that.
 
+pub mod app;
+pub mod cli;
+pub mod command;
 pub mod controller;
 pub mod failure;
 pub mod gate;

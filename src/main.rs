@@ -1,3 +1,7 @@
-//! The `armctl` binary.
+//! The `armctl` binary: words in, exit code out. `armctl::app` is where it begins.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    armctl::app::main(std::env::args_os())
+}

@@ -41,7 +41,7 @@ pub enum ColorChoice {
 }
 
 /// Where everything is written, and how.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub struct Screen {
     /// How data is written.
     pub format: Format,

@@ -81,7 +81,7 @@ impl Robot {
     /// How messages name it: `cell3 (udp://192.168.1.31)`.
     pub fn label(&self) -> String {
         let url = self.target.value.url();
-        if self.name == url { url.to_owned() } else { format!("{} ({url})", self.name) }
+        if self.target.origin == Origin::Robot { format!("{} ({url})", self.name) } else { url.to_owned() }
     }
 }
 

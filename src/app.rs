@@ -1,0 +1,176 @@
+//! From the words of a command line to an exit code.
+
+use std::ffi::OsString;
+use std::path::Path;
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{CommandFactory as _, Parser as _};
+
+use crate::cli::{Cli, Globals, Top};
+use crate::command::Noun as _;
+use crate::command::run::{Repeat, Run, Stopped};
+use crate::failure::{Failure, Kind};
+use crate::gate::Gate;
+use crate::output::envelope::Envelope;
+use crate::output::jq::Filter;
+use crate::output::{ColorChoice, Format, Screen};
+use crate::settings::duration;
+use crate::settings::inventory::{Inventory, Location, Options};
+use crate::settings::target::{Family, Target};
+use crate::settings::{Selection, Sources};
+
+/// Runs a command line, the program's name included, and says how the process ends.
+pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let args = with_family(args.into_iter().collect());
+    let cli = match Cli::try_parse_from(&args) {
+        Ok(cli) => cli,
+        Err(error) => return refuse(&args, error),
+    };
+    let screen = screen(&cli.globals);
+    match run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(stopped) => tell(&screen, stopped),
+    }
+}
+
+/// Started under the name of a family (a link to the binary), the program is that subcommand.
+fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
+    let name = args.first().and_then(|name| Path::new(name).file_stem()).and_then(|name| name.to_str());
+    if let Some(family) = name.and_then(|name| name.parse::<Family>().ok()) {
+        args.insert(1, family.name().into());
+    }
+    args
+}
+
+fn run(cli: Cli) -> Result<(), Stopped> {
+    let run = prepare(cli.globals)?;
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .map_err(|error| Failure::io("start", &error))?;
+    let done = runtime.block_on(async {
+        match cli.command {
+            Top::Yerc(noun) => run.robots(&*noun.command()).await,
+            Top::Common(common) => common.run(&run).await,
+        }
+    });
+    // A thread that waits for stdin or a name server must not hold up the end.
+    runtime.shutdown_background();
+    done
+}
+
+/// Flags, environment and inventory, read once.
+fn prepare(globals: Globals) -> Result<Run, Failure> {
+    let screen = screen(&globals);
+    let filter = globals.jq.as_deref().map(Filter::new).transpose()?;
+    let until = globals.until.as_deref().map(Filter::new).transpose()?;
+    let selection = Selection {
+        sim: globals.sim,
+        target: globals.target,
+        robots: globals.robot,
+        tags: globals.tag,
+        all: globals.all,
+        environment: variable("ARMCTL_TARGET", |url| url.parse::<Target>().map_err(|failure| failure.message))?,
+    };
+    // A robot that is told by flag needs no file; a broken file is an error for everybody else.
+    let location = Location::find(match globals.config {
+        Some(path) => Some(path),
+        None => variable("ARMCTL_CONFIG", |path| Ok(path.into()))?,
+    });
+    let inventory = if selection.sim || selection.target.is_some() {
+        Inventory { path: location.path().map(Path::to_owned), ..Inventory::default() }
+    } else {
+        Inventory::load(&location)?
+    };
+    let flags = Options {
+        timeout: globals.timeout,
+        retries: globals.retries,
+        encoding: globals.encoding,
+        ..Options::default()
+    };
+    let environment = Options {
+        timeout: variable("ARMCTL_TIMEOUT", duration::parse)?,
+        retries: variable("ARMCTL_RETRIES", |number| {
+            number.parse().map_err(|_| format!("'{number}' is no number of repetitions"))
+        })?,
+        encoding: variable("ARMCTL_ENCODING", |name| name.parse().map_err(|error| format!("{error}")))?,
+        ..Options::default()
+    };
+    Ok(Run {
+        screen,
+        sources: Sources { selection, flags, environment, inventory },
+        gate: Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt },
+        repeat: Repeat { every: globals.watch, count: globals.count, until, within: globals.within },
+        filter,
+        trace: globals.trace,
+    })
+}
+
+/// A variable of the environment; an empty one counts as not set, a wrong one is an error that names it.
+fn variable<T>(name: &str, parse: impl FnOnce(&str) -> Result<T, String>) -> Result<Option<T>, Failure> {
+    let Some(value) = std::env::var_os(name).filter(|value| !value.is_empty()) else { return Ok(None) };
+    let wrong = |why: String| Failure::usage(format!("{name}: {why}")).hint(format!("correct it, or unset {name}"));
+    let text = value.to_str().ok_or_else(|| wrong("it is not UTF-8".to_owned()))?;
+    parse(text).map(Some).map_err(wrong)
+}
+
+fn screen(globals: &Globals) -> Screen {
+    let format = match globals.format {
+        Some(format) => format,
+        None if globals.json || globals.jq.is_some() => Format::Json,
+        None => Format::Table,
+    };
+    Screen::new(format, globals.color, globals.quiet, globals.verbose)
+}
+
+/// Writes a failure once, in the form that was asked for.
+fn tell(screen: &Screen, Stopped { failure, envelope, told }: Stopped) -> ExitCode {
+    let exit = failure.kind.exit();
+    if !told && failure.kind != Kind::PipeClosed {
+        if screen.is_json() {
+            screen.failure_json(&envelope.unwrap_or_else(|| Envelope::failed(None, failure)));
+        } else {
+            screen.failure(&failure);
+        }
+    }
+    ExitCode::from(exit)
+}
+
+/// What the parser has to say: help and version on stdout, mistakes on stderr with exit code 2.
+fn refuse(args: &[OsString], error: clap::Error) -> ExitCode {
+    let has = |flag: &str| args.iter().any(|arg| arg == flag);
+    let is_json = has("--json")
+        || has("-ojson")
+        || has("--jq")
+        || args.windows(2).any(|pair| pair[0] == "-o" && pair[1] == "json");
+    let format = if is_json { Format::Json } else { Format::Table };
+    let screen = Screen::new(format, ColorChoice::Auto, false, 0);
+    let rendered = error.render();
+    if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
+        let text = if screen.stdout_color() { rendered.ansi().to_string() } else { rendered.to_string() };
+        return match screen.data(&text) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(failure) => tell(&screen, failure.into()),
+        };
+    }
+    if let Some(family) = absent_family(args) {
+        let failure = Failure::usage(format!("this version does not speak {family} yet"))
+            .hint("version 0.1.0 speaks yerc; CHANGELOG.md tells what came when");
+        return tell(&screen, failure.into());
+    }
+    if is_json {
+        let text = rendered.to_string();
+        let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
+        return tell(&screen, Failure::usage(message).hint("see --help").into());
+    }
+    screen.usage(&rendered);
+    ExitCode::from(Kind::Usage.exit())
+}
+
+/// The family that was typed although the command line does not have it.
+fn absent_family(args: &[OsString]) -> Option<Family> {
+    let first = args.iter().skip(1).find_map(|arg| arg.to_str()?.parse::<Family>().ok())?;
+    let known = Cli::command().get_subcommands().any(|command| command.get_name() == first.name());
+    (!known).then_some(first)
+}

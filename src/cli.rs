@@ -1,0 +1,145 @@
+//! The command line: global flags and the first word.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::command::{Verbs, common, yerc};
+use crate::controller::text::Encoding;
+use crate::gate::OnInterrupt;
+use crate::output::{ColorChoice, Format};
+use crate::settings::duration;
+use crate::settings::target::Target;
+
+/// Talk to industrial robot controllers from a terminal or a script.
+///
+/// Without a robot at hand, add --sim: every controller has a built-in simulator.
+#[derive(Debug, Parser)]
+#[command(
+    name = "armctl",
+    version,
+    disable_help_subcommand = true,
+    arg_required_else_help = true,
+    subcommand_required = true,
+    max_term_width = 100,
+    after_help = "Exit codes, targets, output, safety and scripting: `armctl help TOPIC`."
+)]
+pub struct Cli {
+    /// Flags of every command.
+    #[command(flatten)]
+    pub globals: Globals,
+    /// The first word.
+    #[command(subcommand)]
+    pub command: Top,
+}
+
+/// The first word of a command line.
+#[derive(Debug, Subcommand)]
+pub enum Top {
+    /// Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)
+    #[command(subcommand_required = true, arg_required_else_help = true)]
+    Yerc(Verbs<yerc::Yerc>),
+    /// Commands that every family shares
+    #[command(flatten)]
+    Common(common::Common),
+}
+
+/// Flags that every command takes, at any place of the line.
+#[derive(Debug, Args)]
+pub struct Globals {
+    /// Talk to the built-in simulator, in this process
+    #[arg(long, global = true, help_heading = "Which robot", conflicts_with_all = ["target", "robot", "all", "tag"])]
+    pub sim: bool,
+    /// Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)
+    #[arg(short, long, global = true, value_name = "URL", help_heading = "Which robot", conflicts_with_all = ["robot", "all", "tag"])]
+    pub target: Option<Target>,
+    /// Talk to a robot of the inventory, by name or pattern (repeatable)
+    #[arg(short, long, global = true, value_name = "NAME", help_heading = "Which robot")]
+    pub robot: Vec<String>,
+    /// Talk to every robot of the inventory
+    #[arg(long, global = true, hide_short_help = true, help_heading = "Which robot")]
+    pub all: bool,
+    /// Talk to the robots of the inventory with this tag (repeatable)
+    #[arg(long, global = true, hide_short_help = true, value_name = "TAG", help_heading = "Which robot")]
+    pub tag: Vec<String>,
+    /// The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)
+    #[arg(long, global = true, hide_short_help = true, value_name = "FILE", help_heading = "Which robot")]
+    pub config: Option<PathBuf>,
+
+    /// How to print data
+    #[arg(
+        short = 'o',
+        long = "format",
+        global = true,
+        hide_short_help = true,
+        value_name = "FORMAT",
+        help_heading = "Output"
+    )]
+    pub format: Option<Format>,
+    /// Print JSON (the same as -o json)
+    #[arg(long, global = true, help_heading = "Output", conflicts_with = "format")]
+    pub json: bool,
+    /// Print what a jq filter makes of the JSON
+    #[arg(long, global = true, hide_short_help = true, value_name = "FILTER", help_heading = "Output")]
+    pub jq: Option<String>,
+    /// Only errors and questions on stderr
+    #[arg(short, long, global = true, hide_short_help = true, help_heading = "Output", conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say more on stderr: -v a summary, -vv frames, -vvv bytes
+    #[arg(short, long, global = true, hide_short_help = true, action = clap::ArgAction::Count, help_heading = "Output")]
+    pub verbose: u8,
+    /// Colour
+    #[arg(
+        long,
+        global = true,
+        hide_short_help = true,
+        value_name = "WHEN",
+        default_value = "auto",
+        help_heading = "Output"
+    )]
+    pub color: ColorChoice,
+    /// Record the traffic: a .pcapng file for Wireshark, or - for text on stderr
+    #[arg(long, global = true, hide_short_help = true, value_name = "FILE", help_heading = "Output")]
+    pub trace: Option<PathBuf>,
+
+    /// Answer yes to the question before a motion
+    #[arg(short, long, global = true, help_heading = "Safety")]
+    pub yes: bool,
+    /// Send nothing; print what would be sent
+    #[arg(long, global = true, help_heading = "Safety")]
+    pub dry_run: bool,
+    /// What Ctrl-C does to a motion
+    #[arg(
+        long,
+        global = true,
+        hide_short_help = true,
+        value_name = "WHAT",
+        default_value = "stop",
+        help_heading = "Safety"
+    )]
+    pub on_interrupt: OnInterrupt,
+
+    /// Longest wait for an answer (ARMCTL_TIMEOUT)
+    #[arg(long, global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse, help_heading = "Link")]
+    pub timeout: Option<Duration>,
+    /// Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)
+    #[arg(long, global = true, hide_short_help = true, value_name = "N", help_heading = "Link")]
+    pub retries: Option<u32>,
+    /// Encoding of names and texts on the controller (ARMCTL_ENCODING)
+    #[arg(long, global = true, hide_short_help = true, value_name = "NAME", help_heading = "Link")]
+    pub encoding: Option<Encoding>,
+
+    /// Repeat a read, every second or every INTERVAL
+    #[arg(long, global = true, hide_short_help = true, value_name = "INTERVAL", num_args = 0..=1, default_missing_value = "1s", value_parser = duration::parse, help_heading = "Repeat")]
+    pub watch: Option<Duration>,
+    /// Stop after so many reads
+    #[arg(long, global = true, hide_short_help = true, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), help_heading = "Repeat")]
+    pub count: Option<u64>,
+    /// Repeat a read until a jq filter over its JSON is true
+    #[arg(long, global = true, hide_short_help = true, value_name = "FILTER", help_heading = "Repeat")]
+    pub until: Option<String>,
+    /// How long --until waits before it gives up with exit code 8
+    #[arg(long = "for", global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse, requires = "until", help_heading = "Repeat")]
+    pub within: Option<Duration>,
+}

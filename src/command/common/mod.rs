@@ -1,0 +1,50 @@
+//! Commands that are about no single controller.
+
+pub mod completions;
+mod explain;
+pub mod help;
+pub mod man;
+mod robots;
+pub mod schema;
+mod sim;
+
+use clap::Subcommand;
+
+use super::run::{Run, Stopped};
+
+/// Commands that every family shares.
+#[derive(Debug, Subcommand)]
+pub enum Common {
+    /// The inventory: list, show, add, remove
+    #[command(subcommand)]
+    Robots(robots::Robots),
+    /// Serve the simulators on real sockets
+    Sim(sim::Sim),
+    /// What an error or alarm code means and what to do
+    #[command(subcommand)]
+    Explain(explain::Explain),
+    /// Print the completion script of a shell
+    Completions(completions::Completions),
+    /// Write the man pages
+    Man(man::Man),
+    /// Print the JSON Schema of a report
+    Schema(schema::SchemaOf),
+    /// Explain a topic, or a command
+    Help(help::Help),
+}
+
+impl Common {
+    /// Does it.
+    pub async fn run(self, run: &Run) -> Result<(), Stopped> {
+        match self {
+            Self::Sim(sim) => return sim.run(run).await,
+            Self::Robots(robots) => robots.run(run),
+            Self::Explain(explain) => explain.run(run),
+            Self::Completions(completions) => completions.run(run),
+            Self::Man(man) => man.run(run),
+            Self::Schema(schema) => schema.run(run),
+            Self::Help(help) => help.run(run),
+        }
+        .map_err(Stopped::from)
+    }
+}

@@ -1,0 +1,296 @@
+//! `armctl robots`: the inventory.
+
+use std::path::Path;
+
+use clap::{Args, Subcommand};
+use schemars::JsonSchema;
+use serde::Serialize;
+use toml_edit::{ArrayOfTables, DocumentMut, Item, value};
+
+use crate::command::Report;
+use crate::command::run::Run;
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Table, View};
+use crate::settings::inventory::{Inventory, is_name, nearest};
+use crate::settings::target::{Family, Target};
+use crate::settings::{Setting, duration};
+
+/// What can be done with the inventory.
+#[derive(Debug, Subcommand)]
+pub enum Robots {
+    /// Every robot of the inventory
+    List,
+    /// One robot with every setting in force
+    Show(Show),
+    /// Add a robot
+    Add(Add),
+    /// Remove a robot
+    Remove(Remove),
+}
+
+/// Arguments of `robots show`.
+#[derive(Debug, Args)]
+pub struct Show {
+    /// Its name
+    name: String,
+    /// Say where each value came from
+    #[arg(long)]
+    origin: bool,
+}
+
+/// Arguments of `robots add`.
+#[derive(Debug, Args)]
+pub struct Add {
+    /// Its name
+    name: String,
+    /// Where it is, such as udp://192.168.1.31?model=dx200
+    url: Target,
+    /// Its family, where the URL does not tell
+    #[arg(long)]
+    family: Option<Family>,
+    /// Take read commands only
+    #[arg(long)]
+    read_only: bool,
+    /// A word to choose it by (repeatable)
+    #[arg(long = "with-tag", value_name = "TAG")]
+    tags: Vec<String>,
+    /// Make it the robot that is taken when none is named
+    #[arg(long)]
+    default: bool,
+}
+
+/// Arguments of `robots remove`.
+#[derive(Debug, Args)]
+pub struct Remove {
+    /// Its name
+    name: String,
+}
+
+impl Robots {
+    pub(super) fn run(self, run: &Run) -> Result<(), Failure> {
+        let inventory = &run.sources.inventory;
+        match self {
+            Self::List => run.local("robots.list", &List::of(inventory)),
+            Self::Show(show) => show.run(run),
+            Self::Add(add) => add.run(run),
+            Self::Remove(remove) => remove.run(run),
+        }
+    }
+}
+
+impl Show {
+    fn run(&self, run: &Run) -> Result<(), Failure> {
+        let entry = known(&run.sources.inventory, &self.name)?;
+        let robot = run.sources.resolved(entry, None)?;
+        fn row<T>(name: &'static str, setting: &Setting<T>, show: impl Fn(&T) -> String) -> Value {
+            Value { name, value: show(&setting.value), origin: setting.origin.to_string() }
+        }
+        let settings = vec![
+            row("target", &robot.target, ToString::to_string),
+            row("model", &robot.model, ToString::to_string),
+            row("read_only", &robot.read_only, ToString::to_string),
+            row("encoding", &robot.encoding, ToString::to_string),
+            row("timeout", &robot.timeout, |timeout| duration::display(*timeout)),
+            row("retries", &robot.retries, ToString::to_string),
+        ];
+        let family = robot.family.name();
+        run.local(
+            "robots.show",
+            &Shown { name: robot.name, family, tags: robot.tags, settings, with_origin: self.origin },
+        )
+    }
+}
+
+impl Add {
+    fn run(&self, run: &Run) -> Result<(), Failure> {
+        if !is_name(&self.name) {
+            return Err(Failure::usage(format!("'{}' is no robot name", self.name))
+                .hint("use letters, digits, '-', '_' and '.'"));
+        }
+        if run.sources.inventory.robots.iter().any(|robot| robot.name == self.name) {
+            return Err(Failure::usage(format!("there is a robot '{}' already", self.name))
+                .hint(format!("`armctl robots remove {}` removes it", self.name)));
+        }
+        let Some(family) = self.family.or(self.url.family()) else {
+            return Err(Failure::usage(format!("'{}' does not tell the family", self.url)).hint("add --family yerc"));
+        };
+        if !self.url.reaches(family) {
+            return Err(Failure::usage(format!("{family} is not reached over {}:", self.url.scheme()))
+                .hint("`armctl help targets` lists the URLs of each family"));
+        }
+        edit(run, |document| {
+            let mut robot = toml_edit::Table::new();
+            robot["name"] = value(&self.name);
+            robot["target"] = value(self.url.url());
+            if self.url.family().is_none() {
+                robot["family"] = value(family.name());
+            }
+            if self.read_only {
+                robot["read_only"] = value(true);
+            }
+            if !self.tags.is_empty() {
+                robot["tags"] = value(self.tags.iter().collect::<toml_edit::Array>());
+            }
+            let list = document.entry("robot").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
+            let list = list.as_array_of_tables_mut().ok_or("`robot` is no list of [[robot]] tables")?;
+            list.push(robot);
+            if self.default || list.len() == 1 {
+                document["default"] = value(&self.name);
+            }
+            Ok(())
+        })?;
+        run.screen.note(&format!("added {} ({})", self.name, self.url));
+        Ok(())
+    }
+}
+
+impl Remove {
+    fn run(&self, run: &Run) -> Result<(), Failure> {
+        known(&run.sources.inventory, &self.name)?;
+        edit(run, |document| {
+            let list = document.get_mut("robot").and_then(Item::as_array_of_tables_mut);
+            let list = list.ok_or("`robot` is no list of [[robot]] tables")?;
+            list.retain(|robot| robot.get("name").and_then(Item::as_str) != Some(&self.name));
+            if document.get("default").and_then(Item::as_str) == Some(&self.name) {
+                document.remove("default");
+            }
+            Ok(())
+        })?;
+        run.screen.note(&format!("removed {}", self.name));
+        Ok(())
+    }
+}
+
+/// Changes the file and keeps its comments; it is written beside and renamed.
+fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static str>) -> Result<(), Failure> {
+    let path = run.sources.inventory.path.as_deref().ok_or_else(|| {
+        Failure::new(Kind::Usage, "there is no home folder to keep robots.toml in").hint("name a file with --config")
+    })?;
+    let text = match std::fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
+        Err(error) => return Err(Failure::io(path.display(), &error)),
+    };
+    let mut document: DocumentMut =
+        text.parse().map_err(|error| Failure::usage(format!("{}: {error}", path.display())))?;
+    change(&mut document).map_err(|why| Failure::usage(format!("{}: {why}", path.display())))?;
+    let text = document.to_string();
+    // What would not be read again is not written.
+    Inventory::parse(&text, &path.display().to_string())?;
+    replace(path, text.as_bytes()).map_err(|error| Failure::io(path.display(), &error))
+}
+
+fn replace(path: &Path, content: &[u8]) -> std::io::Result<()> {
+    use std::io::Write as _;
+
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder)?;
+    let mut file = tempfile::NamedTempFile::new_in(folder)?;
+    file.write_all(content)?;
+    file.as_file().sync_all()?;
+    file.persist(path)?;
+    Ok(())
+}
+
+fn known<'a>(inventory: &'a Inventory, name: &str) -> Result<&'a crate::settings::inventory::Entry, Failure> {
+    inventory.robots.iter().find(|robot| robot.name == name).ok_or_else(|| {
+        let failure = Failure::usage(format!("there is no robot '{name}' in the inventory"));
+        match nearest(name, inventory.robots.iter().map(|robot| robot.name.as_str())) {
+            Some(near) => failure.hint(format!("did you mean '{near}'?")),
+            None => failure.hint("`armctl robots list` shows them, `armctl robots add` adds one"),
+        }
+    })
+}
+
+/// The inventory.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct List {
+    /// The file, whether it exists or not.
+    file: Option<String>,
+    robots: Vec<Listed>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct Listed {
+    name: String,
+    family: &'static str,
+    target: String,
+    read_only: bool,
+    /// Taken when no robot is named.
+    default: bool,
+    tags: Vec<String>,
+}
+
+impl List {
+    fn of(inventory: &Inventory) -> Self {
+        let robots = inventory.robots.iter().map(|robot| Listed {
+            name: robot.name.clone(),
+            family: robot.family.name(),
+            target: robot.target.url().to_owned(),
+            read_only: robot.options.read_only.or(inventory.defaults.read_only).unwrap_or(false),
+            default: inventory.default.as_ref() == Some(&robot.name),
+            tags: robot.tags.clone(),
+        });
+        Self { file: inventory.path.as_ref().map(|path| path.display().to_string()), robots: robots.collect() }
+    }
+}
+
+impl Report for List {
+    fn view(&self) -> View {
+        let mut table = Table::new(
+            &["name", "family", "target", "default", "read-only", "tags"],
+            "no robots yet; `armctl robots add cell1 udp://192.168.1.31` adds one",
+        );
+        let mark = |on: bool| if on { "yes" } else { "" };
+        for robot in &self.robots {
+            table.row([
+                robot.name.as_str().into(),
+                robot.family.into(),
+                robot.target.as_str().into(),
+                mark(robot.default).into(),
+                mark(robot.read_only).into(),
+                robot.tags.join(" ").into(),
+            ]);
+        }
+        View::table(table)
+    }
+}
+
+/// One robot with every setting in force.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Shown {
+    name: String,
+    family: &'static str,
+    tags: Vec<String>,
+    settings: Vec<Value>,
+    #[serde(skip)]
+    with_origin: bool,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct Value {
+    name: &'static str,
+    value: String,
+    /// flag, environment, target URL, robot, defaults or built-in.
+    origin: String,
+}
+
+impl Report for Shown {
+    fn view(&self) -> View {
+        let columns: &[&'static str] =
+            if self.with_origin { &["setting", "value", "from"] } else { &["setting", "value"] };
+        let mut table = Table::new(columns, "");
+        let (tags, family) = (self.tags.join(" "), self.family.to_owned());
+        let own = [("name", self.name.clone()), ("family", family), ("tags", tags)];
+        let own = own.into_iter().map(|(name, value)| (name, value, "robot".to_owned()));
+        let settings = self.settings.iter().map(|row| (row.name, row.value.clone(), row.origin.clone()));
+        for (name, value, origin) in own.chain(settings) {
+            let mut cells = vec![name.into(), value.into()];
+            if self.with_origin {
+                cells.push(origin.into());
+            }
+            table.rows.push(cells);
+        }
+        View::table(table)
+    }
+}

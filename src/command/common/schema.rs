@@ -1,0 +1,48 @@
+//! `armctl schema ID`: the JSON Schema of a report.
+
+use clap::Args;
+use serde_json::json;
+
+use crate::command::run::{Rehearsal, Run};
+use crate::command::yerc::{Yerc, link};
+use crate::command::{Noun, SchemaEntry};
+use crate::failure::Failure;
+use crate::settings::inventory::nearest;
+
+/// Prints the schema of `data` in the envelope, or the names of all reports.
+#[derive(Debug, Args)]
+pub struct SchemaOf {
+    /// The command, such as yerc.status; without it, all names
+    id: Option<String>,
+}
+
+impl SchemaOf {
+    pub(super) fn run(self, run: &Run) -> Result<(), Failure> {
+        let all = all();
+        let Some(id) = self.id else {
+            let names: String = all.iter().map(|entry| format!("{}\n", entry.id)).collect();
+            return run.screen.data(&names);
+        };
+        let Some(entry) = all.iter().find(|entry| entry.id == id) else {
+            let failure = Failure::usage(format!("there is no report '{id}'"));
+            return Err(match nearest(&id, all.iter().map(|entry| entry.id)) {
+                Some(near) => failure.hint(format!("did you mean '{near}'?")),
+                None => failure.hint("`armctl schema` lists them"),
+            });
+        };
+        run.screen.json(&json!((entry.schema)()))
+    }
+}
+
+/// The schemas of all reports.
+pub fn all() -> Vec<SchemaEntry> {
+    let mut all = <Yerc as Noun<link::Yerc>>::schemas();
+    all.extend([
+        SchemaEntry { id: "dry-run", schema: || schemars::schema_for!(Rehearsal) },
+        SchemaEntry { id: "explain.yerc", schema: || schemars::schema_for!(super::explain::Codes) },
+        SchemaEntry { id: "robots.list", schema: || schemars::schema_for!(super::robots::List) },
+        SchemaEntry { id: "sim.yerc", schema: || schemars::schema_for!(super::sim::Serving) },
+        SchemaEntry { id: "robots.show", schema: || schemars::schema_for!(super::robots::Shown) },
+    ]);
+    all
+}

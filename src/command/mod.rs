@@ -1,0 +1,235 @@
+//! What the operator types. No bytes and no sockets in here: those are behind each family's link.
+//!
+//! A command is a struct of its arguments that implements [`Command`]; a noun with verbs is a clap enum. Both are
+//! [`Noun`]s, and a line in the family's `commands!` list makes them part of the tool: command line, help, man page,
+//! completion and schema follow from it.
+
+pub mod common;
+pub mod run;
+pub mod yerc;
+
+use std::future::Future;
+use std::pin::Pin;
+
+use schemars::{JsonSchema, Schema};
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::controller::Risk;
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::View;
+use crate::settings::{self, Robot};
+
+/// What a command found out or did.
+pub trait Report: Serialize + JsonSchema {
+    /// As a person reads it.
+    fn view(&self) -> View;
+
+    /// Why the report is not a success although it is whole: a difference, a condition not met, a file that failed.
+    fn failure(&self) -> Option<Failure> {
+        None
+    }
+}
+
+/// What a command line needs beside its own arguments.
+#[derive(Debug)]
+pub struct Context<'a, F: Family> {
+    /// The robot.
+    pub robot: &'a Robot,
+    /// The connection to it.
+    pub link: &'a mut F::Link,
+    /// For progress and notes; reports go back to the caller.
+    pub screen: &'a Screen,
+}
+
+/// How a link may be used.
+#[derive(Debug, Clone)]
+pub struct Access {
+    /// Nothing riskier leaves: the last check, after the gate.
+    pub granted: Risk,
+    /// Note what would be sent instead of sending it.
+    pub dry_run: bool,
+    /// Where frames are recorded.
+    pub trace: Option<std::path::PathBuf>,
+}
+
+/// A controller family as the commands see it.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Family: Sized + 'static {
+    /// Its name.
+    const FAMILY: settings::target::Family;
+    /// A connection to one robot.
+    type Link;
+
+    /// Connects. With `dry_run` nothing is opened.
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Self::Link, Failure>;
+
+    /// Stops whatever moves, and says how: "HOLD is on".
+    async fn halt(link: &mut Self::Link) -> Result<String, Failure>;
+
+    /// What a dry run would have sent, in the order of sending.
+    fn rehearsed(link: &mut Self::Link) -> Vec<Value>;
+
+    /// Closes the connection, and says at `-v` what it was like.
+    async fn close(link: Self::Link, screen: &Screen) -> Result<(), Failure>;
+}
+
+/// A parsed command line for a robot.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Command {
+    /// The family it is for.
+    type Family: Family;
+    /// What it reports.
+    type Report: Report + 'static;
+    /// `yerc.status`: its name in envelopes and schemas.
+    const ID: &'static str;
+
+    /// The most that it does.
+    fn risk(&self) -> Risk {
+        Risk::Read
+    }
+
+    /// Completes "This will …" in the question before a motion.
+    fn intent(&self) -> String {
+        String::new()
+    }
+
+    /// Does it. In a dry run the future stays pending once all that can be foreseen is noted.
+    async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
+}
+
+/// [`Command`] without its types, for the one loop that runs them all.
+pub trait AnyCommand<F: Family> {
+    /// See [`Command::ID`].
+    fn id(&self) -> &'static str;
+    /// See [`Command::risk`].
+    fn risk(&self) -> Risk;
+    /// See [`Command::intent`].
+    fn intent(&self) -> String;
+    /// See [`Command::run`].
+    fn run<'a>(
+        &'a self,
+        context: Context<'a, F>,
+    ) -> Pin<Box<dyn Future<Output = Result<Box<dyn AnyReport>, Failure>> + 'a>>;
+}
+
+/// [`Report`] without its type.
+pub trait AnyReport {
+    /// The `data` of the envelope.
+    fn data(&self) -> Result<Value, Failure>;
+    /// See [`Report::view`].
+    fn view(&self) -> View;
+    /// See [`Report::failure`].
+    fn failure(&self) -> Option<Failure>;
+}
+
+impl<R: Report> AnyReport for R {
+    fn data(&self) -> Result<Value, Failure> {
+        serde_json::to_value(self).map_err(|error| Failure::local(format!("report as JSON: {error}")))
+    }
+
+    fn view(&self) -> View {
+        Report::view(self)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        Report::failure(self)
+    }
+}
+
+impl<C: Command> AnyCommand<C::Family> for C {
+    fn id(&self) -> &'static str {
+        C::ID
+    }
+
+    fn risk(&self) -> Risk {
+        Command::risk(self)
+    }
+
+    fn intent(&self) -> String {
+        Command::intent(self)
+    }
+
+    fn run<'a>(
+        &'a self,
+        context: Context<'a, C::Family>,
+    ) -> Pin<Box<dyn Future<Output = Result<Box<dyn AnyReport>, Failure>> + 'a>> {
+        Box::pin(async move {
+            let report = Command::run(self, context).await?;
+            Ok(Box::new(report) as Box<dyn AnyReport>)
+        })
+    }
+}
+
+/// The schema of a report, by command.
+#[derive(Debug, Clone, Copy)]
+pub struct SchemaEntry {
+    /// `yerc.status`.
+    pub id: &'static str,
+    /// Makes the schema of `data`.
+    pub schema: fn() -> Schema,
+}
+
+/// A command, or a noun that leads to commands by its verbs.
+pub trait Noun<F: Family> {
+    /// The command that was typed.
+    fn command(self) -> Box<dyn AnyCommand<F>>;
+    /// The schemas of all its reports.
+    fn schemas() -> Vec<SchemaEntry>;
+}
+
+impl<C: Command + 'static> Noun<C::Family> for C {
+    fn command(self) -> Box<dyn AnyCommand<C::Family>> {
+        Box::new(self)
+    }
+
+    fn schemas() -> Vec<SchemaEntry> {
+        vec![SchemaEntry { id: C::ID, schema: || schemars::schema_for!(C::Report) }]
+    }
+}
+
+/// Declares a clap enum of nouns or verbs: doc comment, name, and the type that holds its arguments.
+macro_rules! commands {
+    ($(#[$meta:meta])* $visibility:vis enum $name:ident of $family:ty {
+        $($(#[$doc:meta])* $variant:ident($arguments:ty),)*
+    }) => {
+        $(#[$meta])*
+        #[derive(Debug, clap::Subcommand)]
+        $visibility enum $name {
+            $($(#[$doc])* $variant($arguments),)*
+        }
+
+        impl $crate::command::Noun<$family> for $name {
+            fn command(self) -> Box<dyn $crate::command::AnyCommand<$family>> {
+                match self {
+                    $(Self::$variant(arguments) => $crate::command::Noun::<$family>::command(arguments),)*
+                }
+            }
+
+            fn schemas() -> Vec<$crate::command::SchemaEntry> {
+                let mut all = Vec::new();
+                $(all.extend(<$arguments as $crate::command::Noun<$family>>::schemas());)*
+                all
+            }
+        }
+    };
+}
+pub(crate) use commands;
+
+/// A noun of verbs as an argument struct, so that it can stand in a `commands!` list.
+#[derive(Debug, clap::Args)]
+pub struct Verbs<V: clap::Subcommand> {
+    #[command(subcommand)]
+    verb: V,
+}
+
+impl<F: Family, V: Noun<F> + clap::Subcommand> Noun<F> for Verbs<V> {
+    fn command(self) -> Box<dyn AnyCommand<F>> {
+        self.verb.command()
+    }
+
+    fn schemas() -> Vec<SchemaEntry> {
+        V::schemas()
+    }
+}

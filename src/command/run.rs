@@ -1,0 +1,395 @@
+//! The one loop that every robot command goes through: choose robots, pass the gate, run, report, repeat.
+
+use std::future::{Future, poll_fn};
+use std::path::PathBuf;
+use std::task::Poll;
+use std::time::Duration;
+
+use futures_util::StreamExt as _;
+use jiff::Timestamp;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
+use tokio::time::Instant;
+
+use super::{Access, AnyCommand, AnyReport, Context, Family, Report};
+use crate::controller::Risk;
+use crate::failure::{Failure, Kind};
+use crate::gate::{Gate, OnInterrupt};
+use crate::output::envelope::Envelope;
+use crate::output::jq::Filter;
+use crate::output::view::{Table, View};
+use crate::output::{Format, Screen, escape, render};
+use crate::settings::{Robot, Sources};
+
+/// What the command line says about how to run a command.
+#[derive(Debug)]
+pub struct Run {
+    /// Where to write.
+    pub screen: Screen,
+    /// Which robots, and their settings.
+    pub sources: Sources,
+    /// What is allowed.
+    pub gate: Gate,
+    /// How often.
+    pub repeat: Repeat,
+    /// `--jq`.
+    pub filter: Option<Filter>,
+    /// `--trace`.
+    pub trace: Option<PathBuf>,
+}
+
+/// `--watch`, `--count`, `--until`, `--for`.
+#[derive(Debug, Default)]
+pub struct Repeat {
+    /// Pause from start to start.
+    pub every: Option<Duration>,
+    /// Most runs.
+    pub count: Option<u64>,
+    /// Stop when this is true of the envelope.
+    pub until: Option<Filter>,
+    /// Longest time to wait for the condition.
+    pub within: Option<Duration>,
+}
+
+impl Repeat {
+    fn is_wanted(&self) -> bool {
+        self.every.is_some() || self.count.is_some() || self.until.is_some()
+    }
+}
+
+/// A failure on its way to stderr, with what the envelope needs to know.
+#[derive(Debug)]
+pub struct Stopped {
+    /// What happened.
+    pub failure: Failure,
+    /// To whom, in doing what.
+    pub envelope: Option<Envelope>,
+    /// The report on stdout tells it already: only the exit code is left.
+    pub told: bool,
+}
+
+impl From<Failure> for Stopped {
+    fn from(failure: Failure) -> Self {
+        Self { failure, envelope: None, told: false }
+    }
+}
+
+impl Stopped {
+    fn at<F: Family>(robot: &Robot, command: &dyn AnyCommand<F>, failure: Failure) -> Self {
+        let envelope = Some(Envelope::of(robot, command.id(), Err(failure.clone())));
+        Self { failure, envelope, told: false }
+    }
+}
+
+/// A report, or why there is none.
+type Outcome = Result<Box<dyn AnyReport>, Failure>;
+
+/// Pause between runs where only a condition or a count is given.
+const EVERY: Duration = Duration::from_secs(1);
+/// Robots talked to at the same time.
+const PARALLEL: usize = 64;
+
+impl Run {
+    /// Runs `command` on the robots it is for, and reports.
+    pub async fn robots<F: Family>(&self, command: &dyn AnyCommand<F>) -> Result<(), Stopped> {
+        let risk = command.risk();
+        if risk > Risk::Read && self.repeat.is_wanted() {
+            return Err(Failure::usage("--watch, --count and --until repeat commands that only read")
+                .hint("run this command once, and watch `status` or `position`")
+                .into());
+        }
+        let robots = self.sources.robots(Some(F::FAMILY))?;
+        let selection = &self.sources.selection;
+        let each_named = selection.robots.len() == robots.len() && selection.tags.is_empty();
+        Gate::pass_many(risk, &robots, each_named)?;
+        for robot in &robots {
+            let passed = self.gate.pass(&self.screen, robot, risk, &command.intent());
+            passed.map_err(|failure| Stopped::at(robot, command, failure))?;
+        }
+        match &robots[..] {
+            [robot] if !selection.is_plural() => self.one(command, robot).await,
+            robots => self.many(command, robots).await,
+        }
+    }
+
+    /// Reports what a command without a robot has to say.
+    pub fn local(&self, id: &str, report: &impl Report) -> Result<(), Failure> {
+        if self.is_for_people() {
+            self.show(&Report::view(report), Place::Alone)?;
+        } else {
+            self.emit(&Envelope::local(id, report.data()?))?;
+        }
+        Report::failure(report).map_or(Ok(()), Err)
+    }
+
+    async fn one<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Stopped> {
+        if self.repeat.is_wanted() && !self.gate.dry_run {
+            return self.watch(command, robot).await;
+        }
+        let report = self.once(command, robot).await.map_err(|failure| Stopped::at(robot, command, failure))?;
+        self.print(robot, command.id(), &*report, Place::Alone)?;
+        match report.failure() {
+            None => Ok(()),
+            Some(failure) => Err(Stopped { failure, envelope: None, told: !self.is_for_people() }),
+        }
+    }
+
+    /// Repeats a reading command, from start to start without drift.
+    async fn watch<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Stopped> {
+        let repeat = &self.repeat;
+        let every = repeat.every.unwrap_or(EVERY);
+        let began = Instant::now();
+        let mut runs = 0u32;
+        loop {
+            let place = if runs == 0 { Place::First } else { Place::Next };
+            runs = runs.saturating_add(1);
+            let silence = match self.once(command, robot).await {
+                Ok(report) => {
+                    self.print(robot, command.id(), &*report, place)?;
+                    if let Some(until) = &repeat.until
+                        && until.is_true(&as_value(&Envelope::of(robot, command.id(), report.data()))?)?
+                    {
+                        return Ok(());
+                    }
+                    None
+                }
+                // A robot that is silent for a while is what one watches for; anything else ends the watch.
+                Err(failure) if failure.kind == Kind::NoAnswer => {
+                    if self.is_for_people() {
+                        self.screen.failure(&failure);
+                    } else {
+                        self.emit(&timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
+                    }
+                    Some(failure)
+                }
+                Err(failure) => return Err(Stopped::at(robot, command, failure)),
+            };
+            let next = began + every.saturating_mul(runs);
+            let is_over = repeat.count.is_some_and(|count| u64::from(runs) >= count)
+                || repeat.within.is_some_and(|within| next.duration_since(began) > within);
+            if is_over {
+                return match (silence, &repeat.until) {
+                    (Some(failure), _) => Err(Stopped { failure, envelope: None, told: true }),
+                    (None, Some(_)) => {
+                        let failure = Failure::new(Kind::ConditionNotMet, "the condition of --until was not met");
+                        Err(Stopped::at(robot, command, failure.hint("--for sets how long to wait for it")))
+                    }
+                    (None, None) => Ok(()),
+                };
+            }
+            let rest = interruptible(tokio::time::sleep_until(next)).await;
+            rest.map_err(|failure| Stopped::at(robot, command, failure))?;
+        }
+    }
+
+    /// Runs on several robots at a time and reports in the order they were named.
+    async fn many<F: Family>(&self, command: &dyn AnyCommand<F>, robots: &[Robot]) -> Result<(), Stopped> {
+        let work = futures_util::stream::iter(robots).map(|robot| self.once(command, robot)).buffered(PARALLEL);
+        let outcomes: Vec<Outcome> = work.collect().await;
+        let mut envelopes = Vec::new();
+        let mut failures = Vec::new();
+        for (robot, outcome) in robots.iter().zip(&outcomes) {
+            let failure = outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |report| report.failure());
+            failures.extend(failure);
+            match outcome {
+                Ok(report) if self.is_for_people() => {
+                    self.show(&report.view(), Place::Among { robot, first: envelopes.is_empty() })?;
+                }
+                Err(failure) if self.is_for_people() => {
+                    let message = format!("{}: {}", robot.label(), failure.message);
+                    self.screen.failure(&Failure { message, ..failure.clone() });
+                }
+                outcome => {
+                    let report = outcome.as_ref().map(AsRef::as_ref).map_err(Clone::clone);
+                    let envelope = enveloped(robot, command.id(), report)?;
+                    if self.screen.format == Format::Jsonl {
+                        self.emit(&timed(envelope.clone()))?;
+                    }
+                    envelopes.push(envelope);
+                }
+            }
+        }
+        if self.screen.format != Format::Jsonl && !self.is_for_people() {
+            self.emit(&envelopes)?;
+        }
+        let told = !self.is_for_people();
+        match failures.pop() {
+            None => Ok(()),
+            Some(failure) if failures.len() + 1 == robots.len() && failures.iter().all(|f| f.kind == failure.kind) => {
+                Err(Stopped {
+                    failure: Failure { message: "every robot failed".into(), ..failure },
+                    envelope: None,
+                    told,
+                })
+            }
+            Some(_) => {
+                let message = format!("{} of {} robots failed", failures.len() + 1, robots.len());
+                Err(Stopped { failure: Failure::new(Kind::Mixed, message), envelope: None, told })
+            }
+        }
+    }
+
+    /// One connection, one run. Ctrl-C during a motion stops the robot first.
+    async fn once<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Outcome {
+        let risk = command.risk();
+        let access = Access { granted: risk, dry_run: self.gate.dry_run, trace: self.trace.clone() };
+        let mut link = interruptible(F::connect(robot, access, &self.screen)).await??;
+        let context = Context { robot, link: &mut link, screen: &self.screen };
+        if self.gate.dry_run {
+            // Such a link only takes notes; the command gets as far as it can without an answer.
+            let noted = {
+                let mut run = command.run(context);
+                poll_fn(|task| Poll::Ready(run.as_mut().poll(task))).await
+            };
+            return match noted {
+                Poll::Ready(Err(failure)) => Err(failure),
+                Poll::Ready(Ok(_)) | Poll::Pending => Ok(Box::new(Rehearsal { frames: F::rehearsed(&mut link) })),
+            };
+        }
+        let outcome = match interruptible(command.run(context)).await {
+            Ok(outcome) => outcome,
+            Err(_) if risk == Risk::Motion && self.gate.on_interrupt == OnInterrupt::Stop => {
+                Err(match F::halt(&mut link).await {
+                    Ok(how) => Failure::new(Kind::Interrupted, format!("the robot was stopped: {how}")),
+                    Err(failure) => Failure::new(Kind::Interrupted, format!("the robot may still move: {failure}"))
+                        .hint("use the pendant or the emergency stop if it must not"),
+                })
+            }
+            Err(interrupt) => Err(interrupt),
+        };
+        F::close(link, &self.screen).await?;
+        outcome
+    }
+
+    fn is_for_people(&self) -> bool {
+        self.filter.is_none() && matches!(self.screen.format, Format::Table | Format::Csv)
+    }
+
+    fn print(&self, robot: &Robot, id: &str, report: &dyn AnyReport, place: Place<'_>) -> Result<(), Failure> {
+        if self.is_for_people() {
+            return self.show(&report.view(), place);
+        }
+        let envelope = enveloped(robot, id, Ok(report))?;
+        let is_stream = self.screen.format == Format::Jsonl || !matches!(place, Place::Alone);
+        self.emit(&if is_stream { timed(envelope) } else { envelope })
+    }
+
+    /// Writes JSON, or what the filter makes of it: strings as they are, the rest as JSON, a line each.
+    fn emit(&self, value: &impl Serialize) -> Result<(), Failure> {
+        let Some(filter) = &self.filter else { return self.screen.json(value) };
+        for value in filter.apply(&as_value(value)?)? {
+            match value {
+                Value::String(text) => self.screen.data(&format!("{}\n", escape::lines(&text)))?,
+                value => self.screen.json(&value)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn show(&self, view: &View, place: Place<'_>) -> Result<(), Failure> {
+        let screen = &self.screen;
+        let is_csv = screen.format == Format::Csv;
+        let text = match place {
+            _ if is_csv => {
+                let robot = if let Place::Among { robot, .. } = place { Some(robot.name.as_str()) } else { None };
+                let csv = render::csv(view, robot);
+                let has_header = matches!(place, Place::Alone | Place::First | Place::Among { first: true, .. });
+                if has_header { csv } else { csv.split_once('\n').map_or(String::new(), |(_, rows)| rows.to_owned()) }
+            }
+            _ => {
+                let text = render::text(view, screen.width(), screen.stdout_color());
+                match place {
+                    Place::Alone | Place::First => text,
+                    Place::Next => format!("\n{text}"),
+                    Place::Among { robot, first } => {
+                        format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(&robot.label()))
+                    }
+                }
+            }
+        };
+        screen.data(&text)
+    }
+}
+
+/// Where a report stands among others.
+#[derive(Debug, Clone, Copy)]
+enum Place<'a> {
+    /// The only one.
+    Alone,
+    /// The first of a watch.
+    First,
+    /// A later one of a watch.
+    Next,
+    /// One of several robots.
+    Among { robot: &'a Robot, first: bool },
+}
+
+/// What a dry run reports.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Rehearsal {
+    /// What would be sent, in order: `{"hex":…}` (yerc), `{"wi":[…]}` (yrcx), `{"text":…}` (toyo).
+    pub frames: Vec<Value>,
+}
+
+impl Report for Rehearsal {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["#", "would be sent"], "nothing would be sent");
+        for (index, frame) in self.frames.iter().enumerate() {
+            let shown = match frame.as_object().and_then(|object| object.values().next()) {
+                Some(Value::String(text)) => text.clone(),
+                _ => frame.to_string(),
+            };
+            let about =
+                frame.get("about").and_then(Value::as_str).map(|about| format!("{about}\n")).unwrap_or_default();
+            table.row([(index + 1).into(), (about + &shown).into()]);
+        }
+        View::table(table)
+    }
+}
+
+fn enveloped(robot: &Robot, id: &str, outcome: Result<&dyn AnyReport, Failure>) -> Result<Envelope, Failure> {
+    let report = match outcome {
+        Err(failure) => return Ok(Envelope::of(robot, id, Err(failure))),
+        Ok(report) => report,
+    };
+    let failure = report.failure();
+    let envelope = Envelope::of(robot, id, Ok(report.data()?));
+    Ok(Envelope { ok: failure.is_none(), error: failure.map(Into::into), ..envelope })
+}
+
+fn timed(envelope: Envelope) -> Envelope {
+    Envelope { time: Some(Timestamp::now()), ..envelope }
+}
+
+fn as_value(value: &impl Serialize) -> Result<Value, Failure> {
+    serde_json::to_value(value).map_err(|error| Failure::local(format!("report as JSON: {error}")))
+}
+
+/// Waits for `work`, or for Ctrl-C or a request to end.
+pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failure> {
+    tokio::select! {
+        biased;
+        done = work => Ok(done),
+        name = interrupt() => Err(Failure::new(Kind::Interrupted, name)),
+    }
+}
+
+#[cfg(unix)]
+async fn interrupt() -> &'static str {
+    use tokio::signal::unix::{SignalKind, signal};
+
+    let Ok(mut terminate) = signal(SignalKind::terminate()) else { return std::future::pending().await };
+    tokio::select! {
+        _ = tokio::signal::ctrl_c() => "Ctrl-C",
+        _ = terminate.recv() => "asked to end (SIGTERM)",
+    }
+}
+
+#[cfg(not(unix))]
+async fn interrupt() -> &'static str {
+    match tokio::signal::ctrl_c().await {
+        Ok(()) => "Ctrl-C",
+        Err(_) => std::future::pending().await,
+    }
+}

@@ -1,0 +1,560 @@
+//! The connection to a controller: the one driver that moves datagrams between sessions and a transport.
+
+use std::convert::Infallible;
+use std::io;
+use std::net::SocketAddr;
+use std::path::Path;
+use std::time::Duration;
+
+use serde_json::{Value, json};
+use tokio::time::{Instant, timeout_at};
+
+use super::trace::Trace;
+use crate::command::{Access, Family};
+use crate::controller::text::Encoding;
+use crate::controller::yerc::Model;
+use crate::controller::yerc::files::data_frame;
+use crate::controller::yerc::query::{Hold, Query};
+use crate::controller::yerc::request::Request;
+use crate::controller::yerc::session::{
+    Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Upload, UploadEnd,
+};
+use crate::controller::yerc::simulator::{Simulator, Start};
+use crate::controller::yerc::status;
+use crate::controller::yerc::wire::{Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
+use crate::controller::{Risk, Session, Step};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::settings::Robot;
+use crate::settings::target::{self, Place};
+use crate::transport::fault::{FaultSpec, Faults};
+use crate::transport::sim::{InProcess, Peer};
+use crate::transport::tap::Direction;
+use crate::transport::udp::Udp;
+
+/// The yerc family.
+#[derive(Debug)]
+pub struct Yerc;
+
+/// A connection to one controller.
+#[derive(Debug)]
+pub struct Link {
+    transport: Transport,
+    screen: Screen,
+    policy: Policy,
+    ids: Ids,
+    granted: Risk,
+    label: String,
+    /// Model of the controller: number ranges and layouts follow from it.
+    pub model: Model,
+    /// Encoding of its texts.
+    pub encoding: Encoding,
+    /// Words of a cartesian move, 25 or 26.
+    pub move_words: u8,
+    started: Instant,
+    buffer: Box<[u8; BUFFER]>,
+    trace: Trace,
+    totals: Totals,
+    /// The last download, in case its final ACK got lost.
+    finished: Option<Download>,
+}
+
+/// How the bytes travel.
+#[derive(Debug)]
+enum Transport {
+    Udp(Udp),
+    Sim(Box<InProcess<SimPeer>>),
+    /// A dry run: what would be sent is noted.
+    Notes(Vec<Value>),
+}
+
+impl Transport {
+    /// Own and other address of a channel; a simulator in this process has those of the loopback.
+    fn ends(&self, channel: usize) -> (SocketAddr, SocketAddr) {
+        let loopback = |port| SocketAddr::from(([127, 0, 0, 1], port));
+        match self {
+            Self::Udp(udp) => (udp.local(channel).unwrap_or(loopback(0)), udp.peer(channel)),
+            Self::Sim(_) | Self::Notes(_) => (loopback(40000), loopback(if channel == 0 { 10040 } else { 10041 })),
+        }
+    }
+}
+
+/// Room for more than a frame, so that an oversized datagram shows.
+const BUFFER: usize = 2048;
+
+/// What a link saw, for `-v`.
+#[derive(Debug, Default)]
+struct Totals {
+    sent: u64,
+    received: u64,
+    waited: Duration,
+    exchanges: u32,
+}
+
+/// A controller's "no".
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Refusal(pub Status);
+
+impl From<Refusal> for Failure {
+    fn from(Refusal(status): Refusal) -> Self {
+        let explanation = status::explain(status);
+        Failure::new(Kind::Refused, format!("the controller refused: {}. {}", explanation.name, explanation.cause))
+            .hint(explanation.remedy.into_owned())
+            .code(explanation.code_text)
+    }
+}
+
+impl Family for Yerc {
+    const FAMILY: target::Family = target::Family::Yerc;
+    type Link = Link;
+
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
+        let mut model = robot.model.value;
+        let transport = match &robot.target.value.place {
+            _ if access.dry_run => Transport::Notes(Vec::new()),
+            Place::Udp(udp) => {
+                Transport::Udp(Udp::open(&udp.host, &[udp.port, udp.file_port]).await.map_err(|error| {
+                    Failure::new(Kind::NoAnswer, format!("{}: cannot find host '{}': {error}", robot.label(), udp.host))
+                        .hint("check the name, or use the address of the controller")
+                })?)
+            }
+            Place::Sim(sim) => {
+                let mut start = start(sim, robot)?;
+                model = start.model();
+                let faults = sim.fault.as_deref().map(str::parse::<FaultSpec>).transpose();
+                let faults = faults.map_err(|error| {
+                    Failure::usage(format!("{}: {error}", robot.target.value)).hint("write % as %25 in a URL")
+                })?;
+                if let Some(spec) = &faults {
+                    start = start.with_busy(busy_share(spec));
+                }
+                Transport::Sim(Box::new(InProcess::new(SimPeer(Simulator::new(start)), faults.map(Faults::pair))))
+            }
+            Place::Other { scheme } => {
+                return Err(Failure::usage(format!("yerc is not reached over {scheme}:")).hint("use udp:// or sim:"));
+            }
+        };
+        let timeout = robot.timeout.value;
+        let attempt = Policy::default().attempt.min(timeout);
+        Ok(Link {
+            transport,
+            screen: *screen,
+            policy: Policy { deadline: timeout, attempt, retries: robot.retries.value },
+            ids: Ids::default(),
+            granted: access.granted,
+            label: robot.label(),
+            model,
+            encoding: robot.encoding.value,
+            move_words: robot.target.value.traits().move_words.unwrap_or(26),
+            started: Instant::now(),
+            buffer: Box::new([0; BUFFER]),
+            trace: Trace::open(&access, screen)?,
+            totals: Totals::default(),
+            finished: None,
+        })
+    }
+
+    async fn halt(link: &mut Link) -> Result<String, Failure> {
+        link.granted = link.granted.max(Risk::Write);
+        link.ask(&Hold(true)).await?;
+        Ok("HOLD is on; `yerc hold off` releases it".to_owned())
+    }
+
+    fn rehearsed(link: &mut Link) -> Vec<Value> {
+        match &mut link.transport {
+            Transport::Notes(frames) => std::mem::take(frames),
+            Transport::Udp(_) | Transport::Sim(_) => Vec::new(),
+        }
+    }
+
+    async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
+        link.linger().await?;
+        let Totals { sent, received, waited, exchanges } = link.totals;
+        screen.detail(1, &format!("{exchanges} exchanges in {waited:.1?}: {sent} frames sent, {received} received"));
+        link.trace.finish()
+    }
+}
+
+/// What a session wants from the one who reads or writes the file.
+enum Want<'a, S> {
+    /// A piece that came.
+    Take(&'a [u8]),
+    /// The session wants to be fed.
+    Feed(&'a mut S),
+}
+
+impl Link {
+    /// Asks one question; a refusal is a failure.
+    pub async fn ask<Q: Query>(&mut self, query: &Q) -> Result<Q::Answer, Failure> {
+        Ok(self.try_ask(query).await??)
+    }
+
+    /// Asks one question; a refusal is an answer.
+    pub async fn try_ask<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Failure> {
+        let request = query.request();
+        let answer = match self.exchange(&request).await? {
+            Ok(data) => data,
+            Err(refusal) => return Ok(Err(refusal)),
+        };
+        let decoded = query.decode(&answer).map_err(|error| {
+            Failure::new(Kind::Malformed, format!("{}: unexpected answer: {error}", self.label))
+                .hint("check the model (?model=fs100 or dx200); -vvv shows the bytes")
+        })?;
+        Ok(Ok(decoded))
+    }
+
+    /// Asks several questions, one after the other; the first refusal or failure ends it. A dry run notes them all.
+    pub async fn ask_all<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Q::Answer>, Failure> {
+        if let Transport::Notes(_) = self.transport {
+            for query in queries {
+                self.note(&query.request());
+            }
+            std::future::pending::<Infallible>().await;
+        }
+        let mut answers = Vec::with_capacity(queries.len());
+        for query in queries {
+            answers.push(self.ask(query).await?);
+        }
+        Ok(answers)
+    }
+
+    /// Sends a request as it is and returns the data of the answer.
+    pub async fn exchange(&mut self, request: &Request) -> Result<Result<Vec<u8>, Refusal>, Failure> {
+        self.admit(request).await?;
+        let risk = request.risk();
+        let frame = request.frame(0);
+        let frame = RequestFrame::parse(&frame).map_err(|error| Failure::local(error.to_string()))?;
+        let mut session = Exchange::new(&frame, risk == Risk::Read, self.policy, &self.ids);
+        let ended = self.drive(request.division(), &mut session, |_| Ok(())).await?;
+        self.totals.exchanges += 1;
+        self.heard(session.counters());
+        match ended {
+            Ended::Answered(reply) if reply.status.is_ok() => Ok(Ok(reply.data)),
+            Ended::Answered(reply) => Ok(Err(Refusal(reply.status))),
+            Ended::NoAnswer(counters) => Err(self.silence(counters)),
+            Ended::OutcomeUnknown(counters) => Err(self.unknown(counters)),
+        }
+    }
+
+    /// Fetches a file or list. Every block goes to `take`, in order; at most `limit` bytes. `first_wait` is how long
+    /// the first answer may take where that is long.
+    pub async fn download(
+        &mut self,
+        request: &Request,
+        limit: u64,
+        first_wait: Option<Duration>,
+        mut take: impl FnMut(&[u8]) -> Result<(), Failure>,
+    ) -> Result<DownloadEnd, Failure> {
+        self.admit(request).await?;
+        let frame = request.frame(0);
+        let frame = RequestFrame::parse(&frame).map_err(|error| Failure::local(error.to_string()))?;
+        let mut session = Download::new(&frame, limit, self.policy, &self.ids);
+        if let Some(wait) = first_wait {
+            session = session.with_first_wait(wait);
+        }
+        let end = self
+            .drive(Division::File, &mut session, |want| match want {
+                Want::Take(piece) => take(piece),
+                Want::Feed(_) => Ok(()),
+            })
+            .await?;
+        self.totals.exchanges += 1;
+        self.heard(session.counters());
+        self.finished = matches!(end, DownloadEnd::Complete { .. }).then_some(session);
+        match end {
+            DownloadEnd::NoAnswer { bytes: 0, counters } => Err(self.silence(counters)),
+            DownloadEnd::NoAnswer { bytes, .. } => {
+                Err(Failure::new(Kind::NoAnswer, format!("{}: the transfer broke off after {bytes} bytes", self.label))
+                    .hint("nothing was kept of it; repeat the command, with a longer --timeout if the line is bad"))
+            }
+            end => Ok(end),
+        }
+    }
+
+    /// Sends a file. `give` returns the next piece, empty at the end.
+    pub async fn upload(
+        &mut self,
+        request: &Request,
+        mut give: impl FnMut() -> Result<Vec<u8>, Failure>,
+    ) -> Result<UploadEnd, Failure> {
+        if let Transport::Notes(_) = self.transport {
+            let id = self.note(request);
+            self.note_blocks(id, &mut give)?;
+            std::future::pending::<Infallible>().await;
+        }
+        self.admit(request).await?;
+        // A controller that checks no ids could take a late block of the last upload into this one; a new port ends that.
+        if let Transport::Udp(udp) = &mut self.transport {
+            udp.renew(channel(Division::File));
+        }
+        self.finished = None;
+        let frame = request.frame(0);
+        let frame = RequestFrame::parse(&frame).map_err(|error| Failure::local(error.to_string()))?;
+        let mut session = Upload::new(&frame, self.policy, &self.ids);
+        let end = self
+            .drive(Division::File, &mut session, |want| {
+                if let Want::Feed(session) = want {
+                    let piece = give()?;
+                    session.feed(&piece, piece.is_empty());
+                }
+                Ok(())
+            })
+            .await?;
+        self.totals.exchanges += 1;
+        self.heard(session.counters());
+        match end {
+            UploadEnd::NoAnswer(counters) => Err(self.silence(counters)),
+            end => Ok(end),
+        }
+    }
+
+    /// On a line that loses frames, waits a moment for the last block to come again, which means that its ACK got lost:
+    /// without it the controller holds the transfer open.
+    async fn linger(&mut self) -> Result<(), Failure> {
+        let Some(mut last) = self.finished.take().filter(|last| last.counters() != Counters::default()) else {
+            return Ok(());
+        };
+        let channel = channel(Division::File);
+        let until = Instant::now() + self.policy.attempt;
+        while let Ok(received) = timeout_at(until, self.receive(channel)).await {
+            let len = received?;
+            if let Some(ack) = last.linger(&self.buffer[..len]) {
+                self.send(channel, &ack).await?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A text as the controller stores it.
+    pub fn encode(&self, what: &str, text: &str) -> Result<Vec<u8>, Failure> {
+        self.encoding.encode(text).map_err(|error| {
+            Failure::usage(format!("{what}: {error}")).hint("--encoding or the robot's entry sets the encoding")
+        })
+    }
+
+    /// Whether nothing is sent, only noted.
+    pub fn is_dry(&self) -> bool {
+        matches!(self.transport, Transport::Notes(_))
+    }
+
+    /// Notes what else a dry run knows it would send, beyond the first question whose answer it would need.
+    pub fn foresee(&mut self, request: &Request, about: &str) {
+        let id = self.ids.next_id();
+        if let Transport::Notes(frames) = &mut self.transport {
+            frames.push(json!({ "hex": hex(&request.frame(id)), "about": about }));
+        }
+    }
+
+    /// The last check before anything leaves, and the end of a dry run.
+    async fn admit(&mut self, request: &Request) -> Result<(), Failure> {
+        if let Transport::Notes(_) = self.transport {
+            self.note(request);
+            std::future::pending::<Infallible>().await;
+        }
+        if request.risk() > self.granted {
+            return Err(Failure::local(format!("a {:?} request was stopped before it left", request.risk()))
+                .hint("this is a fault of armctl: the command passed the gate as less than it is; please report it"));
+        }
+        Ok(())
+    }
+
+    fn note(&mut self, request: &Request) -> u8 {
+        let id = self.ids.next_id();
+        if let Transport::Notes(frames) = &mut self.transport {
+            frames.push(json!({ "hex": hex(&request.frame(id)) }));
+        }
+        id
+    }
+
+    /// The data blocks of an upload, which are known beforehand.
+    fn note_blocks(&mut self, id: u8, give: &mut dyn FnMut() -> Result<Vec<u8>, Failure>) -> Result<(), Failure> {
+        let Transport::Notes(frames) = &mut self.transport else { return Ok(()) };
+        let mut content = Vec::new();
+        loop {
+            let piece = give()?;
+            if piece.is_empty() {
+                break;
+            }
+            content.extend(piece);
+        }
+        let blocks: Vec<&[u8]> = content.chunks(MAX_DATA).collect();
+        for (number, block) in (1u32..).zip(&blocks) {
+            let last = if number as usize == blocks.len() { LAST_BLOCK } else { 0 };
+            frames.push(json!({ "hex": hex(&data_frame(id, number | last, block)) }));
+        }
+        Ok(())
+    }
+
+    /// Moves datagrams and time until the session has ended.
+    async fn drive<S: Session>(
+        &mut self,
+        division: Division,
+        session: &mut S,
+        mut serve: impl FnMut(Want<'_, S>) -> Result<(), Failure>,
+    ) -> Result<S::Outcome, Failure> {
+        let began = Instant::now();
+        let channel = channel(division);
+        loop {
+            match session.poll(self.started.elapsed()) {
+                Step::Send(bytes) => self.send(channel, &bytes).await?,
+                Step::Data(piece) => serve(Want::Take(&piece))?,
+                Step::Feed => serve(Want::Feed(session))?,
+                Step::Wait(until) => {
+                    // A frame that arrived in the last moment counts: the clock is read again after it.
+                    let until = self.started + until;
+                    let Ok(received) = timeout_at(until, self.receive(channel)).await else { continue };
+                    let len = received?;
+                    let again = self.finished.as_mut().and_then(|last| last.linger(&self.buffer[..len]));
+                    match again {
+                        Some(ack) => self.send(channel, &ack).await?,
+                        None => session.handle(self.started.elapsed(), &self.buffer[..len]),
+                    }
+                }
+                Step::Done(outcome) => {
+                    self.totals.waited += began.elapsed();
+                    return Ok(outcome);
+                }
+            }
+        }
+    }
+
+    async fn send(&mut self, channel: usize, bytes: &[u8]) -> Result<(), Failure> {
+        self.totals.sent += 1;
+        let sent = match &mut self.transport {
+            Transport::Udp(udp) => udp.send(channel, bytes).await,
+            Transport::Sim(sim) => {
+                sim.send(channel, bytes);
+                Ok(())
+            }
+            Transport::Notes(_) => Ok(()),
+        };
+        sent.map_err(|error| self.broken(channel, &error))?;
+        self.trace.record(Direction::Sent, self.transport.ends(channel), bytes)
+    }
+
+    async fn receive(&mut self, channel: usize) -> Result<usize, Failure> {
+        let received = match &mut self.transport {
+            Transport::Udp(udp) => udp.receive(channel, &mut self.buffer[..]).await,
+            Transport::Sim(sim) => Ok(sim.receive(channel, &mut self.buffer[..]).await),
+            Transport::Notes(_) => std::future::pending().await,
+        };
+        let len = received.map_err(|error| self.broken(channel, &error))?;
+        self.totals.received += 1;
+        self.trace.record(Direction::Received, self.transport.ends(channel), &self.buffer[..len])?;
+        Ok(len)
+    }
+
+    /// Says at `-v` what else was on the line.
+    fn heard(&self, counters: Counters) {
+        if counters != Counters::default() {
+            self.screen.detail(1, &format!("{}: {counters}", self.label));
+        }
+    }
+
+    /// Nobody answered a question that does no harm.
+    fn silence(&self, counters: Counters) -> Failure {
+        let waited = self.policy.deadline;
+        if counters.garbage + counters.truncated + counters.oversized + counters.foreign > 0 {
+            return Failure::new(
+                Kind::Malformed,
+                format!("{}: no answer of the protocol within {waited:?}, but {counters}", self.label),
+            )
+            .hint("is this the high-speed Ethernet server of a controller? -vvv shows the bytes");
+        }
+        Failure::new(Kind::NoAnswer, format!("{}: no answer within {waited:?}", self.label)).hint(
+            "check address, cable and firewall; on the controller: the Ethernet server function, RS022, RS029 and \
+             #82015 CMD REMOTE SEL; `armctl help yerc` lists the settings",
+        )
+    }
+
+    /// Nobody confirmed something that may have been done.
+    fn unknown(&self, counters: Counters) -> Failure {
+        let waited = self.policy.deadline;
+        let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
+        Failure::new(
+            Kind::OutcomeUnknown,
+            format!("{}: sent once, no answer within {waited:?}{seen}: it may or may not have been done", self.label),
+        )
+        .hint("ask before you repeat it: `yerc status`, `yerc job show`, `yerc position` or the matching `get` tell")
+    }
+
+    /// The socket has bad news.
+    fn broken(&self, channel: usize, error: &io::Error) -> Failure {
+        use io::ErrorKind::{ConnectionRefused, HostUnreachable, NetworkUnreachable};
+
+        let Transport::Udp(udp) = &self.transport else { return Failure::io(&self.label, error) };
+        let port = udp.peer(channel).port();
+        match error.kind() {
+            ConnectionRefused => {
+                Failure::new(Kind::NoAnswer, format!("{}: nothing listens on UDP port {port}", self.label)).hint(
+                    "the host is there, the server is not: check the port, and the Ethernet server function of the \
+                     controller",
+                )
+            }
+            HostUnreachable | NetworkUnreachable => {
+                Failure::new(Kind::NoAnswer, format!("{}: the host cannot be reached: {error}", self.label))
+                    .hint("check the address and this machine's own network settings")
+            }
+            _ => Failure::new(Kind::NoAnswer, format!("{}: UDP port {port}: {error}", self.label))
+                .hint("check this machine's network"),
+        }
+    }
+}
+
+/// Robot and file server have a port each.
+pub const fn channel(division: Division) -> usize {
+    match division {
+        Division::Robot => 0,
+        Division::File => 1,
+    }
+}
+
+/// The start state: a file's, or the built-in one of the model.
+fn start(sim: &target::Sim, robot: &Robot) -> Result<Start, Failure> {
+    let Some(path) = &sim.state else { return Ok(Start::for_model(robot.model.value)) };
+    load_start(path)
+}
+
+/// How often a simulated controller is busy, 0.0 to 1.0.
+pub fn busy_share(faults: &FaultSpec) -> f64 {
+    f64::from(faults.busy.per_10_000()) / 10_000.0
+}
+
+/// Reads a start state from a file.
+pub fn load_start(path: &Path) -> Result<Start, Failure> {
+    let text = std::fs::read_to_string(path).map_err(|error| Failure::io(path.display(), &error))?;
+    // Files that the state names lie beside it.
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let read = |name: &str| {
+        let path = folder.join(name);
+        std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))
+    };
+    Start::parse(&text, read).map_err(|error| {
+        Failure::usage(format!("{}: {error}", path.display()))
+            .hint("`armctl help simulator` shows the form of the file")
+    })
+}
+
+/// A simulated controller as the peer of a transport: there is but one client.
+#[derive(Debug)]
+struct SimPeer(Simulator);
+
+impl Peer for SimPeer {
+    fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
+        let division = if channel == 0 { Division::Robot } else { Division::File };
+        self.0.receive(now, division, 0, bytes);
+    }
+
+    fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)> {
+        self.0.transmit(now).map(|outgoing| (channel(outgoing.division), outgoing.bytes))
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        self.0.wake()
+    }
+}
+
+/// Bytes as lower-case hexadecimal digits.
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

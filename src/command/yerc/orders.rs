@@ -1,0 +1,159 @@
+//! Orders of one frame: servo, hold, hlock, cycle, say.
+
+use clap::{Args, ValueEnum};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::yerc::payload::CycleMode;
+use crate::controller::yerc::query::{self, Query};
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// What the controller accepted.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Done {
+    /// In words.
+    done: String,
+}
+
+impl Done {
+    /// In words.
+    pub fn new(done: impl Into<String>) -> Self {
+        Self { done: done.into() }
+    }
+}
+
+impl Report for Done {
+    fn view(&self) -> View {
+        View::text(self.done.clone())
+    }
+}
+
+/// On or off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Switch {
+    /// Switch it on
+    On,
+    /// Switch it off
+    Off,
+}
+
+/// A command whose risk and effect are those of a single order: its type, arguments, id, the order as a query, what it
+/// will do, and what it did.
+macro_rules! order {
+    (
+        $(#[$doc:meta])*
+        $name:ident { $(#[$arg:meta])* $field:ident: $type:ty }, $id:literal,
+        |$this:ident| $query:expr, $intent:expr, $done:expr
+    ) => {
+        $(#[$doc])*
+        #[derive(Debug, Args)]
+        pub struct $name {
+            $(#[$arg])*
+            $field: $type,
+        }
+
+        impl Command for $name {
+            type Family = Family;
+            type Report = Done;
+            const ID: &'static str = $id;
+
+            fn risk(&self) -> Risk {
+                let $this = self;
+                $query.risk()
+            }
+
+            fn intent(&self) -> String {
+                $intent.to_owned()
+            }
+
+            async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+                let $this = self;
+                context.link.ask(&$query).await?;
+                Ok(Done::new($done))
+            }
+        }
+    };
+}
+
+order! {
+    /// Switches servo power (FS and DX 3.3.20).
+    Servo { switch: Switch }, "yerc.servo",
+    |this| query::Servo(this.switch == Switch::On), "switch servo power on",
+    if this.switch == Switch::On { "servo power is switched on" } else { "servo power is switched off" }
+}
+order! {
+    /// Holds the robot, or lets it go on (FS and DX 3.3.20).
+    Hold { switch: Switch }, "yerc.hold",
+    |this| query::Hold(this.switch == Switch::On), "release the hold",
+    if this.switch == Switch::On { "hold is on" } else { "hold is off" }
+}
+order! {
+    /// Locks or unlocks the pendant and the I/O operation signals (FS and DX 3.3.20).
+    Hlock { switch: Switch }, "yerc.hlock",
+    |this| query::Hlock(this.switch == Switch::On), "",
+    if this.switch == Switch::On { "pendant and operation signals are locked" } else { "pendant and operation signals are free" }
+}
+
+/// The cycle switch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CycleName {
+    /// A step a start
+    Step,
+    /// A cycle a start
+    Once,
+    /// Again and again
+    Continuous,
+}
+
+impl From<CycleName> for CycleMode {
+    fn from(name: CycleName) -> Self {
+        match name {
+            CycleName::Step => Self::Step,
+            CycleName::Once => Self::Once,
+            CycleName::Continuous => Self::Continuous,
+        }
+    }
+}
+
+order! {
+    /// Chooses how far a start goes (FS and DX 3.3.21).
+    Cycle { mode: CycleName }, "yerc.cycle",
+    |this| query::SetCycle(this.mode.into()), "",
+    match this.mode {
+        CycleName::Step => "the cycle is step",
+        CycleName::Once => "the cycle is one cycle",
+        CycleName::Continuous => "the cycle is continuous",
+    }
+}
+
+/// Shows a message on the pendant (FS and DX 3.3.22).
+#[derive(Debug, Args)]
+pub struct Say {
+    /// At most 30 half-width or 15 full-width characters; an empty text clears it
+    text: String,
+}
+
+impl Command for Say {
+    type Family = Family;
+    type Report = Done;
+    const ID: &'static str = "yerc.say";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+        let bytes = context.link.encode("the message", &self.text)?;
+        context.link.ask(&query::Say::new(&bytes).map_err(usage)?).await?;
+        Ok(Done::new("the message is on the pendant"))
+    }
+}
+
+/// A query that cannot be built: the operator asked for something that does not exist.
+pub(super) fn usage(error: impl std::fmt::Display) -> Failure {
+    Failure::usage(error.to_string()).hint("`armctl help yerc` and the --help of the command list what there is")
+}

@@ -1,0 +1,108 @@
+//! `yerc status`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use crate::command::{Command, Context, Report};
+use crate::controller::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
+use crate::controller::yerc::query::ReadStatus;
+use crate::failure::Failure;
+use crate::output::view::{Cell, Tone, View};
+
+/// Every status bit of the controller.
+#[derive(Debug, Args)]
+pub struct Status {}
+
+impl Command for Status {
+    type Family = Family;
+    type Report = StatusReport;
+    const ID: &'static str = "yerc.status";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<StatusReport, Failure> {
+        Ok(context.link.ask(&ReadStatus).await?.into())
+    }
+}
+
+/// The controller's state (FS and DX 3.3.3).
+#[derive(Debug, Serialize, JsonSchema)]
+#[expect(clippy::struct_excessive_bools, reason = "the controller reports bits")]
+pub struct StatusReport {
+    /// `teach` or `play`, as the mode switch stands; null if the controller says neither or both.
+    mode: Option<&'static str>,
+    /// Whether commands from outside are taken (CMD REMOTE).
+    command_remote: bool,
+    /// `step`, `one_cycle` or `continuous`; null if the controller says none or several.
+    cycle: Option<&'static str>,
+    /// A job is running, or the robot moves.
+    running: bool,
+    servo_on: bool,
+    /// Whether anything holds the robot.
+    held: bool,
+    /// What holds it: `pendant`, `external`, `command`.
+    hold_sources: Vec<&'static str>,
+    alarm: bool,
+    error: bool,
+    /// In-guard safe operation.
+    safe_operation: bool,
+    /// The two words as received.
+    raw: RawStatus,
+}
+
+/// Status words in hexadecimal.
+#[derive(Debug, Serialize, JsonSchema)]
+struct RawStatus {
+    data_1: String,
+    data_2: String,
+}
+
+/// What can hold a robot.
+const HOLDS: [(StatusBit, &str); 3] =
+    [(StatusBit::HoldPendant, "pendant"), (StatusBit::HoldExternal, "external"), (StatusBit::HoldCommand, "command")];
+
+impl From<ControllerStatus> for StatusReport {
+    fn from(status: ControllerStatus) -> Self {
+        let [data_1, data_2] = status.words;
+        Self {
+            mode: match (status.has(StatusBit::Teach), status.has(StatusBit::Play)) {
+                (true, false) => Some("teach"),
+                (false, true) => Some("play"),
+                _ => None,
+            },
+            command_remote: status.has(StatusBit::CommandRemote),
+            cycle: status.cycle().map(|cycle| match cycle {
+                CycleMode::Step => "step",
+                CycleMode::Once => "one_cycle",
+                CycleMode::Continuous => "continuous",
+            }),
+            running: status.running(),
+            servo_on: status.servo_on(),
+            held: status.held(),
+            hold_sources: HOLDS.iter().filter(|(bit, _)| status.has(*bit)).map(|(_, name)| *name).collect(),
+            alarm: status.alarm(),
+            error: status.error(),
+            safe_operation: status.has(StatusBit::Guarded),
+            raw: RawStatus { data_1: format!("{data_1:#010x}"), data_2: format!("{data_2:#010x}") },
+        }
+    }
+}
+
+impl Report for StatusReport {
+    fn view(&self) -> View {
+        let bad = |on: bool| if on { Cell::from("yes").tone(Tone::Bad) } else { "no".into() };
+        let remote = if self.command_remote { Tone::Good } else { Tone::Warning };
+        let hold = if self.held { Cell::from(self.hold_sources.join(", ")).tone(Tone::Warning) } else { "no".into() };
+        View::fields([
+            ("mode", Cell::maybe(self.mode)),
+            ("command remote", Cell::switch(self.command_remote).tone(remote)),
+            ("cycle", Cell::maybe(self.cycle.map(|cycle| cycle.replace('_', " ")))),
+            ("running", if self.running { Cell::from("yes").tone(Tone::Good) } else { "no".into() }),
+            ("servo", Cell::switch(self.servo_on)),
+            ("hold", hold),
+            ("alarm", bad(self.alarm)),
+            ("error", bad(self.error)),
+            ("safe operation", if self.safe_operation { "yes".into() } else { "no".into() }),
+        ])
+    }
+}

@@ -1,0 +1,92 @@
+//! A peer in this process instead of on a network.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::time::Duration;
+
+use tokio::time::Instant;
+
+use super::fault::Faults;
+
+/// Something that takes and gives datagrams, such as a simulated controller.
+pub trait Peer {
+    /// Takes a datagram that arrived at `now` on a channel.
+    fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]);
+    /// The next datagram that is due at `now`.
+    fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)>;
+    /// When something may be due.
+    fn wake(&self) -> Option<Duration>;
+}
+
+/// A peer behind a line that may be faulty, on tokio's clock (which tests can halt and turn).
+#[derive(Debug)]
+pub struct InProcess<P> {
+    peer: P,
+    start: Instant,
+    there: Option<Faults>,
+    back: Option<Faults>,
+    wire: BinaryHeap<Reverse<InFlight>>,
+    sent: u64,
+}
+
+/// A datagram on its way; ordered by arrival, then by departure.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct InFlight {
+    at: Duration,
+    order: u64,
+    to_peer: bool,
+    channel: usize,
+    bytes: Vec<u8>,
+}
+
+impl<P: Peer> InProcess<P> {
+    /// A peer behind a line; `faults` are those of the way there and back.
+    pub fn new(peer: P, faults: Option<(Faults, Faults)>) -> Self {
+        let (there, back) = faults.unzip();
+        Self { peer, start: Instant::now(), there, back, wire: BinaryHeap::new(), sent: 0 }
+    }
+
+    /// Sends one datagram to the peer.
+    pub fn send(&mut self, channel: usize, bytes: &[u8]) {
+        let now = self.start.elapsed();
+        self.launch(now, true, channel, bytes);
+    }
+
+    /// Waits for one datagram of the peer on `channel`; what comes on others is dropped, as by a closed socket.
+    pub async fn receive(&mut self, channel: usize, buffer: &mut [u8]) -> usize {
+        loop {
+            let now = self.start.elapsed();
+            while let Some((channel, bytes)) = self.peer.transmit(now) {
+                self.launch(now, false, channel, &bytes);
+            }
+            if self.wire.peek().is_some_and(|Reverse(flight)| flight.at <= now) {
+                let Some(Reverse(flight)) = self.wire.pop() else { continue };
+                if flight.to_peer {
+                    self.peer.receive(now, flight.channel, &flight.bytes);
+                } else if flight.channel == channel {
+                    let len = flight.bytes.len().min(buffer.len());
+                    buffer[..len].copy_from_slice(&flight.bytes[..len]);
+                    return len;
+                }
+                continue;
+            }
+            let arrival = self.wire.peek().map(|Reverse(flight)| flight.at);
+            match arrival.into_iter().chain(self.peer.wake()).min() {
+                Some(at) => tokio::time::sleep_until(self.start + at.max(now)).await,
+                None => std::future::pending().await,
+            }
+        }
+    }
+
+    fn launch(&mut self, now: Duration, to_peer: bool, channel: usize, bytes: &[u8]) {
+        let faults = if to_peer { &mut self.there } else { &mut self.back };
+        let flights = match faults {
+            Some(faults) => faults.pass(now, bytes),
+            None => vec![(now, bytes.to_vec())],
+        };
+        for (at, bytes) in flights {
+            self.sent += 1;
+            self.wire.push(Reverse(InFlight { at, order: self.sent, to_peer, channel, bytes }));
+        }
+    }
+}
