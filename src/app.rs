@@ -25,7 +25,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let args = with_family(args.into_iter().collect());
     let cli = match Cli::try_parse_from(&args) {
         Ok(cli) => cli,
-        Err(error) => return refuse(&args, error),
+        Err(error) => return refuse(&args, &error),
     };
     let screen = screen(&cli.globals);
     match run(cli) {
@@ -129,7 +129,7 @@ fn tell(screen: &Screen, Stopped { failure, envelope, told }: Stopped) -> ExitCo
     let exit = failure.kind.exit();
     if !told && failure.kind != Kind::PipeClosed {
         if screen.is_json() {
-            screen.failure_json(&envelope.unwrap_or_else(|| Envelope::failed(None, failure)));
+            screen.failure_json(&envelope.unwrap_or_else(|| Box::new(Envelope::failed(None, failure))));
         } else {
             screen.failure(&failure);
         }
@@ -138,7 +138,7 @@ fn tell(screen: &Screen, Stopped { failure, envelope, told }: Stopped) -> ExitCo
 }
 
 /// What the parser has to say: help and version on stdout, mistakes on stderr with exit code 2.
-fn refuse(args: &[OsString], error: clap::Error) -> ExitCode {
+fn refuse(args: &[OsString], error: &clap::Error) -> ExitCode {
     let has = |flag: &str| args.iter().any(|arg| arg == flag);
     let is_json = has("--json")
         || has("-ojson")

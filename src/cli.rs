@@ -47,6 +47,7 @@ pub enum Top {
 
 /// Flags that every command takes, at any place of the line.
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 pub struct Globals {
     /// Talk to the built-in simulator, in this process
     #[arg(long, global = true, help_heading = "Which robot", conflicts_with_all = ["target", "robot", "all", "tag"])]

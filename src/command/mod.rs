@@ -99,6 +99,9 @@ pub trait Command {
     async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
 }
 
+/// A report, or why there is none.
+pub type Outcome = Result<Box<dyn AnyReport>, Failure>;
+
 /// [`Command`] without its types, for the one loop that runs them all.
 pub trait AnyCommand<F: Family> {
     /// See [`Command::ID`].
@@ -108,10 +111,7 @@ pub trait AnyCommand<F: Family> {
     /// See [`Command::intent`].
     fn intent(&self) -> String;
     /// See [`Command::run`].
-    fn run<'a>(
-        &'a self,
-        context: Context<'a, F>,
-    ) -> Pin<Box<dyn Future<Output = Result<Box<dyn AnyReport>, Failure>> + 'a>>;
+    fn run<'a>(&'a self, context: Context<'a, F>) -> Pin<Box<dyn Future<Output = Outcome> + 'a>>;
 }
 
 /// [`Report`] without its type.
@@ -151,10 +151,7 @@ impl<C: Command> AnyCommand<C::Family> for C {
         Command::intent(self)
     }
 
-    fn run<'a>(
-        &'a self,
-        context: Context<'a, C::Family>,
-    ) -> Pin<Box<dyn Future<Output = Result<Box<dyn AnyReport>, Failure>> + 'a>> {
+    fn run<'a>(&'a self, context: Context<'a, C::Family>) -> Pin<Box<dyn Future<Output = Outcome> + 'a>> {
         Box::pin(async move {
             let report = Command::run(self, context).await?;
             Ok(Box::new(report) as Box<dyn AnyReport>)

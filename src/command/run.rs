@@ -12,7 +12,7 @@ use serde::Serialize;
 use serde_json::Value;
 use tokio::time::Instant;
 
-use super::{Access, AnyCommand, AnyReport, Context, Family, Report};
+use super::{Access, AnyCommand, AnyReport, Context, Family, Outcome, Report};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Gate, OnInterrupt};
@@ -64,7 +64,7 @@ pub struct Stopped {
     /// What happened.
     pub failure: Failure,
     /// To whom, in doing what.
-    pub envelope: Option<Envelope>,
+    pub envelope: Option<Box<Envelope>>,
     /// The report on stdout tells it already: only the exit code is left.
     pub told: bool,
 }
@@ -77,13 +77,10 @@ impl From<Failure> for Stopped {
 
 impl Stopped {
     fn at<F: Family>(robot: &Robot, command: &dyn AnyCommand<F>, failure: Failure) -> Self {
-        let envelope = Some(Envelope::of(robot, command.id(), Err(failure.clone())));
+        let envelope = Some(Box::new(Envelope::of(robot, command.id(), Err(failure.clone()))));
         Self { failure, envelope, told: false }
     }
 }
-
-/// A report, or why there is none.
-type Outcome = Result<Box<dyn AnyReport>, Failure>;
 
 /// Pause between runs where only a condition or a count is given.
 const EVERY: Duration = Duration::from_secs(1);

@@ -18,12 +18,11 @@ impl Udp {
     /// # Errors
     /// When the name does not resolve.
     pub async fn open(host: &str, ports: &[u16]) -> io::Result<Self> {
-        let address = match host.parse::<IpAddr>() {
-            Ok(address) => address,
-            Err(_) => {
-                let mut found = tokio::net::lookup_host((host, 0)).await?;
-                found.next().ok_or_else(|| io::Error::new(io::ErrorKind::NotFound, "the name has no address"))?.ip()
-            }
+        let address = if let Ok(address) = host.parse::<IpAddr>() {
+            address
+        } else {
+            let mut found = tokio::net::lookup_host((host, 0)).await?;
+            found.next().ok_or_else(|| io::Error::new(io::ErrorKind::NotFound, "the name has no address"))?.ip()
         };
         let peers = ports.iter().map(|port| SocketAddr::new(address, *port)).collect();
         Ok(Self { peers, sockets: ports.iter().map(|_| None).collect() })

@@ -82,9 +82,6 @@ impl Show {
     fn run(&self, run: &Run) -> Result<(), Failure> {
         let entry = known(&run.sources.inventory, &self.name)?;
         let robot = run.sources.resolved(entry, None)?;
-        fn row<T>(name: &'static str, setting: &Setting<T>, show: impl Fn(&T) -> String) -> Value {
-            Value { name, value: show(&setting.value), origin: setting.origin.to_string() }
-        }
         let settings = vec![
             row("target", &robot.target, ToString::to_string),
             row("model", &robot.model, ToString::to_string),
@@ -99,6 +96,11 @@ impl Show {
             &Shown { name: robot.name, family, tags: robot.tags, settings, with_origin: self.origin },
         )
     }
+}
+
+/// A setting as a row.
+fn row<T>(name: &'static str, setting: &Setting<T>, show: impl Fn(&T) -> String) -> Value {
+    Value { name, value: show(&setting.value), origin: setting.origin.to_string() }
 }
 
 impl Add {

@@ -51,7 +51,7 @@ impl Trace {
             self.screen.note(&self.line(direction, bytes));
         }
         if direction == Direction::Sent && self.text > 0 {
-            self.asked = RequestFrame::parse(bytes).ok().map(|frame| Request::from(frame));
+            self.asked = RequestFrame::parse(bytes).ok().map(Request::from);
         }
         let Some(capture) = &mut self.capture else { return Ok(()) };
         let time = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
