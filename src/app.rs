@@ -9,6 +9,7 @@ use clap::{CommandFactory as _, Parser as _};
 
 use crate::cli::{Cli, Globals, Top};
 use crate::command::Noun as _;
+use crate::command::common::Common;
 use crate::command::run::{Repeat, Run, Stopped};
 use crate::failure::{Failure, Kind};
 use crate::gate::Gate;
@@ -44,7 +45,11 @@ fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
 }
 
 fn run(cli: Cli) -> Result<(), Stopped> {
-    let run = prepare(cli.globals)?;
+    let makes_inventory = matches!(&cli.command, Top::Common(Common::Robots(robots)) if robots.makes_inventory());
+    let mut run = prepare(cli.globals, makes_inventory)?;
+    if let Top::Common(Common::Status(_)) = cli.command {
+        run.sources.widen();
+    }
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .build()
@@ -60,8 +65,8 @@ fn run(cli: Cli) -> Result<(), Stopped> {
     done
 }
 
-/// Flags, environment and inventory, read once.
-fn prepare(globals: Globals) -> Result<Run, Failure> {
+/// Flags, environment and inventory, read once. With `makes_inventory` a file that is named may be missing.
+fn prepare(globals: Globals, makes_inventory: bool) -> Result<Run, Failure> {
     let screen = screen(&globals);
     let filter = globals.jq.as_deref().map(Filter::new).transpose()?;
     let until = globals.until.as_deref().map(Filter::new).transpose()?;
@@ -74,10 +79,13 @@ fn prepare(globals: Globals) -> Result<Run, Failure> {
         environment: variable("ARMCTL_TARGET", |url| url.parse::<Target>().map_err(|failure| failure.message))?,
     };
     // A robot that is told by flag needs no file; a broken file is an error for everybody else.
-    let location = Location::find(match globals.config {
+    let mut location = Location::find(match globals.config {
         Some(path) => Some(path),
         None => variable("ARMCTL_CONFIG", |path| Ok(path.into()))?,
     });
+    if let (Location::Named(path), true) = (&location, makes_inventory) {
+        location = Location::Usual(path.clone());
+    }
     let inventory = if selection.sim || selection.target.is_some() {
         Inventory { path: location.path().map(Path::to_owned), ..Inventory::default() }
     } else {

@@ -120,7 +120,7 @@ impl Failure {
 }
 
 /// An I/O error without the `(os error 13)` that tells a technician nothing.
-fn plain(error: &std::io::Error) -> String {
+pub fn plain(error: &std::io::Error) -> String {
     let text = error.to_string();
     text.split(" (os error").next().unwrap_or_default().to_lowercase()
 }

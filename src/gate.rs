@@ -45,7 +45,7 @@ impl Gate {
             return Err(refused(format!("not confirmed: this would {intent} on {}", robot.label()))
                 .hint("add --yes when nobody is in the cell, or --dry-run to see what would be sent"));
         }
-        screen.ask_note(&format!("{} is a real {} controller.", robot.label(), robot.family));
+        screen.ask_note(&format!("{}: a {} controller, not the built-in simulator", robot.label(), robot.family));
         if screen.confirm(&format!("This will {intent}. Go on?"))? {
             Ok(())
         } else {

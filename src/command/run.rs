@@ -100,6 +100,10 @@ impl Run {
         let selection = &self.sources.selection;
         let each_named = selection.robots.len() == robots.len() && selection.tags.is_empty();
         Gate::pass_many(risk, &robots, each_named)?;
+        if risk == Risk::Motion {
+            // From here on Ctrl-C, at a question too, ends in a message and an exit code instead of a killed process.
+            catch_interrupts();
+        }
         for robot in &robots {
             let passed = self.gate.pass(&self.screen, robot, risk, &command.intent());
             passed.map_err(|failure| Stopped::at(robot, command, failure))?;
@@ -186,15 +190,18 @@ impl Run {
         let outcomes: Vec<Outcome> = work.collect().await;
         let mut envelopes = Vec::new();
         let mut failures = Vec::new();
+        let mut views = Vec::new();
         for (robot, outcome) in robots.iter().zip(&outcomes) {
             let failure = outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |report| report.failure());
             failures.extend(failure);
             match outcome {
-                Ok(report) if self.is_for_people() => {
-                    self.show(&report.view(), Place::Among { robot, first: envelopes.is_empty() })?;
-                }
+                Ok(report) if self.is_for_people() => views.push((robot, report.view())),
                 Err(failure) if self.is_for_people() => {
-                    let message = format!("{}: {}", robot.label(), failure.message);
+                    // Failures of the link name the robot already.
+                    let label = robot.label();
+                    let is_named = failure.message.starts_with(&label);
+                    let message =
+                        if is_named { failure.message.clone() } else { format!("{label}: {}", failure.message) };
                     self.screen.failure(&Failure { message, ..failure.clone() });
                 }
                 outcome => {
@@ -207,7 +214,9 @@ impl Run {
                 }
             }
         }
-        if self.screen.format != Format::Jsonl && !self.is_for_people() {
+        if self.is_for_people() {
+            self.show_many(&views)?;
+        } else if self.screen.format != Format::Jsonl {
             self.emit(&envelopes)?;
         }
         let told = !self.is_for_people();
@@ -257,6 +266,18 @@ impl Run {
         };
         F::close(link, &self.screen).await?;
         outcome
+    }
+
+    /// Tables of the same columns become one, with the robot in front; other views stand below each other.
+    fn show_many(&self, views: &[(&Robot, View)]) -> Result<(), Failure> {
+        let tables = views.iter().map(|(robot, view)| Some((robot.name.as_str(), view.as_table()?)));
+        match tables.collect::<Option<Vec<_>>>().and_then(|tables| Table::joined("robot", &tables)) {
+            Some(table) => self.show(&View::table(table), Place::Alone),
+            None => views
+                .iter()
+                .enumerate()
+                .try_for_each(|(index, (robot, view))| self.show(view, Place::Among { robot, first: index == 0 })),
+        }
     }
 
     fn is_for_people(&self) -> bool {
@@ -370,6 +391,12 @@ pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failur
         done = work => Ok(done),
         name = interrupt() => Err(Failure::new(Kind::Interrupted, name)),
     }
+}
+
+/// Makes signals arrive as events; what nobody waits for is dropped.
+fn catch_interrupts() {
+    #[cfg(unix)]
+    drop(tokio::signal::unix::signal(tokio::signal::unix::SignalKind::interrupt()));
 }
 
 #[cfg(unix)]

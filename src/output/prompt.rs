@@ -14,14 +14,14 @@ impl Screen {
     /// Asks `question` and takes yes or no; an empty answer is no.
     pub fn confirm(&self, question: &str) -> Result<bool, Failure> {
         let prompt = format!("{question} [y/N]");
-        let answer: String = ask(Input::new().with_prompt(prompt).allow_empty(true).report(false))?;
+        let answer: String = ask(Input::new().with_prompt(prompt).allow_empty(true))?;
         Ok(matches!(answer.trim().to_lowercase().as_str(), "y" | "yes"))
     }
 
     /// Asks for a word that must be typed as shown.
     pub fn confirm_word(&self, question: &str, word: &str) -> Result<bool, Failure> {
         let prompt = format!("{question} Type '{word}' to go on");
-        let answer: String = ask(Input::new().with_prompt(prompt).allow_empty(true).report(false))?;
+        let answer: String = ask(Input::new().with_prompt(prompt).allow_empty(true))?;
         Ok(answer.trim() == word)
     }
 }

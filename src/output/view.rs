@@ -96,6 +96,21 @@ impl Table {
     }
 }
 
+impl Table {
+    /// Tables of the same columns as one, with what each is of in a first column; `None` if they differ.
+    pub fn joined(name: &'static str, tables: &[(&str, &Self)]) -> Option<Self> {
+        let (_, first) = tables.first()?;
+        if tables.iter().any(|(_, table)| table.columns != first.columns) {
+            return None;
+        }
+        let columns = std::iter::once(name).chain(first.columns.iter().copied()).collect();
+        let rows = tables.iter().flat_map(|(of, table)| {
+            table.rows.iter().map(|row| std::iter::once(Cell::from(*of)).chain(row.iter().cloned()).collect())
+        });
+        Some(Self { columns, rows: rows.collect(), empty: first.empty })
+    }
+}
+
 /// A part of a view.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Section {
@@ -128,6 +143,14 @@ impl View {
     /// One text.
     pub fn text(text: impl Into<String>) -> Self {
         Self { sections: vec![Section::Text(text.into())] }
+    }
+
+    /// The table, if the view is nothing else.
+    pub fn as_table(&self) -> Option<&Table> {
+        match &self.sections[..] {
+            [Section::Table(table)] => Some(table),
+            _ => None,
+        }
     }
 
     /// Adds a part.

@@ -26,7 +26,7 @@ use super::duration;
 use super::target::{Family, Target};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
-use crate::failure::Failure;
+use crate::failure::{Failure, plain};
 
 /// Name of the file in the platform's configuration folder, below `armctl/`.
 const FILE_NAME: &str = "robots.toml";
@@ -114,7 +114,7 @@ impl Inventory {
                 return Ok(Self { path: Some(path.to_owned()), ..Self::default() });
             }
             Err(error) => {
-                return Err(Failure::usage(format!("inventory {}: {error}", path.display()))
+                return Err(Failure::usage(format!("inventory {}: {}", path.display(), plain(&error)))
                     .hint("check --config and ARMCTL_CONFIG; `armctl robots add` makes a new file"));
             }
         };

@@ -156,6 +156,13 @@ impl Sources {
         }
     }
 
+    /// Where nothing is said about robots, takes all of the inventory instead of its default.
+    pub fn widen(&mut self) {
+        let Selection { sim, target, robots, tags, all, environment } = &mut self.selection;
+        let is_said = *sim || target.is_some() || environment.is_some() || !robots.is_empty() || !tags.is_empty();
+        *all |= !is_said && !self.inventory.robots.is_empty();
+    }
+
     /// The entry of the inventory with every setting in force.
     pub fn resolved(&self, entry: &Entry, family: Option<Family>) -> Result<Robot, Failure> {
         if let Some(family) = family

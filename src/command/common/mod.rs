@@ -4,17 +4,20 @@ pub mod completions;
 mod explain;
 pub mod help;
 pub mod man;
-mod robots;
+pub mod robots;
 pub mod schema;
 mod sim;
 
 use clap::Subcommand;
 
 use super::run::{Run, Stopped};
+use super::yerc::overview::Overview;
 
 /// Commands that every family shares.
 #[derive(Debug, Subcommand)]
 pub enum Common {
+    /// One line a robot: reachable, mode, servo, state, alarm, position
+    Status(Overview),
     /// The inventory: list, show, add, remove
     #[command(subcommand)]
     Robots(robots::Robots),
@@ -37,6 +40,7 @@ impl Common {
     /// Does it.
     pub async fn run(self, run: &Run) -> Result<(), Stopped> {
         match self {
+            Self::Status(overview) => return run.robots(&overview).await,
             Self::Sim(sim) => return sim.run(run).await,
             Self::Robots(robots) => robots.run(run),
             Self::Explain(explain) => explain.run(run),

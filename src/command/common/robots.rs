@@ -67,6 +67,11 @@ pub struct Remove {
 }
 
 impl Robots {
+    /// Whether it makes the file where there is none.
+    pub fn makes_inventory(&self) -> bool {
+        matches!(self, Self::Add(_))
+    }
+
     pub(super) fn run(self, run: &Run) -> Result<(), Failure> {
         let inventory = &run.sources.inventory;
         match self {

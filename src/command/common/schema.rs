@@ -4,6 +4,7 @@ use clap::Args;
 use serde_json::json;
 
 use crate::command::run::{Rehearsal, Run};
+use crate::command::yerc::overview::Overview;
 use crate::command::yerc::{Yerc, link};
 use crate::command::{Noun, SchemaEntry};
 use crate::failure::Failure;
@@ -37,6 +38,7 @@ impl SchemaOf {
 /// The schemas of all reports.
 pub fn all() -> Vec<SchemaEntry> {
     let mut all = <Yerc as Noun<link::Yerc>>::schemas();
+    all.extend(<Overview as Noun<link::Yerc>>::schemas());
     all.extend([
         SchemaEntry { id: "dry-run", schema: || schemars::schema_for!(Rehearsal) },
         SchemaEntry { id: "explain.yerc", schema: || schemars::schema_for!(super::explain::Codes) },

@@ -23,7 +23,7 @@ use crate::controller::yerc::simulator::{Simulator, Start};
 use crate::controller::yerc::status;
 use crate::controller::yerc::wire::{Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
 use crate::controller::{Risk, Session, Step};
-use crate::failure::{Failure, Kind};
+use crate::failure::{Failure, Kind, plain};
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::{self, Place};
@@ -114,7 +114,7 @@ impl Family for Yerc {
             _ if access.dry_run => Transport::Notes(Vec::new()),
             Place::Udp(udp) => {
                 Transport::Udp(Udp::open(&udp.host, &[udp.port, udp.file_port]).await.map_err(|error| {
-                    Failure::new(Kind::NoAnswer, format!("{}: cannot find host '{}': {error}", robot.label(), udp.host))
+                    Failure::new(Kind::NoAnswer, format!("{}: cannot find host '{}'", robot.label(), udp.host))
                         .hint("check the name, or use the address of the controller")
                 })?)
             }
@@ -492,10 +492,10 @@ impl Link {
                 )
             }
             HostUnreachable | NetworkUnreachable => {
-                Failure::new(Kind::NoAnswer, format!("{}: the host cannot be reached: {error}", self.label))
+                Failure::new(Kind::NoAnswer, format!("{}: the host cannot be reached: {}", self.label, plain(error)))
                     .hint("check the address and this machine's own network settings")
             }
-            _ => Failure::new(Kind::NoAnswer, format!("{}: UDP port {port}: {error}", self.label))
+            _ => Failure::new(Kind::NoAnswer, format!("{}: UDP port {port}: {}", self.label, plain(error)))
                 .hint("check this machine's network"),
         }
     }

@@ -2,6 +2,7 @@
 
 pub mod link;
 mod orders;
+pub mod overview;
 mod status;
 mod trace;
 

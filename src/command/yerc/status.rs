@@ -65,11 +65,7 @@ impl From<ControllerStatus> for StatusReport {
     fn from(status: ControllerStatus) -> Self {
         let [data_1, data_2] = status.words;
         Self {
-            mode: match (status.has(StatusBit::Teach), status.has(StatusBit::Play)) {
-                (true, false) => Some("teach"),
-                (false, true) => Some("play"),
-                _ => None,
-            },
+            mode: mode(status),
             command_remote: status.has(StatusBit::CommandRemote),
             cycle: status.cycle().map(|cycle| match cycle {
                 CycleMode::Step => "step",
@@ -85,6 +81,15 @@ impl From<ControllerStatus> for StatusReport {
             safe_operation: status.has(StatusBit::Guarded),
             raw: RawStatus { data_1: format!("{data_1:#010x}"), data_2: format!("{data_2:#010x}") },
         }
+    }
+}
+
+/// The mode switch; `None` if the controller says neither or both.
+pub(super) fn mode(status: ControllerStatus) -> Option<&'static str> {
+    match (status.has(StatusBit::Teach), status.has(StatusBit::Play)) {
+        (true, false) => Some("teach"),
+        (false, true) => Some("play"),
+        _ => None,
     }
 }
 
