@@ -113,7 +113,7 @@ impl Family for Yerc {
         let transport = match &robot.target.value.place {
             _ if access.dry_run => Transport::Notes(Vec::new()),
             Place::Udp(udp) => {
-                Transport::Udp(Udp::open(&udp.host, &[udp.port, udp.file_port]).await.map_err(|error| {
+                Transport::Udp(Udp::open(&udp.host, &[udp.port, udp.file_port]).await.map_err(|_| {
                     Failure::new(Kind::NoAnswer, format!("{}: cannot find host '{}'", robot.label(), udp.host))
                         .hint("check the name, or use the address of the controller")
                 })?)
