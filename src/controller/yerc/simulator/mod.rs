@@ -36,7 +36,7 @@ mod tests;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-pub use start::Start;
+pub use start::{EXAMPLE, Start};
 
 use self::transfer::FileServer;
 use self::world::{Refusal, World, code};

@@ -47,7 +47,7 @@ impl World {
         let frame = self.user_frame(order.coordinate, order.user)?;
         if self.arm.groups[group].family == Family::Station {
             let targets = self.station_target(group, &order.station_axes, instance == INCREMENT)?;
-            return self.go(instance, &[targets], speed);
+            return self.go(&[targets], speed);
         }
         check_unused(&order.station_axes)?;
         let mut targets = Vec::new();
@@ -58,7 +58,7 @@ impl World {
         let pose = target_pose(&order, instance == INCREMENT, &forward(&near), base_mm, frame);
         targets.push((group, inverse(&pose, &near)));
         targets.extend(base);
-        self.go(instance, &targets, speed)?;
+        self.go(&targets, speed)?;
         let moved = &mut self.arm.groups[group];
         (moved.form, moved.extended_form, moved.tool) = (order.form.0, order.extended.0, order.tool);
         Ok(())
@@ -76,18 +76,18 @@ impl World {
         check_tool(order.tool)?;
         if self.arm.groups[group].family == Family::Station {
             let target = self.station_target(group, &order.station_axes, false)?;
-            return self.go(instance, &[target], speed);
+            return self.go(&[target], speed);
         }
         check_unused(&order.station_axes)?;
         let mut targets = vec![(group, self.pulses(group, &order.axes)?)];
         let number = self.arm.groups[group].number;
         targets.extend(self.base_target(number, &order.base.map(f64::from), false)?);
-        self.go(instance, &targets, speed)?;
+        self.go(&targets, speed)?;
         self.arm.groups[group].tool = order.tool;
         Ok(())
     }
 
-    fn go(&mut self, instance: u16, targets: &[(usize, Pulses)], speed: Ordered) -> Result<(), Refusal> {
+    fn go(&mut self, targets: &[(usize, Pulses)], speed: Ordered) -> Result<(), Refusal> {
         match speed {
             Ordered::Share(share) => self.arm.joint(self.now, targets, share),
             Ordered::Speed(speed) => {
@@ -99,7 +99,6 @@ impl World {
                     Speed::Linear(speed) if self.switches.guard => Speed::Linear(speed.min(GUARDED_MM_S)),
                     speed => speed,
                 };
-                debug_assert_ne!(instance, LINK, "link moves have a share");
                 self.arm.straight(self.now, targets, speed);
             }
         }

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::job::{Arithmetic, Condition, Instruction, Move, Operand, Place, Program, Target};
 use super::memory::Kind;
-use super::motion::{AXES, Family, Pulses, Speed, inverse};
+use super::motion::{AXES, Family, MAX_LINEAR_MM_S, Pose, Pulses, Speed, inverse};
 use super::world::World;
 use crate::controller::Now;
 use crate::controller::yerc::payload::{CycleMode, JobInfo, Text};
@@ -275,9 +275,9 @@ impl World {
             }
         };
         if order.straight {
-            self.arm.straight(self.now, &[(robot, pulses)], Speed::Linear(order.speed));
+            self.arm.straight(self.now, &[(robot, pulses)], Speed::Linear(order.speed.min(MAX_LINEAR_MM_S)));
         } else {
-            self.arm.joint(self.now, &[(robot, pulses)], order.speed / 100.0);
+            self.arm.joint(self.now, &[(robot, pulses)], (order.speed / 100.0).min(1.0));
         }
         self.player.state = State::Moving;
         Ok(())
@@ -297,8 +297,14 @@ impl World {
                 let pulses: Pulses = std::array::from_fn(|i| f64::from(axes[i]));
                 Some(Target::Pulses(pulses))
             }
-            16 | 17 => {
-                Some(Target::Base(std::array::from_fn(|i| f64::from(axes[i]) / if i < 3 { 1000.0 } else { 10_000.0 })))
+            kind @ (16 | 17) => {
+                let mut pose: Pose =
+                    std::array::from_fn(|i| f64::from(axes[i]) / if i < 3 { 1000.0 } else { 10_000.0 });
+                if kind == 17 {
+                    // Robot coordinates travel with the base.
+                    pose[0] += self.arm.base_offset(1);
+                }
+                Some(Target::Base(pose))
             }
             _ => None,
         }

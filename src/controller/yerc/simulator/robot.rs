@@ -54,10 +54,12 @@ fn software(version: &str) -> (u32, u32) {
 }
 
 fn check_attribute(row: &Row, service: &Service, attribute: u8) -> Result<(), Refusal> {
+    // The manuals want 1 for a variable; clients that run on controllers send 0 with either pair of services.
+    let lenient = row.services.iter().any(|service| service.attribute == Attribute::OneOrZero);
     let known = match service.attribute {
         Attribute::Zero => attribute == 0,
-        Attribute::One => attribute == 1,
-        Attribute::OneOrZero => attribute <= 1,
+        Attribute::One if !lenient => attribute == 1,
+        Attribute::One | Attribute::OneOrZero => attribute <= 1,
         // Position variables are also read and written whole with the single services (attribute 0), as one client does.
         Attribute::Field => {
             usize::from(attribute) <= row.fields.len() && (attribute != 0 || row.service(service::SET_ALL).is_some())

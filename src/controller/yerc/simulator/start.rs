@@ -24,7 +24,8 @@ use crate::controller::yerc::payload::{
     Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind,
 };
 
-/// What a simulated controller is like when it starts; [`Start::parse`] reads it, [`Start::default`] is a DX200.
+/// What a simulated controller is like when it starts; [`Start::parse`] reads it (see [`EXAMPLE`]), [`Start::default`]
+/// is a DX200.
 #[derive(Debug, Clone)]
 pub struct Start {
     pub(super) world: World,
@@ -35,6 +36,66 @@ pub struct Start {
     pub(super) backup_size: u64,
     pub(super) idle_limit: Duration,
 }
+
+/// A start state that names the keys there are; each can be left out.
+pub const EXAMPLE: &str = r#"model = "dx200"                 # or "fs100"
+mode = "play"                   # or "teach"
+remote = true                   # command remote (#82015)
+servo = true
+cycle = "once"                  # step, once, continuous
+play_write = true               # S2C541 = 0: variables can be written in play mode
+clock = "2026/03/14 08:00"
+installed = "2025/10/10 15:49"  # when running times began to count
+hours = { control = 2345, servo = 1890, playback = 1234, motion = 987 }
+software = "DS2.07.00A(JP/US)-00"
+robot_model = "ES0165D-A0*"
+application = "ARC WELDING"
+parameter_version = "12.34"
+groups = ["R1", "B1", "S1"]
+robot_axes = 6                  # or 7
+positions = { R1 = [0, 0, 0, 0, 0, 0], B1 = [0] }
+user_frames = { 1 = [500.0, 0.0, 0.0, 0.0] }  # X, Y, Z in mm, turn about Z in degrees
+job = "TESTJOB"                 # the job to execute
+
+variables = { B0 = 7, I1 = -2, D2 = 100000, R3 = 1.5, S4 = "HELLO", P5 = { type = "pulse", axes = [1, 2, 3] } }
+registers = { 10 = 4660 }
+ladder_registers = [540, 541]   # a write to these is accepted and does not last
+io = { 10010 = true }
+
+seed = 0
+answer_delay_ms = 0             # 5 to 20 on a real controller
+busy = 0.0                      # share of requests refused as busy
+backup_seconds = 3              # 600 on a real controller
+backup_size = 100000
+transfer_timeout_ms = 5000
+capacity = 268435456            # bytes for all files
+replace_jobs = false            # true: loading replaces a job of the same name
+stock = true                    # false: no files, variables and history but what is named here
+
+alarm = [{ code = 4315, data = 3, type = 1 }]
+history = [{ code = 9001, data = 5, type = 1, time = "2026/02/28 17:30", name = "PART MISSING", class = "user" }]
+
+[[file]]
+name = "BLINK.JBI"              # text, path, or size
+text = """
+/JOB
+//NAME BLINK
+//INST
+NOP
+DOUT OT#(1) ON
+TIMER T=0.50
+DOUT OT#(1) OFF
+END
+"""
+
+[[file]]
+name = "BIG.DAT"
+size = 67108864                 # made up as it is read
+
+[[event]]
+at_ms = 60000
+do = "alarm clear"              # any line of the console
+"#;
 
 impl Default for Start {
     fn default() -> Self {
@@ -127,8 +188,8 @@ struct Entries {
     history: Option<Vec<AlarmEntry>>,
     #[serde(rename = "file")]
     files: Vec<Spanned<FileEntry>>,
-    /// Whether the files of a fresh controller are there.
-    stock_files: bool,
+    /// Whether the files, variables and alarms of a fresh controller are there.
+    stock: bool,
     #[serde(rename = "event")]
     events: Vec<Spanned<Event>>,
 }
@@ -170,7 +231,7 @@ impl Default for Entries {
             alarms: Vec::new(),
             history: None,
             files: Vec::new(),
-            stock_files: true,
+            stock: true,
             events: Vec::new(),
         }
     }
@@ -275,7 +336,7 @@ fn build(
         return Err(at.wrong(&entries.busy, "busy is a share from 0 to 1"));
     }
     let mut world = bare_world(entries, &at)?;
-    if entries.stock_files {
+    if entries.stock {
         defaults::fill(&mut world);
     }
     for (name, value) in &entries.variables {

@@ -46,6 +46,8 @@ struct Transfer {
     service: u8,
     /// Id and data of the request that began it.
     request: (u8, Vec<u8>),
+    /// Id of the transfer before this one: what bears it and comes first is a late copy.
+    previous: Option<u8>,
     /// Id of the latest frame, which answers bear.
     id: u8,
     stage: Stage,
@@ -70,6 +72,15 @@ impl Transfer {
             && (self.request.0, self.request.1.as_slice()) == (request.id, request.data)
             && AnswerFrame::parse(&self.last_frame).is_ok_and(|ack| ack.status.is_ok())
             && now < self.heard + COPY
+    }
+
+    /// Whether no block has been acknowledged yet.
+    fn at_start(&self) -> bool {
+        match self.stage {
+            Stage::Sending { block, .. } => block == 1,
+            Stage::Receiving { received, .. } => received == 0,
+            _ => false,
+        }
     }
 
     /// Whether it keeps others waiting. Once the last block is out only its ACK is missing, and that may be lost.
@@ -162,12 +173,7 @@ impl FileServer {
                 transfer.id = request.id;
                 return None;
             }
-            let at_start = match transfer.stage {
-                Stage::Sending { block, .. } => block == 1,
-                Stage::Receiving { received, .. } => received == 0,
-                _ => false,
-            };
-            if same && (at_start || transfer.request.0 == request.id && now < transfer.heard + COPY) {
+            if same && (transfer.at_start() || transfer.request.0 == request.id && now < transfer.heard + COPY) {
                 return repeat(transfer, now, request.id);
             }
         }
@@ -235,6 +241,7 @@ impl FileServer {
             peer,
             service: request.service,
             request: (request.id, request.data.to_vec()),
+            previous: self.transfer.as_ref().filter(|transfer| transfer.peer == peer).map(|transfer| transfer.id),
             id: request.id,
             stage,
             last_frame: last_frame.clone(),
@@ -253,6 +260,9 @@ impl FileServer {
             let stray = request.service == service::LOAD;
             return stray.then(|| refusal(world, request, Refusal::Added(code::ACK)));
         };
+        if transfer.at_start() && request.id != transfer.request.0 && transfer.previous == Some(request.id) {
+            return None;
+        }
         transfer.id = request.id;
         transfer.heard = now;
         match &mut transfer.stage {
@@ -268,7 +278,8 @@ impl FileServer {
             }
             Stage::Sending { content, block, is_backup } => {
                 let current = if is_last(content, *block) { *block | LAST_BLOCK } else { *block };
-                if request.block == current {
+                // One client leaves the top bit out of its last ACK.
+                if request.block == current || request.block == *block {
                     if current & LAST_BLOCK != 0 {
                         if *is_backup {
                             world.files.backup = None;
