@@ -4,25 +4,30 @@ use clap::{Args, CommandFactory as _};
 
 use crate::cli::Cli;
 use crate::command::run::Run;
+use crate::controller::yerc::simulator;
 use crate::failure::{Failure, Kind};
 use crate::settings::inventory::nearest;
 
 /// Explains a topic, or a command.
 #[derive(Debug, Args)]
 pub struct Help {
-    /// A topic (exit-codes, targets, inventory, output, safety, scripting, yerc-setup), or a command
+    /// A topic (exit-codes, targets, inventory, output, safety, scripting, simulator, yerc-setup), or a command
     words: Vec<String>,
 }
 
 /// Topics with a line about each and their text.
-const TOPICS: [(&str, &str, &str); 6] = [
+const TOPICS: [(&str, &str, &str); 7] = [
     ("targets", "how to say which robot", include_str!("topics/targets.txt")),
     ("inventory", "robots.toml", include_str!("topics/inventory.txt")),
     ("output", "tables, JSON, jq, colour", include_str!("topics/output.txt")),
     ("safety", "what asks, what refuses, what Ctrl-C does", include_str!("topics/safety.txt")),
     ("scripting", "watching, waiting, piping", include_str!("topics/scripting.txt")),
+    (SIMULATOR, "servers, start state, console, faults", include_str!("topics/simulator.txt")),
     ("yerc-setup", "settings of an FS100 or DX200", include_str!("topics/yerc-setup.txt")),
 ];
+
+/// The topic that ends with the example that the simulator's own tests read.
+const SIMULATOR: &str = "simulator";
 
 /// The topic that is made from the table of failures.
 const EXIT_CODES: &str = "exit-codes";
@@ -40,7 +45,8 @@ pub fn text(words: &[String], color: bool) -> Result<String, Failure> {
             return Ok(exit_codes());
         }
         if let Some((.., text)) = TOPICS.iter().find(|(name, ..)| name == word) {
-            return Ok((*text).to_owned());
+            let example = if word == SIMULATOR { simulator::EXAMPLE } else { "" };
+            return Ok(format!("{text}{example}"));
         }
     }
     let mut root = Cli::command();
