@@ -135,8 +135,19 @@ fn known_name(code: u32) -> &'static str {
 
 /// Text and reverse-video map of a sub-code by alarm type (DX 3.3.1); which bit is which axis is this simulator's choice.
 fn sub_code(alarm: &Alarm) -> (String, String) {
-    let names: &[&str] = match alarm.kind.0 {
-        3 => &["S", "L", "U", "R", "B", "T"],
+    const ROBOT: &[&str] = &["S", "L", "U", "R", "B", "T"];
+    let names = match alarm.kind.0 {
+        3 => ROBOT,
+        21 => {
+            let [min, max, robot, _] = alarm.data.to_le_bytes();
+            let (low, low_reversed) = axes(ROBOT, min.into());
+            let (high, high_reversed) = axes(ROBOT, max.into());
+            let bare = |text: &str| text.trim_matches(['[', ']']).to_owned();
+            let inner = |map: &str| map[1..map.len() - 1].to_owned();
+            let head = format!("[R{robot}: MIN ");
+            let reversed = "0".repeat(head.len()) + &inner(&low_reversed) + "000000" + &inner(&high_reversed) + "0";
+            return (format!("{head}{}, MAX {}]", bare(&low), bare(&high)), reversed);
+        }
         4 => &["X", "Y", "Z"],
         5 => &["X", "Y", "Z", "Rx", "Ry", "Rz"],
         8 => &["R1", "R2", "S1", "S2"],
@@ -149,6 +160,12 @@ fn sub_code(alarm: &Alarm) -> (String, String) {
         }
     };
     axes(names, alarm.data)
+}
+
+/// A sub-code of type 21 as this simulator lays it out: axes at their lower limit, at their upper limit, robot number.
+pub(super) fn limit_data(robot: u16, axis: usize, upper: bool) -> u32 {
+    let bit = 1u32 << axis.min(7);
+    u32::from(robot) << 16 | if upper { bit << 8 } else { bit }
 }
 
 /// Names in brackets; the ones whose bit is set are shown reversed.
@@ -186,6 +203,10 @@ mod tests {
         assert_eq!(texts(1, 3).0, "[3]");
         assert_eq!(texts(3, 0b10), ("[SLURBT]".into(), "00100000".into()));
         assert_eq!(texts(5, 0b1000).1, "00001100000");
+        let (text, reversed) = texts(21, limit_data(1, 1, true));
+        assert_eq!(text, "[R1: MIN SLURBT, MAX SLURBT]");
+        assert_eq!(reversed.find('1'), text.rfind('L'));
+        assert_eq!(reversed.len(), text.len());
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::memory::io_class;
 use super::world::{Mode, World};
 use crate::controller::yerc::payload::CycleMode;
 
-/// The lines there are, as an unknown one is answered.
+/// The lines there are, as `help` shows them.
 const USAGE: &str = "alarm CODE [DATA [TYPE]] [NAME] | alarm clear | error on|off | mode teach|play | remote on|off | \
 servo on|off | cycle step|once|continuous | hold pendant|external on|off | estop [off] | guard on|off | edit on|off | \
 convert on|off | io SIGNAL on|off | register NUMBER VALUE | state";
@@ -14,6 +14,7 @@ convert on|off | io SIGNAL on|off | register NUMBER VALUE | state";
 pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
     let words: Vec<&str> = line.split_whitespace().collect();
     match words.as_slice() {
+        ["help"] => return Ok(USAGE.replace(" | ", "\n")),
         ["state"] => return Ok(state(world)),
         ["alarm", "clear"] => world.alarms.clear(),
         ["alarm", rest @ ..] => return alarm(world, rest),
@@ -53,7 +54,7 @@ pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
         ["convert", state] => world.switches.converting = on_off(state)?,
         ["io", signal, state] => return io(world, signal, on_off(state)?),
         ["register", number, value] => return register(world, number, value),
-        _ => return Err(format!("no such line: '{}'; there are {USAGE}", line.trim())),
+        _ => return Err(format!("no such line: '{}'", line.trim())),
     }
     Ok(summary(world))
 }

@@ -5,10 +5,10 @@ use std::collections::VecDeque;
 use jiff::SignedDuration;
 use jiff::civil::DateTime;
 
-use super::alarms::{AlarmLog, alarm};
+use super::alarms::{AlarmLog, alarm, limit_data};
 use super::console;
 use super::memory::Memory;
-use super::motion::{Arm, End};
+use super::motion::{Arm, End, Family, Group};
 use super::playback::Player;
 use super::storage::Storage;
 use crate::controller::Now;
@@ -235,8 +235,13 @@ impl World {
         match self.arm.advance(self.now) {
             Some(End::Arrived) => self.motion_done(),
             Some(End::Limit(group, axis)) => {
-                // Alarm type 21 names a group and the axis at its limit.
-                self.raise(4416, 1 << axis | u32::try_from(group).unwrap_or(0) << 16, 21, None);
+                let Group { family, number, pulses, .. } = &self.arm.groups[group];
+                // Alarm type 21 shows a robot's axes at their lower and at their upper limit.
+                let (kind, data) = match family {
+                    Family::Robot => (21, limit_data(*number, axis, pulses[axis] > 0.0)),
+                    Family::Base | Family::Station => (0, 0),
+                };
+                self.raise(4416, data, kind, None);
             }
             Some(End::Stopped) | None => {}
         }
