@@ -169,8 +169,9 @@ fn refuse(args: &[OsString], error: &clap::Error) -> ExitCode {
     }
     if is_json {
         let text = rendered.to_string();
-        let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
-        return tell(&screen, Failure::usage(message).hint("see --help").into());
+        let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
+        let tip = text.lines().find_map(|line| line.trim().strip_prefix("tip: ")).unwrap_or("see --help");
+        return tell(&screen, Failure::usage(message).hint(tip).into());
     }
     screen.usage(&rendered);
     ExitCode::from(Kind::Usage.exit())

@@ -97,7 +97,7 @@ impl Failure {
         match error.kind() {
             ErrorKind::PermissionDenied => failure.hint("check the permissions of the folder, or choose another"),
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-                failure.hint("free some space and repeat; nothing was replaced")
+                failure.hint("free some space, and repeat the command")
             }
             ErrorKind::NotFound => failure.hint("check the path; folders are not made silently"),
             _ => failure,
