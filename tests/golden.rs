@@ -397,7 +397,7 @@ fn alarm_answers() -> Vec<(&'static str, Expected)> {
             "A01",
             answer(|data| {
                 assert_eq!(ReadAlarm::new(1, false).unwrap().decode(data), Ok(collision()));
-                assert_eq!(collision().sub_code().to_string(), "[3]");
+                assert_eq!(collision().sub_code(Dx200).to_string(), "[3]");
                 collision().emit()
             }),
         ),

@@ -264,7 +264,7 @@ proptest! {
         let _ = (Alarm::parse(&data), Alarm::parse_with_texts(&data), JobInfo::parse(&data), AxisNames::parse(&data));
         let _ = (ManagementTime::parse(&data).map(|time| time.seconds()), SystemInfo::parse(&data), Axes::parse(&data));
         if let Ok(alarm) = Alarm::parse(&data) {
-            let _ = alarm.sub_code().to_string();
+            let _ = alarm.sub_code(Model::Dx200).to_string();
         }
         for kind in VariableKind::all() {
             if let Ok(Value::Position(position)) = Value::parse(kind, &data) {

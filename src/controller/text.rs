@@ -272,7 +272,8 @@ fn escaped(text: &str) -> Option<u8> {
     (lower_hex && byte >= 0x80).then_some(byte)
 }
 
-fn hex(bytes: &[u8]) -> String {
+/// Bytes as lower-case hexadecimal digits.
+pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().fold(String::with_capacity(bytes.len() * 2), |mut text, byte| {
         write!(text, "{byte:02x}").expect("writing to a String does not fail");
         text

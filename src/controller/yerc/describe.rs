@@ -7,6 +7,7 @@ use super::payload::PositionKind;
 use super::request::Request;
 use super::table::{Action, BATCH_BACKUP_PATH, Row};
 use super::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, RequestFrame, Status, WireError};
+use crate::controller::text::hex;
 
 /// A frame in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -352,12 +353,6 @@ fn attribute_words(row: &Row, allowed: bool, request: &Request) -> String {
 /// Little-endian value of at most 8 bytes.
 fn little(bytes: &[u8]) -> u64 {
     bytes.iter().take(8).rev().fold(0, |value, byte| value << 8 | u64::from(*byte))
-}
-
-fn hex(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 16] = b"0123456789abcdef";
-    let digits = bytes.iter().flat_map(|byte| [byte >> 4, byte & 15]);
-    digits.map(|digit| char::from(DIGITS[usize::from(digit)])).collect()
 }
 
 /// What is known about the numbers that follow in an element.

@@ -17,6 +17,7 @@
 use std::fmt;
 
 use super::Model;
+use super::payload::AlarmKind;
 
 /// How far a rendering can be trusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -56,11 +57,12 @@ pub struct SubCode {
     pub trust: Trust,
 }
 
-/// Renders the sub-code `data` of an alarm of type `alarm_type`. The model bounds the number of robots. Never fails:
+/// Renders the sub-code `data` of an alarm of type `kind`. The model bounds the number of robots. Never fails:
 /// unknown types and values that do not fit come through raw.
-pub fn render(alarm_type: u32, data: u32, model: Model) -> SubCode {
-    let row = TYPES.iter().find(|(number, ..)| *number == alarm_type);
-    let (type_name, form) = row.map_or(("undocumented type", Form::Unknown), |(_, name, form)| (*name, *form));
+pub fn render(kind: AlarmKind, data: u32, model: Model) -> SubCode {
+    let alarm_type = kind.0;
+    let form = TYPES.iter().find(|(number, _)| *number == alarm_type).map_or(Form::Unknown, |(_, form)| *form);
+    let type_name = kind.meaning().unwrap_or("undocumented type");
     let (text, trust) = form.render(data, model).unwrap_or_else(|| (bytes(data), Trust::Raw));
     SubCode { alarm_type, data, type_name, text, trust }
 }
@@ -89,27 +91,27 @@ const ROBOT_AXES: &[&str] = &["S", "L", "U", "R", "B", "T", "E"];
 const SPACE_AXES: &[&str] = &["X", "Y", "Z"];
 const POSE_AXES: &[&str] = &["X", "Y", "Z", "Rx", "Ry", "Rz"];
 
-/// The types of FS and DX 3.3.1, ascending. FS prints type 27 as `[R1: 1]`; DX repeats the example of type 25 there.
-const TYPES: [(u32, &str, Form); 19] = [
-    (0, "no sub-code", Form::Empty),
-    (1, "number", Form::Unsigned16),
-    (2, "8-bit pattern", Form::Bits(8)),
-    (3, "axes of the robot", Form::Axes(ROBOT_AXES)),
-    (4, "directions in space", Form::Axes(SPACE_AXES)),
-    (5, "directions of the robot's coordinates", Form::Axes(POSE_AXES)),
-    (6, "conveyor characteristic file", Form::Unsigned16),
-    (8, "control groups: robots and stations", Form::Groups),
-    (9, "signed number", Form::Signed16),
-    (10, "16-bit pattern", Form::Bits(16)),
-    (11, "control groups: robots", Form::Groups),
-    (12, "control groups: robots, stations, bases", Form::Groups),
-    (20, "control group with its LOW and HIGH axes", Form::Unknown),
-    (21, "control group with its MIN and MAX axes", Form::Unknown),
-    (22, "control group with its MIN and MAX directions in space", Form::Unknown),
-    (23, "two control groups with their axes", Form::Unknown),
-    (24, "control group with two sets of axes", Form::Unknown),
-    (25, "control group with its axes and a number", Form::Unknown),
-    (27, "control group and a number", Form::Unknown),
+/// The form of each type of FS and DX 3.3.1, ascending; the table of commands has their names. FS prints type 27 as `[R1: 1]`; DX repeats the example of type 25 there.
+const TYPES: [(u32, Form); 19] = [
+    (0, Form::Empty),
+    (1, Form::Unsigned16),
+    (2, Form::Bits(8)),
+    (3, Form::Axes(ROBOT_AXES)),
+    (4, Form::Axes(SPACE_AXES)),
+    (5, Form::Axes(POSE_AXES)),
+    (6, Form::Unsigned16),
+    (8, Form::Groups),
+    (9, Form::Signed16),
+    (10, Form::Bits(16)),
+    (11, Form::Groups),
+    (12, Form::Groups),
+    (20, Form::Unknown),
+    (21, Form::Unknown),
+    (22, Form::Unknown),
+    (23, Form::Unknown),
+    (24, Form::Unknown),
+    (25, Form::Unknown),
+    (27, Form::Unknown),
 ];
 
 impl Form {
@@ -195,7 +197,7 @@ mod tests {
     use super::*;
 
     fn dx200(alarm_type: u32, data: u32) -> (String, Trust) {
-        let found = render(alarm_type, data, Model::Dx200);
+        let found = render(AlarmKind(alarm_type), data, Model::Dx200);
         assert_eq!((found.alarm_type, found.data), (alarm_type, data));
         (found.text, found.trust)
     }
@@ -232,7 +234,7 @@ mod tests {
     #[test]
     fn groups_past_the_robots_keep_their_bit_number() {
         assert_eq!(dx200(8, 0x0101).0, "[R1(bit 8)]");
-        assert_eq!(render(8, 0b111, Model::Fs100).text, "[R1R2(bit 2)]");
+        assert_eq!(render(AlarmKind(8), 0b111, Model::Fs100).text, "[R1R2(bit 2)]");
         assert_eq!(dx200(12, 0x8000_0000).0, "[(bit 31)]");
     }
 
@@ -240,7 +242,7 @@ mod tests {
     fn composed_types_stay_raw() {
         for alarm_type in [20, 21, 22, 23, 24, 25, 27] {
             assert_eq!(dx200(alarm_type, 0x0003_3F01), ("01 3f 03 00".to_owned(), Trust::Raw));
-            assert_ne!(render(alarm_type, 0, Model::Dx200).type_name, "undocumented type");
+            assert_ne!(render(AlarmKind(alarm_type), 0, Model::Dx200).type_name, "undocumented type");
         }
     }
 
@@ -259,12 +261,12 @@ mod tests {
         ] {
             assert_eq!(dx200(alarm_type, data), (bytes(data), Trust::Raw), "type {alarm_type}");
         }
-        assert_eq!(render(26, 7, Model::Dx200).type_name, "undocumented type");
+        assert_eq!(render(AlarmKind(26), 7, Model::Dx200).type_name, "undocumented type");
     }
 
     #[test]
     fn uncertain_text_shows_the_raw_value_too() {
-        let shown = |alarm_type, data| render(alarm_type, data, Model::Dx200).to_string();
+        let shown = |alarm_type, data| render(AlarmKind(alarm_type), data, Model::Dx200).to_string();
         assert_eq!(shown(1, 3), "[3]");
         assert_eq!(shown(3, 3), "[SL]? (3 = 0x3)");
         assert_eq!(shown(20, 0x3F01), "16129 = 0x3f01 (not decoded; bytes 01 3f 00 00)");
@@ -279,7 +281,7 @@ mod tests {
     proptest! {
         #[test]
         fn any_value_is_shown(alarm_type in 0_u32..40, data: u32) {
-            let found = render(alarm_type, data, Model::Dx200);
+            let found = render(AlarmKind(alarm_type), data, Model::Dx200);
             prop_assert!(found.text.is_ascii());
             prop_assert_eq!(found.text.is_empty(), found.to_string().is_empty());
             prop_assert!(data == 0 || !found.text.is_empty());

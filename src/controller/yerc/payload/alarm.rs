@@ -1,8 +1,8 @@
 //! Alarms (FS and DX 3.3.1, 3.3.2; with sub-code strings 3.3.37, 3.3.38).
 
-use std::fmt;
-
 use super::{PayloadError, Reader, Text, push_u32s};
+use crate::controller::yerc::Model;
+use crate::controller::yerc::subcode::{self, SubCode};
 use crate::controller::yerc::table::ALARM_KINDS;
 
 /// How the sub-code of an alarm is to be read; numbers without a meaning are kept.
@@ -93,49 +93,8 @@ impl Alarm {
         self.code == 0
     }
 
-    /// The sub-code as a pendant shows it, e.g. `[3]`.
-    ///
-    /// Plain numbers and bit patterns are rendered. For axes and groups the manuals print examples but not which bit is
-    /// which, so those show the raw word; the texts of 0x30A name them.
-    pub fn sub_code(&self) -> SubCode {
-        SubCode { kind: self.kind, data: self.data }
-    }
-}
-
-/// Displays a sub-code by its kind; nothing when there is none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct SubCode {
-    kind: AlarmKind,
-    data: u32,
-}
-
-impl fmt::Display for SubCode {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [b0, b1, ..] = self.data.to_le_bytes();
-        match self.kind.0 {
-            0 if self.data == 0 => Ok(()),
-            1 | 6 => write!(f, "[{}]", u16::from_le_bytes([b0, b1])),
-            9 => write!(f, "[{}]", i16::from_le_bytes([b0, b1])),
-            2 => write!(f, "[{:04b}_{:04b}]", b0 >> 4, b0 & 15),
-            10 => write!(f, "[{:04b}_{:04b}_{:04b}_{:04b}]", b1 >> 4, b1 & 15, b0 >> 4, b0 & 15),
-            _ => write!(f, "[{:#x}]", self.data),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sub_codes_read_as_on_the_pendant() {
-        let show = |kind, data| SubCode { kind: AlarmKind(kind), data }.to_string();
-        assert_eq!(show(0, 0), "");
-        assert_eq!(show(1, 3), "[3]");
-        assert_eq!(show(9, 0xFFFF), "[-1]");
-        assert_eq!(show(2, 1), "[0000_0001]");
-        assert_eq!(show(10, 0x8001), "[1000_0000_0000_0001]");
-        assert_eq!(show(8, 5), "[0x5]");
-        assert_eq!(show(13, 0), "[0x0]");
+    /// The sub-code in words; the texts of 0x30A say more where a controller has them.
+    pub fn sub_code(&self, model: Model) -> SubCode {
+        subcode::render(self.kind, self.data, model)
     }
 }

@@ -18,6 +18,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::Duration;
 
+use super::status;
 use super::wire::{ANSWER_BIT, AnswerFrame, RequestFrame, Status, WireError};
 use crate::controller::Now;
 
@@ -29,9 +30,6 @@ pub use download::{Download, DownloadEnd, Violation};
 pub use exchange::{Ended, Exchange, Reply};
 pub use upload::{Upload, UploadEnd};
 
-/// Added status codes that say "not now": the request was not carried out and may be sent again (DX chapter 4).
-pub const BUSY: [u32; 4] = [0xD8F1, 0xD8FA, 0xE444, 0xFFF6];
-
 /// The pause after the first busy refusal; it doubles with each, up to [`LONGEST_PAUSE`].
 const FIRST_PAUSE: Duration = Duration::from_millis(100);
 const LONGEST_PAUSE: Duration = Duration::from_secs(1);
@@ -40,8 +38,8 @@ const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 const LATE_WINDOW: u8 = 32;
 
 /// Whether a controller refused only because it was busy.
-pub fn is_busy(status: Status) -> bool {
-    !status.is_ok() && BUSY.contains(&status.added)
+pub fn is_busy(result: Status) -> bool {
+    !result.is_ok() && status::is_busy(result.added)
 }
 
 /// How long to wait and how often to try.

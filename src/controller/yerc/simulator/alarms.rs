@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use encoding_rs::SHIFT_JIS;
 
+use crate::controller::yerc::Model;
 use crate::controller::yerc::payload::{Alarm, AlarmKind, AlarmTexts, Text};
 
 /// Alarms that can be active at a time.
@@ -154,7 +155,7 @@ fn sub_code(alarm: &Alarm) -> (String, String) {
         11 => &["R1"],
         12 => &["R1", "S1", "B1"],
         _ => {
-            let text = alarm.sub_code().to_string();
+            let text = alarm.sub_code(Model::Dx200).to_string();
             let reversed = "0".repeat(text.len());
             return (text, reversed);
         }

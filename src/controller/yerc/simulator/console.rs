@@ -174,7 +174,7 @@ fn state(world: &World) -> String {
     }
     for alarm in world.alarms.active() {
         let (name, ..) = encoding_rs::SHIFT_JIS.decode(alarm.name.as_bytes());
-        lines.push(format!("alarm {} {name} {}", alarm.code, alarm.sub_code()).trim_end().to_owned());
+        lines.push(format!("alarm {} {name} {}", alarm.code, alarm.sub_code(world.model)).trim_end().to_owned());
     }
     if !world.switches.message.is_empty() {
         let (text, ..) = encoding_rs::SHIFT_JIS.decode(&world.switches.message);
