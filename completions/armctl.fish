@@ -1,0 +1,689 @@
+# Print an optspec for argparse to handle cmd's options that are independent of any subcommand.
+function __fish_armctl_global_optspecs
+    string join \n sim t/target= r/robot= all tag= config= o/format= json jq= q/quiet v/verbose color= trace= y/yes dry-run on-interrupt= timeout= retries= encoding= watch= count= until= for= h/help V/version
+end
+
+function __fish_armctl_needs_command
+    # Figure out if the current invocation already has a command.
+    set -l cmd (commandline -opc)
+    set -e cmd[1]
+    argparse -s (__fish_armctl_global_optspecs) -- $cmd 2>/dev/null
+    or return
+    if set -q argv[1]
+        # Also print the command, so this can be used to figure out what it is.
+        echo $argv[1]
+        return 1
+    end
+    return 0
+end
+
+function __fish_armctl_using_subcommand
+    set -l cmd (__fish_armctl_needs_command)
+    test -z "$cmd"
+    and return 1
+    contains -- $cmd[1] $argv
+end
+
+complete -c armctl -n "__fish_armctl_needs_command" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_needs_command" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_needs_command" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_needs_command" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_needs_command" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_needs_command" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_needs_command" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_needs_command" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_needs_command" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_needs_command" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_needs_command" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_needs_command" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_needs_command" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_needs_command" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_needs_command" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_needs_command" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_needs_command" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_needs_command" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_needs_command" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_needs_command" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_needs_command" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_needs_command" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_needs_command" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_needs_command" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_needs_command" -s V -l version -d 'Print version'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "yerc" -d 'Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "robots" -d 'The inventory: list, show, add, remove'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "sim" -d 'Serve the simulators on real sockets'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "explain" -d 'What an error or alarm code means and what to do'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "completions" -d 'Print the completion script of a shell'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "man" -d 'Write the man pages'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "schema" -d 'Print the JSON Schema of a report'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "help" -d 'Explain a topic, or a command'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -f -a "status" -d 'Mode, cycle, servo, hold, alarm: every status bit'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -f -a "servo" -d 'Switch servo power'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -f -a "hold" -d 'Hold the robot, or let it go on'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -f -a "hlock" -d 'Lock or unlock the pendant and the operation signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -f -a "cycle" -d 'Choose step, one cycle or continuous'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -f -a "say" -d 'Show a message on the pendant'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -f -a "list" -d 'Every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -f -a "show" -d 'One robot with every setting in force'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -f -a "add" -d 'Add a robot'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -f -a "remove" -d 'Remove a robot'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l origin -d 'Say where each value came from'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l family -d 'Its family, where the URL does not tell' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l with-tag -d 'A word to choose it by (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l read-only -d 'Take read commands only'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l default -d 'Make it the robot that is taken when none is named'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -f -a "yerc" -d 'An FS100 or DX200 on two UDP ports'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l bind -d 'Address to listen on, with the port of the robot server; port 0 lets the system choose' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l file-port -d 'Port of the file server; one above the robot server\'s unless given' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l model -d 'Controller model, fs100 or dx200' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l state -d 'Start state (TOML): modes, variables, jobs, files, alarms, timed events' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l fault -d 'Faults on the line, such as drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l console -d 'Take lines on stdin: `alarm 4315`, `mode teach`, `io 20010 on`, `help`'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -f -a "yerc" -d 'A status code (one byte) or added status code (two bytes) of an FS100 or DX200'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l dir -d 'The folder, such as /usr/local/share/man/man1; it must exist' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand man" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand man" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand man" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand man" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand man" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand man" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand man" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand help" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand help" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand help" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand help" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand help" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand help" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand help" -s h -l help -d 'Print help (see more with \'--help\')'

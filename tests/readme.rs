@@ -1,0 +1,194 @@
+//! Runs the console blocks of the README and of `docs/` with the built binary and compares what they print.
+//!
+//! A block is one shell session in a folder of its own, with a home of its own and no `ARMCTL_…` variables. `...` on a
+//! line of its own stands for any lines, `[..]` for any text within a line. A command may only fail where the next one
+//! is `echo $?`. Blocks that speak of `127.0.0.1:10040` get a simulator of their own, on ports that the system chooses.
+//! TOML blocks that begin with `# NAME.toml` lie in the folders of that page's blocks as files of that name.
+//! Blocks marked `sh` are not run: installation, real controllers.
+//!
+//! `ARMCTL_BLESS=1 cargo test --test readme` writes what was printed into the blocks that differ.
+#![cfg(unix)]
+
+use std::io::{BufRead as _, BufReader};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+use snapbox::IntoData as _;
+
+/// Where blocks find the simulator, as a reader starts it without arguments.
+const DOCUMENTED: &str = "127.0.0.1:10040";
+/// Separates the commands of a block in the output of its shell.
+const MARK: &str = "\u{1}--next--";
+/// Pages with blocks.
+const PAGES: [&str; 2] = ["README.md", "docs/yerc.md"];
+
+#[test]
+fn console_blocks_print_what_they_show() {
+    let bless = std::env::var_os("ARMCTL_BLESS").is_some();
+    let mut wrong = Vec::new();
+    for page in PAGES {
+        let path = root().join(page);
+        let Ok(mut text) = std::fs::read_to_string(&path) else { panic!("{page} is missing") };
+        let files = files(&text);
+        for (number, range) in blocks(&text, "console").into_iter().enumerate().rev() {
+            let block = text[range.clone()].to_owned();
+            let printed = match run(&block, &files) {
+                Ok(printed) => printed,
+                Err(why) => {
+                    wrong.push(format!("{page}, block {}: {why}", number + 1));
+                    continue;
+                }
+            };
+            let compared =
+                snapbox::Assert::new().try_eq(Some(&page), printed.as_str().into_data(), block.as_str().into_data());
+            match compared {
+                Ok(()) => {}
+                Err(_) if bless => text.replace_range(range, &printed),
+                Err(difference) => wrong.push(format!("{page}, block {}:\n{difference}", number + 1)),
+            }
+        }
+        if bless {
+            std::fs::write(&path, text).expect("the page is writable");
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_set_up_takes_exactly_the_two_commands() {
+    let readme = std::fs::read_to_string(root().join("README.md")).expect("README.md");
+    let (_, after) = readme.split_once("## Try it").expect("a section that says how to start");
+    let block = after.split("```").nth(1).expect("the section has a block");
+    let commands: Vec<&str> = block.lines().skip(1).filter(|line| !line.trim().is_empty()).collect();
+    assert_eq!(commands, ["cargo run --release -- --sim yerc status", "cargo test"]);
+}
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Name and content of the files that a page shows.
+fn files(text: &str) -> Vec<(String, String)> {
+    let named = |block: &str| Some((block.lines().next()?.strip_prefix("# ")?.to_owned(), block.to_owned()));
+    blocks(text, "toml").into_iter().filter_map(|range| named(&text[range])).collect()
+}
+
+/// Where the insides of the blocks of a language are.
+fn blocks(text: &str, language: &str) -> Vec<Range<usize>> {
+    let mut blocks = Vec::new();
+    let mut inside = None;
+    let mut at = 0;
+    for line in text.split_inclusive('\n') {
+        match (inside, line.trim_end()) {
+            (None, fence) if fence.strip_prefix("```") == Some(language) => inside = Some(at + line.len()),
+            (Some(start), "```") => {
+                blocks.push(start..at);
+                inside = None;
+            }
+            _ => {}
+        }
+        at += line.len();
+    }
+    assert!(inside.is_none(), "a {language} block does not end");
+    blocks
+}
+
+/// Runs the commands of a block; what comes back is the block as it should read.
+fn run(block: &str, files: &[(String, String)]) -> Result<String, String> {
+    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    for (name, content) in files {
+        std::fs::write(folder.path().join(name), content).map_err(|error| format!("{name}: {error}"))?;
+    }
+    let simulator = block.contains(DOCUMENTED).then(Simulator::start);
+    let commands = commands(block);
+    let mut script = String::from("exec 2>&1\n");
+    for command in &commands {
+        let command = simulator.as_ref().map_or_else(|| command.clone(), |simulator| simulator.reached(command));
+        script.push_str(&format!("{command}\nlast=$?\nprintf '{MARK} %s\\n' $last\n(exit $last)\n"));
+    }
+    let output = shell(&script, folder.path())?;
+    let output = simulator.as_ref().map_or_else(|| output.clone(), |simulator| simulator.documented(&output));
+    let mut page = String::new();
+    let mut printed = output.split(MARK);
+    let mut last = printed.next().unwrap_or_default();
+    for (index, command) in commands.iter().enumerate() {
+        let next = printed.next().ok_or_else(|| format!("the shell ended before `{command}` was done"))?;
+        let (code, rest) = next.split_once('\n').unwrap_or((next, ""));
+        let is_shown = commands.get(index + 1).is_some_and(|next| next == "echo $?");
+        if code.trim() != "0" && !is_shown {
+            return Err(format!("`{command}` ended with {} and printed\n{last}", code.trim()));
+        }
+        page.push_str(&format!("$ {}\n{last}", command.replace('\n', "\n> ")));
+        last = rest;
+    }
+    Ok(page)
+}
+
+/// The commands of a block: lines that begin with `$ `, continued by lines that begin with `> `.
+fn commands(block: &str) -> Vec<String> {
+    let mut commands: Vec<String> = Vec::new();
+    for line in block.lines() {
+        if let Some(command) = line.strip_prefix("$ ") {
+            commands.push(command.to_owned());
+        } else if let (Some(more), Some(last)) = (line.strip_prefix("> "), commands.last_mut()) {
+            last.push('\n');
+            last.push_str(more);
+        }
+    }
+    commands
+}
+
+fn shell(script: &str, folder: &Path) -> Result<String, String> {
+    let binary = Path::new(env!("CARGO_BIN_EXE_armctl"));
+    let tools = binary.parent().expect("the binary is in a folder");
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths(std::iter::once(tools.to_owned()).chain(std::env::split_paths(&path)));
+    let mut command = Command::new("sh");
+    command.arg("-c").arg(script).current_dir(folder).stdin(Stdio::null());
+    for (name, _) in std::env::vars_os().filter(|(name, _)| name.to_string_lossy().starts_with("ARMCTL_")) {
+        command.env_remove(name);
+    }
+    command.env("PATH", path.map_err(|error| error.to_string())?);
+    command.env("HOME", folder).env("XDG_CONFIG_HOME", folder.join(".config")).env("NO_COLOR", "1").env("TZ", "UTC");
+    let output = command.output().map_err(|error| format!("sh: {error}"))?;
+    String::from_utf8(output.stdout).map_err(|error| error.to_string())
+}
+
+/// A simulator on ports of its own; it ends with the block.
+struct Simulator {
+    process: Child,
+    target: String,
+}
+
+impl Simulator {
+    fn start() -> Self {
+        let mut process = Command::new(env!("CARGO_BIN_EXE_armctl"))
+            .args(["sim", "yerc", "--bind", "127.0.0.1:0", "--jq", ".data.target"])
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the simulator starts");
+        let mut target = String::new();
+        let stdout = process.stdout.take().expect("stdout is a pipe");
+        BufReader::new(stdout).read_line(&mut target).expect("the simulator says where it is");
+        Self { process, target: target.trim_end().to_owned() }
+    }
+
+    fn reached(&self, command: &str) -> String {
+        command.replace(&format!("udp://{DOCUMENTED}"), &format!("'{}'", self.target))
+    }
+
+    fn documented(&self, output: &str) -> String {
+        output.replace(&self.target, &format!("udp://{DOCUMENTED}"))
+    }
+}
+
+impl Drop for Simulator {
+    fn drop(&mut self) {
+        // A process that has ended already is as good.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
