@@ -56,6 +56,7 @@ complete -c armctl -n "__fish_armctl_needs_command" -l dry-run -d 'Send nothing;
 complete -c armctl -n "__fish_armctl_needs_command" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_needs_command" -s V -l version -d 'Print version'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "yerc" -d 'Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "status" -d 'One line a robot: reachable, mode, servo, state, alarm, position'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "robots" -d 'The inventory: list, show, add, remove'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "sim" -d 'Serve the simulators on real sockets'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "explain" -d 'What an error or alarm code means and what to do'
@@ -279,6 +280,36 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand status" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand status" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand status" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand status" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand status" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand status" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand status" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r

@@ -192,13 +192,13 @@ fn completions_are_current() {
         ("armctl.elv", Shell::Elvish),
     ];
     let made = scripts.map(|(name, shell)| (name.to_owned(), armctl::command::common::completions::script(shell)));
-    is_current("completions", made.into());
+    is_current("completions", &made.into());
 }
 
 #[test]
 fn man_pages_are_current() {
     let pages = armctl::command::common::man::pages().expect("the man pages render");
-    is_current("man", pages.into_iter().collect());
+    is_current("man", &pages.into_iter().collect());
 }
 
 #[test]
@@ -253,11 +253,11 @@ fn leaves(command: &clap::Command, id: &str, all: &mut BTreeSet<String>) {
 }
 
 /// Compares a folder with what it should hold, or rewrites it where `ARMCTL_BLESS` is set.
-fn is_current(folder: &str, made: BTreeMap<String, Vec<u8>>) {
+fn is_current(folder: &str, made: &BTreeMap<String, Vec<u8>>) {
     let path = root().join(folder);
     if std::env::var_os("ARMCTL_BLESS").is_some() {
         std::fs::create_dir_all(&path).expect("the folder can be made");
-        for (name, content) in &made {
+        for (name, content) in made {
             std::fs::write(path.join(name), content).expect("the file can be written");
         }
         // Pages of commands that are gone go too.

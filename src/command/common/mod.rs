@@ -6,7 +6,7 @@ pub mod help;
 pub mod man;
 pub mod robots;
 pub mod schema;
-mod sim;
+pub mod sim;
 
 use clap::Subcommand;
 

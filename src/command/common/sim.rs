@@ -157,8 +157,9 @@ fn cannot_listen(robot: SocketAddr, file: SocketAddr, error: &std::io::Error) ->
     Failure::new(Kind::NoAnswer, message).hint(hint)
 }
 
-/// A simulated controller as a service for many clients.
-struct Simulated(Simulator);
+/// A simulated controller as a service for many clients: channel 0 is the robot server, 1 the file server.
+#[derive(Debug)]
+pub struct Simulated(pub Simulator);
 
 impl Service for Simulated {
     fn receive(&mut self, now: Duration, channel: usize, client: u64, bytes: &[u8]) {

@@ -1,0 +1,36 @@
+//! What others wrote, at the other end of a real socket: `moto-hses-mock` as the controller under the client of this
+//! project, and `moto-hses-client` as the client on its simulator. What both sides support must agree value by value.
+//!
+//! Neither is a reference for errors, retries or uploads. Where a peer departs from the manuals a comment says so and
+//! why it is believed to be the peer; the numbers in parentheses are those of the protocol's list of ambiguities.
+//! Everything is on 127.0.0.1 and on ports that the system chooses; sockets are bound before anybody sends.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+mod client;
+mod mock;
+
+use std::net::SocketAddr;
+
+use armctl::command::yerc::link::{Link, Yerc};
+use armctl::command::{Access, Family as _};
+use armctl::controller::Risk;
+use armctl::controller::yerc::Model;
+use armctl::output::{ColorChoice, Format, Screen};
+use armctl::settings::target::Family;
+use armctl::settings::{Selection, Sources};
+
+/// The client of this project, on a controller at these ports of this machine.
+async fn connect(model: Model, robot: SocketAddr, file: SocketAddr) -> Link {
+    connect_with(&format!("udp://{robot}?file_port={}&model={model}", file.port()), None).await
+}
+
+async fn connect_with(url: &str, timeout: Option<std::time::Duration>) -> Link {
+    let selection = Selection { target: Some(url.parse().unwrap()), ..Selection::default() };
+    let mut sources = Sources { selection, ..Sources::default() };
+    sources.flags.timeout = timeout;
+    let robots = sources.robots(Some(Family::Yerc)).unwrap();
+    let access = Access { granted: Risk::Motion, dry_run: false, trace: None };
+    let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
+    Yerc::connect(&robots[0], access, &screen).await.unwrap()
+}
