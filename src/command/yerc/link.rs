@@ -205,17 +205,32 @@ impl Link {
 
     /// Asks several questions, one after the other; the first refusal or failure ends it. A dry run notes them all.
     pub async fn ask_all<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Q::Answer>, Failure> {
+        self.rehearse(queries).await;
+        let mut answers = Vec::with_capacity(queries.len());
+        for query in queries {
+            answers.push(self.ask(query).await?);
+        }
+        Ok(answers)
+    }
+
+    /// Asks several questions of things that need not exist; a refusal is an answer. A dry run notes them all.
+    pub async fn try_ask_all<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Result<Q::Answer, Refusal>>, Failure> {
+        self.rehearse(queries).await;
+        let mut answers = Vec::with_capacity(queries.len());
+        for query in queries {
+            answers.push(self.try_ask(query).await?);
+        }
+        Ok(answers)
+    }
+
+    /// In a dry run, notes all the questions and ends it.
+    pub async fn rehearse<Q: Query>(&mut self, queries: &[Q]) {
         if let Transport::Notes(_) = self.transport {
             for query in queries {
                 self.note(&query.request());
             }
             std::future::pending::<Infallible>().await;
         }
-        let mut answers = Vec::with_capacity(queries.len());
-        for query in queries {
-            answers.push(self.ask(query).await?);
-        }
-        Ok(answers)
     }
 
     /// Sends a request as it is and returns the data of the answer.

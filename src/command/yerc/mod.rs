@@ -1,20 +1,42 @@
 //! `yerc`: Yaskawa FS100 and DX200 over the high-speed Ethernet server.
 
+mod alarm;
+mod axes;
+mod hours;
+mod info;
+mod job;
 pub mod link;
+mod motion;
+mod moves;
 mod orders;
 pub mod overview;
+mod position;
+#[cfg(test)]
+mod rehearse;
 mod status;
 mod trace;
 
 pub use link::Yerc as Family;
 
-use crate::command::commands;
+use crate::command::{Verbs, commands};
 
 commands! {
     /// What can be asked of an FS100 or DX200.
     pub enum Yerc of Family {
         /// Mode, cycle, servo, hold, alarm: every status bit
         Status(status::Status),
+        /// Alarms: list, history, reset, cancel
+        Alarm(Verbs<alarm::Alarm>),
+        /// Jobs: show, select, start
+        Job(Verbs<job::Job>),
+        /// Where a control group stands: pulses, base coordinates, form
+        Position(position::Position),
+        /// The axes of each control group
+        Axes(axes::AxesOf),
+        /// How far each axis is from where it should be
+        PositionError(axes::PositionError),
+        /// The torque of each axis
+        Torque(axes::Torque),
         /// Switch servo power
         Servo(orders::Servo),
         /// Hold the robot, or let it go on
@@ -25,5 +47,11 @@ commands! {
         Cycle(orders::Cycle),
         /// Show a message on the pendant
         Say(orders::Say),
+        /// Move a robot or station
+        Move(Verbs<moves::Move>),
+        /// Running times: power, servo, playback, motion, applications
+        Hours(hours::Hours),
+        /// Software version, robot models, parameters
+        Info(info::Info),
     }
 }

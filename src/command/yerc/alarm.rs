@@ -1,0 +1,422 @@
+//! `yerc alarm list|history|reset|cancel`.
+
+use clap::{Args, ValueEnum};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::link::Link;
+use super::orders::{Done, usage};
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::Risk;
+use crate::controller::text::Encoding;
+use crate::controller::yerc::Model;
+use crate::controller::yerc::payload;
+use crate::controller::yerc::query::{self, Query, ReadAlarm, ReadAlarmHistory};
+use crate::controller::yerc::subcode;
+use crate::controller::yerc::wire::Status;
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, Tone, View};
+
+commands! {
+    /// Alarms.
+    pub enum Alarm of Family {
+        /// The alarms that are present
+        List(List),
+        /// The alarms of the past, the latest of each class first
+        History(History),
+        /// Reset the alarm
+        Reset(Reset),
+        /// Cancel the error
+        Cancel(Cancel),
+    }
+}
+
+/// The alarms that are present, at most four (FS and DX 3.3.1, 3.3.37).
+#[derive(Debug, Args)]
+pub struct List {
+    /// Ask for codes and names only, as older controllers know them (0x70 instead of 0x30A)
+    #[arg(long)]
+    no_texts: bool,
+}
+
+/// Alarms that can be present at a time.
+const SLOTS: u8 = 4;
+
+impl Command for List {
+    type Family = Family;
+    type Report = ActiveAlarms;
+    const ID: &'static str = "yerc.alarm.list";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<ActiveAlarms, Failure> {
+        let link = context.link;
+        let mut texts = !self.no_texts;
+        let question = |slot, texts| ReadAlarm::new(slot, texts).map_err(usage);
+        link.rehearse(&(1..=SLOTS).map(|slot| question(slot, texts)).collect::<Result<Vec<_>, _>>()?).await;
+        let mut alarms = Vec::new();
+        for slot in 1..=SLOTS {
+            let alarm = read(link, &mut texts, |texts| question(slot, texts)).await?;
+            // A gap between slots is not described, so all four are read.
+            if !alarm.is_none() {
+                alarms.push(ActiveAlarm { slot, alarm: AlarmEntry::new(&alarm, link.encoding, link.model) });
+            }
+        }
+        Ok(ActiveAlarms { alarms, with_texts: texts })
+    }
+}
+
+/// The lists of past alarms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Class {
+    /// Major failures
+    Major,
+    /// Monitor alarms
+    Monitor,
+    /// User alarms of the system
+    System,
+    /// User alarms of the user
+    User,
+    /// Off-line alarms
+    Offline,
+    /// Every class
+    All,
+}
+
+/// Every class with its name in JSON, in the order of the manual.
+const CLASSES: [(Class, query::AlarmClass, &str); 5] = [
+    (Class::Major, query::AlarmClass::Major, "major"),
+    (Class::Monitor, query::AlarmClass::Monitor, "monitor"),
+    (Class::System, query::AlarmClass::UserSystem, "system"),
+    (Class::User, query::AlarmClass::User, "user"),
+    (Class::Offline, query::AlarmClass::OffLine, "offline"),
+];
+
+/// The alarms of the past (FS and DX 3.3.2, 3.3.38).
+#[derive(Debug, Args)]
+pub struct History {
+    /// Which list
+    #[arg(long, value_enum, default_value = "all")]
+    class: Class,
+    /// The first entry of each list, 1 being the latest
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=100))]
+    from: u8,
+    /// At most so many entries of each list
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u8).range(1..=100))]
+    limit: u8,
+    /// Ask for codes and names only, as older controllers know them (0x71 instead of 0x30B)
+    #[arg(long)]
+    no_texts: bool,
+}
+
+/// Entries of a list.
+const LAST: u8 = 100;
+
+impl Command for History {
+    type Family = Family;
+    type Report = PastAlarms;
+    const ID: &'static str = "yerc.alarm.history";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<PastAlarms, Failure> {
+        let link = context.link;
+        let mut texts = !self.no_texts;
+        let numbers = self.from..=self.from.saturating_add(self.limit - 1).min(LAST);
+        let classes = CLASSES.iter().filter(|row| self.class == Class::All || self.class == row.0);
+        let question = |class, number, texts| ReadAlarmHistory::new(class, number, texts).map_err(usage);
+        let all = classes.clone().flat_map(|row| numbers.clone().map(|number| question(row.1, number, texts)));
+        link.rehearse(&all.collect::<Result<Vec<_>, _>>()?).await;
+        let mut alarms = Vec::new();
+        for &(_, list, class) in classes {
+            for number in numbers.clone() {
+                let alarm = read(link, &mut texts, |texts| question(list, number, texts)).await?;
+                if alarm.is_none() {
+                    break;
+                }
+                alarms.push(PastAlarm { class, number, alarm: AlarmEntry::new(&alarm, link.encoding, link.model) });
+            }
+        }
+        Ok(PastAlarms { alarms, with_texts: texts })
+    }
+}
+
+/// Reads an alarm with its texts; without, as soon as the controller has shown that it does not know the command.
+async fn read<Q: Query<Answer = payload::Alarm>>(
+    link: &mut Link,
+    texts: &mut bool,
+    question: impl Fn(bool) -> Result<Q, Failure>,
+) -> Result<payload::Alarm, Failure> {
+    if *texts {
+        match link.try_ask(&question(true)?).await? {
+            Ok(alarm) => return Ok(alarm),
+            Err(refusal) if is_unknown_command(refusal.0) => *texts = false,
+            Err(refusal) => return Err(refusal.into()),
+        }
+    }
+    link.ask(&question(false)?).await
+}
+
+/// How a controller before FS1.14 may say that it has no 0x30A: status 0x08, or "command error" or "undefined command".
+fn is_unknown_command(status: Status) -> bool {
+    status.code == 0x08 || (status.added_size > 0 && matches!(status.added & 0xFFFF, 0x1010 | 0xA000))
+}
+
+macro_rules! order {
+    ($(#[$doc:meta])* $name:ident, $id:literal, $query:expr, $done:literal) => {
+        $(#[$doc])*
+        #[derive(Debug, Args)]
+        pub struct $name {}
+
+        impl Command for $name {
+            type Family = Family;
+            type Report = Done;
+            const ID: &'static str = $id;
+
+            fn risk(&self) -> Risk {
+                $query.risk()
+            }
+
+            async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+                context.link.ask(&$query).await?;
+                Ok(Done::new($done))
+            }
+        }
+    };
+}
+
+order! {
+    /// Resets the alarm (FS and DX 3.3.19).
+    Reset, "yerc.alarm.reset", query::ResetAlarm,
+    "the controller took the reset; `yerc alarm list` shows what is left"
+}
+order! {
+    /// Cancels the error (FS and DX 3.3.19).
+    Cancel, "yerc.alarm.cancel", query::CancelError, "the error is cancelled"
+}
+
+/// The alarms that are present, the latest first.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct ActiveAlarms {
+    alarms: Vec<ActiveAlarm>,
+    /// Whether sub-code texts were asked for and the controller has them.
+    with_texts: bool,
+}
+
+/// The alarms of the past.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct PastAlarms {
+    alarms: Vec<PastAlarm>,
+    /// Whether sub-code texts were asked for and the controller has them.
+    with_texts: bool,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct ActiveAlarm {
+    /// 1 is the latest.
+    slot: u8,
+    #[serde(flatten)]
+    alarm: AlarmEntry,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct PastAlarm {
+    /// `major`, `monitor`, `system`, `user` or `offline`.
+    class: &'static str,
+    /// 1 is the latest of its class.
+    number: u8,
+    #[serde(flatten)]
+    alarm: AlarmEntry,
+}
+
+/// An alarm in words.
+#[derive(Debug, Serialize, JsonSchema)]
+struct AlarmEntry {
+    /// 1 to 9999.
+    code: u32,
+    name: String,
+    /// As the controller shows it, `YYYY/MM/DD HH:MM`.
+    time: String,
+    /// How to read the sub-code.
+    #[serde(rename = "type")]
+    kind: u32,
+    /// The type in words.
+    type_name: &'static str,
+    sub_code: SubCode,
+    /// Where it comes from, such as `[SV#1]`; null without texts.
+    board: Option<String>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct SubCode {
+    /// As received, 0 where there is none.
+    raw: u32,
+    /// In the form of the pendant; bytes in hexadecimal if `trust` is `raw`; empty where there is none.
+    rendered: String,
+    /// How far to trust `rendered`: `printed` in the manuals, `inferred`, or `raw`.
+    trust: &'static str,
+    /// What the pendant shows, by the controller itself; null without texts.
+    text: Option<String>,
+    /// A 1 for each character of the text that the pendant shows reversed; null without texts.
+    reversed: Option<String>,
+    /// `rendered` with the raw value wherever it is not certain.
+    #[serde(skip)]
+    shown: String,
+}
+
+impl AlarmEntry {
+    fn new(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> Self {
+        let rendered = subcode::render(alarm.kind.0, alarm.data, model);
+        let texts = alarm.texts.as_ref();
+        Self {
+            code: alarm.code,
+            name: encoding.decode(alarm.name.as_bytes()),
+            time: encoding.decode(alarm.time.as_bytes()),
+            kind: alarm.kind.0,
+            type_name: rendered.type_name,
+            sub_code: SubCode {
+                raw: alarm.data,
+                trust: rendered.trust.name(),
+                text: texts.map(|texts| encoding.decode(texts.sub_code.as_bytes())),
+                reversed: texts.map(|texts| encoding.decode(texts.reversed.as_bytes())),
+                shown: rendered.to_string(),
+                rendered: rendered.text,
+            },
+            board: texts.map(|texts| encoding.decode(texts.source.as_bytes())),
+        }
+    }
+
+    /// Code, name, sub-code, type, time, board.
+    fn cells(&self) -> [Cell; 6] {
+        let given = |text: &str| (!text.is_empty()).then(|| Cell::from(text));
+        let sub_code = self.sub_code.text.as_deref().filter(|text| !text.trim().is_empty());
+        [
+            Cell::from(self.code).tone(Tone::Bad),
+            self.name.as_str().into(),
+            Cell::maybe(given(sub_code.unwrap_or(&self.sub_code.shown))),
+            format!("{} {}", self.kind, self.type_name).into(),
+            self.time.as_str().into(),
+            Cell::maybe(self.board.as_deref().and_then(given)),
+        ]
+    }
+}
+
+/// One line for messages: `alarm 4315 COLLISION DETECT [3]`.
+pub(super) fn in_a_line(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> String {
+    let sub_code = subcode::render(alarm.kind.0, alarm.data, model).to_string();
+    let words = [format!("alarm {}", alarm.code), encoding.decode(alarm.name.as_bytes()), sub_code];
+    words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+impl Report for ActiveAlarms {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["slot", "code", "name", "sub-code", "type", "time", "board"], "no alarm");
+        for ActiveAlarm { slot, alarm } in &self.alarms {
+            let [code, name, sub_code, kind, time, board] = alarm.cells();
+            table.row([(*slot).into(), code, name, sub_code, kind, time, board]);
+        }
+        View::table(table)
+    }
+}
+
+impl Report for PastAlarms {
+    fn view(&self) -> View {
+        let columns = ["class", "#", "code", "name", "sub-code", "type", "time", "board"];
+        let mut table = Table::new(&columns, "no alarm");
+        for PastAlarm { class, number, alarm } in &self.alarms {
+            let [code, name, sub_code, kind, time, board] = alarm.cells();
+            table.row([(*class).into(), (*number).into(), code, name, sub_code, kind, time, board]);
+        }
+        View::table(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::yerc::rehearse::{frames, golden, objection};
+    use crate::controller::yerc::payload::{AlarmKind, AlarmTexts, Text};
+    use crate::output::render;
+
+    fn entry(kind: u32, data: u32, texts: Option<AlarmTexts>) -> AlarmEntry {
+        let alarm = payload::Alarm {
+            code: 4315,
+            data,
+            kind: AlarmKind(kind),
+            time: Text::cut(b"2026/01/02 03:04"),
+            name: Text::cut(b"\x8F\xD5\x93\xCB"),
+            texts,
+        };
+        AlarmEntry::new(&alarm, Encoding::ShiftJis, Model::Dx200)
+    }
+
+    #[test]
+    fn present_alarms_are_asked_with_texts_in_four_slots() {
+        assert_eq!(
+            frames("alarm list").unwrap(),
+            ["0a03010000010000", "0a03020000010000", "0a03030000010000", "0a03040000010000"]
+        );
+        assert_eq!(frames("alarm list --no-texts").unwrap()[0], golden("R01"));
+    }
+
+    #[test]
+    fn history_asks_each_class_from_a_number_on() {
+        // 0x71 user alarm (user) 100 is instance 3100 (golden frame R05 asks one field of it).
+        assert_eq!(
+            frames("alarm history --class user --from 99 --limit 5 --no-texts").unwrap(),
+            ["71001b0c00010000", "71001c0c00010000"]
+        );
+        let all = frames("alarm history --limit 1").unwrap();
+        assert_eq!(
+            all,
+            ["0b03010000010000", "0b03e90300010000", "0b03d10700010000", "0b03b90b00010000", "0b03a10f00010000"]
+        );
+        assert_eq!(frames("alarm history").unwrap().len(), 50);
+        assert!(objection("alarm history --from 101").contains("1..=100"));
+    }
+
+    #[test]
+    fn reset_and_cancel_are_the_frames_of_the_manual() {
+        assert_eq!(frames("alarm reset").unwrap(), ["820001000110000001000000"]);
+        assert_eq!(frames("alarm cancel").unwrap(), [golden("R39")]);
+    }
+
+    #[test]
+    fn only_an_unknown_command_leads_to_the_older_one() {
+        for status in [Status { code: 8, added_size: 0, added: 0 }, Status::refused(0xA000), Status::refused(0x1010)] {
+            assert!(is_unknown_command(status), "{status:?}");
+        }
+        for status in [Status::refused(0x2010), Status { code: 0x28, added_size: 0, added: 0 }] {
+            assert!(!is_unknown_command(status), "{status:?}");
+        }
+    }
+
+    #[test]
+    fn a_sub_code_shows_how_far_it_can_be_trusted() {
+        let alarm = entry(3, 3, None);
+        let json = serde_json::to_value(&alarm).unwrap();
+        assert_eq!(json["sub_code"]["raw"], 3);
+        assert_eq!(json["sub_code"]["rendered"], "[SL]");
+        assert_eq!(json["sub_code"]["trust"], "inferred");
+        assert_eq!(json["type_name"], "axes of the robot");
+        assert_eq!(json["name"], "衝突");
+        assert_eq!(alarm.cells()[2].text, "[SL]? (3 = 0x3)");
+    }
+
+    #[test]
+    fn the_text_of_the_controller_wins_in_the_table() {
+        let texts =
+            AlarmTexts { source: Text::cut(b"[SV#1]"), sub_code: Text::cut(b"[R1: S]"), reversed: Text::cut(b"0") };
+        let alarms =
+            ActiveAlarms { alarms: vec![ActiveAlarm { slot: 1, alarm: entry(20, 1, Some(texts)) }], with_texts: true };
+        let csv = render::csv(&alarms.view(), None);
+        assert_eq!(
+            csv,
+            "slot,code,name,sub_code,type,time,board\n\
+             1,4315,衝突,[R1: S],20 control group with its LOW and HIGH axes,2026/01/02 03:04,[SV#1]\n"
+        );
+    }
+
+    #[test]
+    fn nothing_is_said_as_such() {
+        let none = ActiveAlarms { alarms: Vec::new(), with_texts: true };
+        assert_eq!(render::text(&none.view(), 80, false), "no alarm\n");
+    }
+}

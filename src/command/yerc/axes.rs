@@ -1,0 +1,276 @@
+//! `yerc axes`, `yerc position-error`, `yerc torque`: what belongs to each axis.
+
+use std::fmt;
+use std::str::FromStr;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::link::{Link, Refusal};
+use super::orders::usage;
+use super::position::ByAxis;
+use crate::command::{Command, Context, Report};
+use crate::controller::text::Encoding;
+use crate::controller::yerc::Model;
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::AxisNames;
+use crate::controller::yerc::query::{Coordinates, Query, ReadAxes, ReadPositionError, ReadTorque};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
+
+/// One control group or all that the controller has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Groups {
+    /// This one.
+    One(Group),
+    /// Those that exist.
+    All,
+}
+
+impl FromStr for Groups {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.eq_ignore_ascii_case("all") {
+            return Ok(Self::All);
+        }
+        text.parse().map(Self::One).map_err(|error: String| format!("{error}, or all"))
+    }
+}
+
+impl fmt::Display for Groups {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::One(group) => group.fmt(f),
+            Self::All => f.write_str("all"),
+        }
+    }
+}
+
+/// Every control group that a model can have, robots first.
+pub(super) fn groups_of(model: Model) -> impl Iterator<Item = Group> {
+    let (robots, bases, stations) = Group::counts(model);
+    (1..=robots).map(Group::Robot).chain((1..=bases).map(Group::Base)).chain((1..=stations).map(Group::Station))
+}
+
+/// Asks about things that may not exist and keeps those that do. If all are refused, it is not about existence: the
+/// first refusal is the failure.
+pub(super) async fn existing<K, Q: Query + Copy>(
+    link: &mut Link,
+    questions: Vec<(K, Q)>,
+) -> Result<Vec<(K, Q::Answer)>, Failure> {
+    let (keys, queries): (Vec<K>, Vec<Q>) = questions.into_iter().unzip();
+    let answers = link.try_ask_all(&queries).await?;
+    of_existing(keys.into_iter().zip(answers)).map_err(Failure::from)
+}
+
+fn of_existing<K, A>(answers: impl Iterator<Item = (K, Result<A, Refusal>)>) -> Result<Vec<(K, A)>, Refusal> {
+    let mut found = Vec::new();
+    let mut refused = None;
+    for (key, answer) in answers {
+        match answer {
+            Ok(answer) => found.push((key, answer)),
+            Err(refusal) => refused = refused.or(Some(refusal)),
+        }
+    }
+    refused.filter(|_| found.is_empty()).map_or(Ok(found), Err)
+}
+
+/// The names of the axes (FS and DX 3.3.5).
+#[derive(Debug, Args)]
+pub struct AxesOf {
+    /// Control group: R1 …, B1 …, S1 …, or all that exist
+    #[arg(long, default_value_t = Groups::All)]
+    group: Groups,
+}
+
+impl Command for AxesOf {
+    type Family = Family;
+    type Report = Configuration;
+    const ID: &'static str = "yerc.axes";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Configuration, Failure> {
+        let link = context.link;
+        let (model, encoding) = (link.model, link.encoding);
+        let groups: Vec<Group> = match self.group {
+            Groups::One(group) => vec![group],
+            Groups::All => groups_of(model).collect(),
+        };
+        let mut questions = Vec::new();
+        for group in groups {
+            let pulse = ReadAxes::new(model, group, Coordinates::Pulse).map_err(usage)?;
+            questions.push(((group, Coordinates::Pulse), pulse));
+            // Stations have pulses only.
+            if let Ok(base) = ReadAxes::new(model, group, Coordinates::Base) {
+                questions.push(((group, Coordinates::Base), base));
+            }
+        }
+        let is_all = self.group == Groups::All;
+        let mut found: Vec<GroupAxes> = Vec::new();
+        for ((group, coordinates), names) in existing(link, questions).await? {
+            let names = names_of(&names, encoding);
+            if is_all && names.is_empty() {
+                continue;
+            }
+            let name = group.to_string();
+            if found.last().is_none_or(|entry| entry.group != name) {
+                found.push(GroupAxes { group: name, pulse: None, base: None });
+            }
+            let entry = found.last_mut().expect("a group has its entry by now");
+            *(if coordinates == Coordinates::Pulse { &mut entry.pulse } else { &mut entry.base }) = Some(names);
+        }
+        Ok(Configuration { groups: found })
+    }
+}
+
+/// The names that are there; unused axes are empty.
+fn names_of(names: &AxisNames, encoding: Encoding) -> Vec<String> {
+    let used = names.names.iter().filter(|name| !name.is_empty());
+    used.map(|name| encoding.decode(name.as_bytes())).collect()
+}
+
+/// The axes of control groups.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Configuration {
+    groups: Vec<GroupAxes>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct GroupAxes {
+    /// Control group, such as `R1`.
+    group: String,
+    /// Names in pulses; null if the controller refused.
+    pulse: Option<Vec<String>>,
+    /// Names in cartesian coordinates; null for stations, or if the controller refused.
+    base: Option<Vec<String>>,
+}
+
+impl Report for Configuration {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["group", "pulse axes", "cartesian axes"], "no control group");
+        let names = |names: &Option<Vec<String>>| Cell::maybe(names.as_ref().map(|names| names.join(" ")));
+        for group in &self.groups {
+            table.row([group.group.as_str().into(), names(&group.pulse), names(&group.base)]);
+        }
+        View::table(table)
+    }
+}
+
+macro_rules! by_axis {
+    (
+        $(#[$doc:meta])* $name:ident, $id:literal, $query:ident,
+        $(#[$report_doc:meta])* $report:ident { $(#[$field_doc:meta])* $field:ident }, $column:literal
+    ) => {
+        $(#[$doc])*
+        #[derive(Debug, Args)]
+        pub struct $name {
+            /// Control group: R1 …, B1 …, S1 …
+            #[arg(long, default_value = "R1")]
+            group: Group,
+        }
+
+        impl Command for $name {
+            type Family = Family;
+            type Report = $report;
+            const ID: &'static str = $id;
+
+            async fn run(&self, context: Context<'_, Family>) -> Result<$report, Failure> {
+                let link = context.link;
+                let axes = link.ask(&$query::new(link.model, self.group).map_err(usage)?).await?;
+                let is_robot = matches!(self.group, Group::Robot(_));
+                Ok($report { group: self.group.to_string(), $field: ByAxis::new(axes, is_robot) })
+            }
+        }
+
+        $(#[$report_doc])*
+        #[derive(Debug, Serialize, JsonSchema)]
+        pub struct $report {
+            /// Control group, such as `R1`.
+            group: String,
+            $(#[$field_doc])*
+            $field: ByAxis,
+        }
+
+        impl Report for $report {
+            fn view(&self) -> View {
+                let mut table = Table::new(&["axis", $column], "the controller answered no axis");
+                for (name, value) in self.$field.rows() {
+                    table.row([name.into(), value.into()]);
+                }
+                View::table(table)
+            }
+        }
+    };
+}
+
+by_axis! {
+    /// How far the axes are from where they should be (FS and DX 3.3.7).
+    PositionError, "yerc.position-error", ReadPositionError,
+    /// How far the axes are from where they should be.
+    PositionErrors {
+        /// By axis: `s`, `l`, `u`, `r`, `b`, `t`, `e` of a robot, `axis_1` and so on of other groups.
+        error_pulses
+    }, "error (pulses)"
+}
+by_axis! {
+    /// The torque of the axes (FS and DX 3.3.8).
+    Torque, "yerc.torque", ReadTorque,
+    /// The torque of the axes.
+    Torques {
+        /// As received, by axis as in `yerc.position`: the manuals print no unit.
+        torque_raw
+    }, "torque (raw)"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::yerc::rehearse::{frames, frames_on, golden};
+    use crate::controller::yerc::payload::{Axes, Text};
+    use crate::controller::yerc::wire::Status;
+    use crate::failure::Kind;
+    use crate::output::render;
+
+    #[test]
+    fn one_group_or_all_of_the_model() {
+        assert_eq!(frames("axes --group R1").unwrap(), [golden("R11"), "7400650000010000".to_owned()]);
+        assert_eq!(frames("axes --group S24").unwrap(), ["74002c0000010000"]);
+        assert_eq!(frames("axes").unwrap().len(), 8 * 2 + 8 * 2 + 24);
+        assert_eq!(frames_on("udp://h?model=fs100", "axes --group all").unwrap().len(), 2 * 2 + 2 * 2 + 3);
+        assert_eq!(frames_on("udp://h?model=fs100", "axes --group R3").unwrap_err().kind, Kind::Usage);
+    }
+
+    #[test]
+    fn error_and_torque_of_a_group() {
+        assert_eq!(frames("position-error").unwrap(), [golden("R15")]);
+        assert_eq!(frames("torque --group B8").unwrap(), ["7700120000010000"]);
+    }
+
+    #[test]
+    fn refused_entries_are_left_out_unless_all_are() {
+        let no = |code| Err(Refusal(Status::refused(code)));
+        let found = of_existing([(1, no(0xA001)), (2, Ok("x")), (3, no(0xA001))].into_iter());
+        assert_eq!(found, Ok(vec![(2, "x")]));
+        let none = of_existing::<i32, &str>([(1, no(0x2100)), (2, no(0xA001))].into_iter());
+        assert_eq!(none, Err(Refusal(Status::refused(0x2100))));
+    }
+
+    #[test]
+    fn unused_axes_are_no_names() {
+        let mut names = AxisNames::default();
+        for (slot, name) in names.names.iter_mut().zip(["S", "L", "U"]) {
+            *slot = Text::cut(name.as_bytes());
+        }
+        assert_eq!(names_of(&names, Encoding::Utf8), ["S", "L", "U"]);
+    }
+
+    #[test]
+    fn torque_is_labelled_as_raw() {
+        let axes = Axes::new(&[-3, 7]).unwrap();
+        let report = Torques { group: "R1".into(), torque_raw: ByAxis::new(axes, true) };
+        assert_eq!(render::csv(&report.view(), None), "axis,torque_raw\nS,-3\nL,7\n");
+        assert_eq!(serde_json::to_string(&report).unwrap(), r#"{"group":"R1","torque_raw":{"s":-3,"l":7}}"#);
+    }
+}

@@ -1,0 +1,185 @@
+//! `yerc hours`: running-time counters.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::axes::{Groups, existing, groups_of};
+use super::orders::usage;
+use crate::command::{Command, Context, Report};
+use crate::controller::text::Encoding;
+use crate::controller::yerc::Model;
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::ManagementTime;
+use crate::controller::yerc::query::{QueryError, ReadManagementTime, TimeCounter};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
+
+/// Running-time counters (FS and DX 3.3.25).
+#[derive(Debug, Args)]
+pub struct Hours {
+    /// Servo, playback and motion time of a robot or station; all: every counter that exists
+    #[arg(long, value_name = "R1|all")]
+    group: Option<Groups>,
+    /// Operation time of an application
+    #[arg(long, value_name = "N", conflicts_with = "group", value_parser = clap::value_parser!(u8).range(1..=8))]
+    application: Option<u8>,
+}
+
+/// Counters of everything together.
+const TOTALS: [TimeCounter; 4] =
+    [TimeCounter::ControlPower, TimeCounter::Servo(None), TimeCounter::Playback(None), TimeCounter::Motion(None)];
+/// Applications that may have a counter.
+const APPLICATIONS: u8 = 8;
+
+impl Hours {
+    fn counters(&self, model: Model) -> Vec<TimeCounter> {
+        let of = |group| {
+            [TimeCounter::Servo(Some(group)), TimeCounter::Playback(Some(group)), TimeCounter::Motion(Some(group))]
+        };
+        match (self.application, self.group) {
+            (Some(application), _) => vec![TimeCounter::Application(application)],
+            (None, Some(Groups::One(group))) => of(group).into(),
+            (None, None) => TOTALS.into(),
+            (None, Some(Groups::All)) => {
+                let counted = groups_of(model).filter(|group| !matches!(group, Group::Base(_)));
+                let applications = (1..=APPLICATIONS).map(TimeCounter::Application);
+                TOTALS.into_iter().chain(counted.flat_map(of)).chain(applications).collect()
+            }
+        }
+    }
+}
+
+impl Command for Hours {
+    type Family = Family;
+    type Report = Times;
+    const ID: &'static str = "yerc.hours";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Times, Failure> {
+        let link = context.link;
+        let (model, encoding) = (link.model, link.encoding);
+        let question = |counter| Ok((counter, ReadManagementTime::new(model, counter)?));
+        let counters = self.counters(model).into_iter();
+        let questions: Vec<_> = counters.map(question).collect::<Result<_, QueryError>>().map_err(usage)?;
+        let mut times = Vec::new();
+        if self.group == Some(Groups::All) {
+            for (counter, time) in existing(link, questions).await? {
+                // A controller may answer for what it does not have, with nothing.
+                if !(time.start.is_empty() && time.elapsed.is_empty()) {
+                    times.push(Time::new(counter, &time, encoding));
+                }
+            }
+        } else {
+            let (counters, queries): (Vec<_>, Vec<_>) = questions.into_iter().unzip();
+            let answers = link.ask_all(&queries).await?;
+            times.extend(counters.iter().zip(&answers).map(|(counter, time)| Time::new(*counter, time, encoding)));
+        }
+        Ok(Times { times })
+    }
+}
+
+/// Running-time counters.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Times {
+    times: Vec<Time>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct Time {
+    /// `control_power`, `servo`, `playback`, `motion` or `application`.
+    counter: &'static str,
+    /// Control group; null where the counter is not of a group.
+    group: Option<String>,
+    /// Number of the application; null where the counter is not of one.
+    application: Option<u8>,
+    /// When counting began, as the controller shows it, `YYYY/MM/DD HH:MM`.
+    since: String,
+    /// As received, such as `000123:45'06`.
+    elapsed: String,
+    /// The same in seconds; null if the text is in no known form.
+    elapsed_s: Option<u64>,
+}
+
+impl Time {
+    fn new(counter: TimeCounter, time: &ManagementTime, encoding: Encoding) -> Self {
+        let (name, group, application) = match counter {
+            TimeCounter::ControlPower => ("control_power", None, None),
+            TimeCounter::Servo(group) => ("servo", group, None),
+            TimeCounter::Playback(group) => ("playback", group, None),
+            TimeCounter::Motion(group) => ("motion", group, None),
+            TimeCounter::Application(number) => ("application", None, Some(number)),
+        };
+        Self {
+            counter: name,
+            group: group.map(|group| group.to_string()),
+            application,
+            since: encoding.decode(time.start.as_bytes()),
+            elapsed: encoding.decode(time.elapsed.as_bytes()),
+            elapsed_s: time.seconds(),
+        }
+    }
+}
+
+impl Report for Times {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["counter", "of", "since", "elapsed (h:m:s)"], "no counter");
+        for time in &self.times {
+            let of = match (&time.group, time.application) {
+                (Some(group), _) => Cell::from(group.as_str()),
+                (None, Some(number)) => number.to_string().into(),
+                (None, None) => if time.counter == "control_power" { "controller" } else { "all" }.into(),
+            };
+            let elapsed = match time.elapsed_s {
+                Some(s) => Cell::number(format!("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)),
+                None => time.elapsed.as_str().into(),
+            };
+            table.row([time.counter.replace('_', " ").into(), of, time.since.as_str().into(), elapsed]);
+        }
+        View::table(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::yerc::rehearse::{frames, frames_on, golden, objection};
+    use crate::controller::yerc::payload::Text;
+    use crate::failure::Kind;
+    use crate::output::render;
+
+    #[test]
+    fn counters_by_kind() {
+        let instances = |words: &str| -> Vec<String> {
+            frames(words).unwrap().into_iter().map(|frame| frame[4..8].to_owned()).collect()
+        };
+        assert_eq!(instances("hours"), ["0100", "0a00", "6e00", "d200"]);
+        assert_eq!(instances("hours --group R1"), ["0b00", "6f00", "d300"]);
+        assert_eq!(frames("hours --application 1").unwrap(), [golden("R53")]);
+        assert_eq!(frames("hours --group all").unwrap().len(), 4 + 3 * (8 + 24) + 8);
+        assert_eq!(frames_on("udp://h?model=fs100", "hours --group all").unwrap().len(), 4 + 3 * (2 + 3) + 8);
+        assert_eq!(frames("hours --group B1").unwrap_err().kind, Kind::Usage);
+        assert!(objection("hours --application 9").contains("1..=8"));
+    }
+
+    #[test]
+    fn times_in_every_form() {
+        let time =
+            |elapsed: &[u8]| ManagementTime { start: Text::cut(b"2024/01/02 03:04"), elapsed: Text::cut(elapsed) };
+        let times = Times {
+            times: vec![
+                Time::new(TimeCounter::ControlPower, &time(b"000123:45'06"), Encoding::ShiftJis),
+                Time::new(TimeCounter::Servo(Some(Group::R1)), &time(b"18:19'02"), Encoding::ShiftJis),
+                Time::new(TimeCounter::Application(2), &time(b"?"), Encoding::ShiftJis),
+            ],
+        };
+        assert_eq!(
+            render::csv(&times.view(), None),
+            "counter,of,since,elapsed_h_m_s\ncontrol power,controller,2024/01/02 03:04,123:45:06\n\
+             servo,R1,2024/01/02 03:04,18:19:02\napplication,2,2024/01/02 03:04,?\n"
+        );
+        let json = serde_json::to_value(&times).unwrap();
+        assert_eq!(json["times"][0]["elapsed_s"], 445_506);
+        assert_eq!(json["times"][2]["elapsed_s"], serde_json::Value::Null);
+    }
+}

@@ -1,0 +1,170 @@
+//! `yerc info`: software, models, parameters.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::axes::{Groups, existing, groups_of};
+use super::orders::usage;
+use crate::command::{Command, Context, Report};
+use crate::controller::text::Encoding;
+use crate::controller::yerc::Model;
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::{SystemInfo, Text};
+use crate::controller::yerc::query::{QueryError, ReadSystemInfo, SystemPart};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
+
+/// Versions and names (FS and DX 3.3.26).
+#[derive(Debug, Args)]
+pub struct Info {
+    /// A robot or station, or all that exist with their applications [default: all]
+    #[arg(long, value_name = "R1|all")]
+    group: Option<Groups>,
+    /// An application
+    #[arg(long, value_name = "N", conflicts_with = "group", value_parser = clap::value_parser!(u8).range(1..=8))]
+    application: Option<u8>,
+}
+
+impl Info {
+    fn parts(&self, model: Model) -> Vec<SystemPart> {
+        match (self.application, self.group) {
+            (Some(application), _) => vec![SystemPart::Application(application)],
+            (None, Some(Groups::One(group))) => vec![SystemPart::Group(group)],
+            (None, None | Some(Groups::All)) => {
+                let groups = groups_of(model).filter(|group| !matches!(group, Group::Base(_)));
+                groups.map(SystemPart::Group).chain((1..=applications(model)).map(SystemPart::Application)).collect()
+            }
+        }
+    }
+}
+
+/// Applications that can be asked about.
+const fn applications(model: Model) -> u8 {
+    match model {
+        Model::Fs100 => 1,
+        Model::Dx200 => 8,
+    }
+}
+
+impl Command for Info {
+    type Family = Family;
+    type Report = Versions;
+    const ID: &'static str = "yerc.info";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Versions, Failure> {
+        let link = context.link;
+        let (model, encoding) = (link.model, link.encoding);
+        let question = |part| Ok((part, ReadSystemInfo::new(model, part)?));
+        let parts = self.parts(model).into_iter();
+        let questions: Vec<_> = parts.map(question).collect::<Result<_, QueryError>>().map_err(usage)?;
+        // A single part is a list of one: its refusal is the failure.
+        let is_single = questions.len() == 1;
+        let answers = existing(link, questions).await?;
+        // Controllers answer for groups that do not exist with the version alone.
+        let is_there = |info: &SystemInfo| is_single || !(info.name.is_empty() && info.parameters.is_empty());
+        let software_version = answers.first().map(|(_, info)| encoding.decode(info.version.as_bytes()));
+        let parts =
+            answers.iter().filter(|(_, info)| is_there(info)).map(|(part, info)| Part::new(*part, info, encoding));
+        Ok(Versions { software_version, parts: parts.collect() })
+    }
+}
+
+/// Versions and names of the controller and its parts.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Versions {
+    /// Of the system; the same for every part.
+    software_version: Option<String>,
+    parts: Vec<Part>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct Part {
+    /// Control group; null for an application.
+    group: Option<String>,
+    /// Number of the application; null for a control group.
+    application: Option<u8>,
+    /// Robot model or name of the application; null for stations.
+    name: Option<String>,
+    /// Robots only.
+    parameter_version: Option<String>,
+}
+
+impl Part {
+    fn new(part: SystemPart, info: &SystemInfo, encoding: Encoding) -> Self {
+        let (group, application) = match part {
+            SystemPart::Group(group) => (Some(group.to_string()), None),
+            SystemPart::Application(number) => (None, Some(number)),
+        };
+        Self {
+            group,
+            application,
+            name: given(&info.name, encoding),
+            parameter_version: given(&info.parameters, encoding),
+        }
+    }
+}
+
+fn given<const N: usize>(text: &Text<N>, encoding: Encoding) -> Option<String> {
+    (!text.is_empty()).then(|| encoding.decode(text.as_bytes()))
+}
+
+impl Report for Versions {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["part", "name", "version"], "no part");
+        table.row(["controller".into(), "system software".into(), Cell::maybe(self.software_version.as_deref())]);
+        for part in &self.parts {
+            let what = match (&part.group, part.application) {
+                (Some(group), _) => group.clone(),
+                (None, number) => format!("application {}", number.unwrap_or_default()),
+            };
+            table.row([what.into(), Cell::maybe(part.name.as_deref()), Cell::maybe(part.parameter_version.as_deref())]);
+        }
+        View::table(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::yerc::rehearse::{frames, frames_on, golden};
+    use crate::failure::Kind;
+    use crate::output::render;
+
+    #[test]
+    fn parts_by_model() {
+        assert_eq!(frames("info --group R1").unwrap(), [golden("R55")]);
+        assert_eq!(frames("info --application 8").unwrap(), ["89006c0000010000"]);
+        assert_eq!(frames("info").unwrap().len(), 8 + 24 + 8);
+        assert_eq!(frames_on("udp://h?model=fs100", "info").unwrap().len(), 2 + 3 + 1);
+        assert_eq!(frames_on("udp://h?model=fs100", "info --application 2").unwrap_err().kind, Kind::Usage);
+        assert_eq!(frames("info --group B1").unwrap_err().kind, Kind::Usage);
+    }
+
+    #[test]
+    fn the_version_stands_once() {
+        let info = SystemInfo {
+            version: Text::cut(b"DS2.07"),
+            name: Text::cut(b"ES0165D-A0*"),
+            parameters: Text::cut(b"12.34"),
+        };
+        let station = SystemInfo { version: Text::cut(b"DS2.07"), ..SystemInfo::default() };
+        let versions = Versions {
+            software_version: Some("DS2.07".into()),
+            parts: vec![
+                Part::new(SystemPart::Group(Group::R1), &info, Encoding::ShiftJis),
+                Part::new(SystemPart::Group(Group::Station(1)), &station, Encoding::ShiftJis),
+                Part::new(
+                    SystemPart::Application(1),
+                    &SystemInfo { parameters: Text::default(), ..info },
+                    Encoding::ShiftJis,
+                ),
+            ],
+        };
+        assert_eq!(
+            render::csv(&versions.view(), None),
+            "part,name,version\ncontroller,system software,DS2.07\nR1,ES0165D-A0*,12.34\nS1,-,-\napplication 1,ES0165D-A0*,-\n"
+        );
+    }
+}

@@ -1,0 +1,475 @@
+//! `yerc job show|select|start`.
+
+use std::str::FromStr;
+use std::time::Duration;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use tokio::time::Instant;
+
+use super::Family;
+use super::link::{Link, Refusal};
+use super::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost};
+use super::orders::usage;
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::Risk;
+use crate::controller::text::{Encoding, Name};
+use crate::controller::yerc::Model;
+use crate::controller::yerc::payload::{ControllerStatus, JobInfo};
+use crate::controller::yerc::query::{Query, ReadJob, ReadStatus, SelectJob, Selection, StartJob};
+use crate::controller::yerc::status;
+use crate::controller::yerc::units;
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Table, Tone, View};
+use crate::settings::duration;
+
+commands! {
+    /// Jobs.
+    pub enum Job of Family {
+        /// What runs: job, line, step and speed override of a task
+        Show(Show),
+        /// Choose the job that a start will run
+        Select(Select),
+        /// Start the selected job
+        Start(Start),
+    }
+}
+
+/// What a task executes (FS and DX 3.3.4).
+#[derive(Debug, Args)]
+pub struct Show {
+    /// A task, 0 being the master, or all
+    #[arg(long, value_name = "N|all", default_value = "0")]
+    task: Tasks,
+}
+
+/// One task or all there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Tasks {
+    One(u8),
+    All,
+}
+
+impl FromStr for Tasks {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.eq_ignore_ascii_case("all") {
+            return Ok(Self::All);
+        }
+        text.parse().map(Self::One).map_err(|_| "a task is a number from 0 (master) on, or all".to_owned())
+    }
+}
+
+impl Command for Show {
+    type Family = Family;
+    type Report = Jobs;
+    const ID: &'static str = "yerc.job.show";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Jobs, Failure> {
+        let link = context.link;
+        let encoding = link.encoding;
+        let jobs = match self.task {
+            Tasks::One(task) => {
+                let job = link.ask(&ReadJob::new(link.model, task).map_err(usage)?).await?;
+                vec![Task::new(task, Ok(&job), encoding)]
+            }
+            Tasks::All => {
+                let model = link.model;
+                let questions: Vec<ReadJob> = (0..=u8::MAX).map_while(|task| ReadJob::new(model, task).ok()).collect();
+                let answers = link.try_ask_all(&questions).await?;
+                if let Some(Err(refusal)) = answers.first() {
+                    // Every controller has a master task: this is not about a task that is absent.
+                    return Err((*refusal).into());
+                }
+                (0..).zip(&answers).map(|(task, answer)| Task::new(task, answer.as_ref(), encoding)).collect()
+            }
+        };
+        Ok(Jobs { tasks: jobs })
+    }
+}
+
+/// What tasks execute.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Jobs {
+    tasks: Vec<Task>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct Task {
+    /// 0 is the master.
+    #[serde(rename = "task")]
+    number: u8,
+    /// Whether the controller has it; where not, all that follows but `refusal` is null.
+    exists: bool,
+    /// Name of the job without `.JBI`; null if there is none.
+    job: Option<String>,
+    /// The bytes of the name, where the text does not lead back to them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    job_hex: Option<String>,
+    line: Option<u32>,
+    /// 0 while no step is executed.
+    step: Option<u32>,
+    speed_override_percent: Option<f64>,
+    /// The controller's code where it has no such task.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refusal: Option<String>,
+    /// The override with all its digits.
+    #[serde(skip)]
+    shown_override: Option<String>,
+}
+
+impl Task {
+    fn new(number: u8, answer: Result<&JobInfo, &Refusal>, encoding: Encoding) -> Self {
+        let info = answer.ok();
+        let name = info.filter(|info| !info.name.is_empty()).map(|info| encoding.name(info.name.as_bytes()));
+        let (job, job_hex) = name.map_or((None, None), |Name { text, hex }| (Some(text), hex));
+        Self {
+            number,
+            exists: info.is_some(),
+            job,
+            job_hex,
+            line: info.map(|info| info.line),
+            step: info.map(|info| info.step),
+            speed_override_percent: info.map(|info| f64::from(info.speed_override) / 100.0),
+            refusal: answer.err().map(|refusal| status::explain(refusal.0).code_text),
+            shown_override: info.map(|info| units::PERCENT.show_unsigned(info.speed_override).to_string()),
+        }
+    }
+}
+
+impl Report for Jobs {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["task", "job", "line", "step", "override (%)"], "no task");
+        for task in &self.tasks {
+            let name = if task.number == 0 { "master".to_owned() } else { format!("sub {}", task.number) };
+            let job = match &task.refusal {
+                Some(code) => format!("(no such task: {code})").into(),
+                None => Cell::maybe(task.job.as_deref()),
+            };
+            let percent = task.shown_override.as_deref().map(Cell::number);
+            table.row([name.into(), job, Cell::maybe(task.line), Cell::maybe(task.step), Cell::maybe(percent)]);
+        }
+        View::table(table)
+    }
+}
+
+/// Chooses a job (FS and DX 3.3.24).
+#[derive(Debug, Args)]
+pub struct Select {
+    /// Its name, without .JBI
+    name: String,
+    /// Line to start at
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=9999))]
+    line: u32,
+    /// Make it the master job of a task, instead of the job to start
+    #[arg(long, value_name = "N", conflicts_with = "line")]
+    task: Option<u8>,
+}
+
+/// Bytes of a job name.
+const MAX_NAME: usize = 32;
+
+impl Select {
+    fn query(&self, name: &str, encoding: Encoding, model: Model) -> Result<SelectJob, Failure> {
+        let bytes = encoding.encode_name(name).map_err(|error| {
+            Failure::usage(format!("the job name: {error}")).hint("--encoding or the robot's entry sets the encoding")
+        })?;
+        if bytes.len() > MAX_NAME {
+            let message = format!("the job name takes {} bytes in {encoding}; at most {MAX_NAME} fit", bytes.len());
+            return Err(Failure::usage(message).hint("`yerc file list` shows the names on the controller"));
+        }
+        let line = self.line;
+        let selection = self.task.map_or(Selection::Execute { line }, |task| Selection::Master { task });
+        SelectJob::new(model, &bytes, selection).map_err(usage)
+    }
+}
+
+/// The name as the controller has it; files have a suffix that jobs do not.
+fn without_suffix(name: &str) -> &str {
+    let at = name.len().saturating_sub(".JBI".len());
+    match name.split_at_checked(at) {
+        Some((stem, suffix)) if suffix.eq_ignore_ascii_case(".JBI") => stem,
+        _ => name,
+    }
+}
+
+impl Command for Select {
+    type Family = Family;
+    type Report = Selected;
+    const ID: &'static str = "yerc.job.select";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Selected, Failure> {
+        let link = context.link;
+        let name = without_suffix(&self.name);
+        if name != self.name {
+            context.screen.note(&format!("jobs are selected without .JBI: '{name}'"));
+        }
+        link.ask(&self.query(name, link.encoding, link.model)?).await?;
+        Ok(Selected { job: name.to_owned(), line: self.task.is_none().then_some(self.line), task: self.task })
+    }
+}
+
+/// What was selected.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Selected {
+    /// Name without `.JBI`.
+    job: String,
+    /// Line of the start; null for a master job.
+    line: Option<u32>,
+    /// The task whose master job it is; null for the job to start.
+    task: Option<u8>,
+}
+
+impl Report for Selected {
+    fn view(&self) -> View {
+        let job = &self.job;
+        View::text(match (self.task, self.line) {
+            (Some(task), _) => format!("{job} is the master job of task {task}"),
+            (None, None | Some(0)) => format!("{job} is selected"),
+            (None, Some(line)) => format!("{job} is selected from line {line} on"),
+        })
+    }
+}
+
+/// Starts the selected job (FS and DX 3.3.23).
+#[derive(Debug, Args)]
+pub struct Start {
+    /// Wait until the job has ended, at most TIME
+    #[arg(long, value_name = "TIME", num_args = 0..=1, value_parser = duration::parse)]
+    #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
+    wait: Option<Option<Duration>>,
+}
+
+impl Command for Start {
+    type Family = Family;
+    type Report = Started;
+    const ID: &'static str = "yerc.job.start";
+
+    fn risk(&self) -> Risk {
+        StartJob.risk()
+    }
+
+    fn intent(&self) -> String {
+        "start the selected job".to_owned()
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Started, Failure> {
+        let link = context.link;
+        link.ask(&StartJob).await?;
+        let Some(limit) = self.wait else { return Ok(Started { accepted: true, ended: None, elapsed_ms: None }) };
+        let progress = context.screen.spinner("the job runs");
+        let began = Instant::now();
+        let mut watch = Watch::new(limit);
+        loop {
+            let status = link.ask(&ReadStatus).await.map_err(|failure| lost("the job was started", failure))?;
+            match watch.look(began.elapsed(), status) {
+                Look::Running => {}
+                Look::Ended => break,
+                Look::Stopped(trouble) => return Err(trouble.failure(link, "the job was started", None).await),
+                Look::NotSeen => return Err(not_seen()),
+                Look::Late(limit) => {
+                    let message = format!("the job still runs after {}", duration::display(limit));
+                    return Err(Failure::new(Kind::ConditionNotMet, message)
+                        .hint("it goes on; `yerc status` and `yerc job show` tell how far it is"));
+                }
+            }
+            if let Some(line) = line(link, context.screen.can_redraw()).await? {
+                progress.say(&line);
+            }
+            tokio::time::sleep(LOOK_EVERY).await;
+        }
+        let elapsed_ms = u64::try_from(began.elapsed().as_millis()).ok();
+        Ok(Started { accepted: true, ended: Some(true), elapsed_ms })
+    }
+}
+
+/// Job and line for the eye, where there is one; a controller that refuses is not asked to explain here.
+async fn line(link: &mut Link, is_seen: bool) -> Result<Option<String>, Failure> {
+    if !is_seen {
+        return Ok(None);
+    }
+    let question = ReadJob::new(link.model, 0).map_err(usage)?;
+    let answer = link.try_ask(&question).await.map_err(|failure| lost("the job was started", failure))?;
+    let encoding = link.encoding;
+    Ok(answer.ok().map(|job| format!("{} line {}", encoding.decode(job.name.as_bytes()), job.line)))
+}
+
+fn not_seen() -> Failure {
+    let message = format!(
+        "the start was accepted, but no running job was seen within {}: it may have ended at once, or not begun",
+        duration::display(START_WITHIN)
+    );
+    Failure::new(Kind::ConditionNotMet, message).hint("`yerc job show` tells the line, `yerc status` what holds it")
+}
+
+/// Watches a job from its start to its end.
+#[derive(Debug)]
+struct Watch {
+    limit: Option<Duration>,
+    seen: bool,
+}
+
+/// What a look at the status says about the job.
+#[derive(Debug, PartialEq, Eq)]
+enum Look {
+    /// Look again.
+    Running,
+    /// It has ended.
+    Ended,
+    /// Something stopped it.
+    Stopped(Trouble),
+    /// It was not seen running in time.
+    NotSeen,
+    /// It runs for longer than wanted.
+    Late(Duration),
+}
+
+impl Watch {
+    fn new(limit: Option<Duration>) -> Self {
+        Self { limit, seen: false }
+    }
+
+    fn look(&mut self, elapsed: Duration, status: ControllerStatus) -> Look {
+        self.seen |= status.running();
+        match Trouble::of(status) {
+            // An error is a message on the pendant; a job may run on under it.
+            Some(Trouble::Error) if status.running() => {}
+            Some(trouble) => return Look::Stopped(trouble),
+            None if self.seen && !status.running() => return Look::Ended,
+            None => {}
+        }
+        match self.limit {
+            _ if !self.seen && elapsed >= START_WITHIN => Look::NotSeen,
+            Some(limit) if elapsed >= limit => Look::Late(limit),
+            _ => Look::Running,
+        }
+    }
+}
+
+/// What became of a start.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Started {
+    /// The controller took the order.
+    accepted: bool,
+    /// Whether it has ended; null if nobody waited.
+    ended: Option<bool>,
+    /// From the acceptance to the end; null if nobody waited.
+    elapsed_ms: Option<u64>,
+}
+
+impl Report for Started {
+    fn view(&self) -> View {
+        match self.elapsed_ms {
+            None => View::fields([("job", Cell::from("started").tone(Tone::Good))]),
+            Some(ms) => View::fields([("job", Cell::from("ended").tone(Tone::Good)), ("elapsed (ms)", ms.into())]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::yerc::rehearse::{frames, frames_on, golden, intent, objection};
+    use crate::controller::yerc::payload::{StatusBit, Text};
+    use crate::controller::yerc::wire;
+    use crate::output::render;
+
+    #[test]
+    fn tasks_by_model() {
+        // Golden frame R09 reads a field of instance 6, sub task 5.
+        assert_eq!(frames("job show").unwrap(), ["7300010000010000"]);
+        assert_eq!(frames("job show --task 5").unwrap(), ["7300060000010000"]);
+        assert_eq!(frames("job show --task all").unwrap().len(), 16);
+        assert_eq!(frames_on("udp://h?model=fs100", "job show --task all").unwrap().len(), 6);
+        let failure = frames_on("udp://h?model=fs100", "job show --task 6").unwrap_err();
+        assert_eq!((failure.kind, failure.message.contains("0 (master) to 5")), (Kind::Usage, true), "{failure}");
+        assert!(objection("job show --task x").contains("or all"));
+    }
+
+    #[test]
+    fn selection_is_the_frame_of_the_manual() {
+        let r51 = golden("R51");
+        assert_eq!(frames("job select TESTJOB --line 10").unwrap(), [r51.clone()]);
+        assert_eq!(frames("job select TESTJOB.jbi --line 10").unwrap(), [r51]);
+        assert!(frames("job select TESTJOB --task 15").unwrap()[0].starts_with("87001900"));
+        assert!(objection("job select A --task 1 --line 2").contains("cannot be used with"));
+        assert!(objection("job select A --line 10000").contains("0..=9999"));
+    }
+
+    #[test]
+    fn names_are_measured_in_bytes_of_the_encoding() {
+        let select = |name: &str| frames(&format!("job select {name}"));
+        assert_eq!(select(&"A".repeat(32)).unwrap().len(), 1);
+        let failure = select(&"A".repeat(33)).unwrap_err();
+        assert_eq!(failure.kind, Kind::Usage);
+        assert_eq!(failure.message, "the job name takes 33 bytes in shift_jis; at most 32 fit");
+        assert!(select(&"て".repeat(16)).is_ok());
+        assert!(select(&"て".repeat(17)).unwrap_err().message.contains("34 bytes"));
+        assert_eq!(select("한").unwrap_err().kind, Kind::Usage);
+        assert_eq!(select(".JBI").unwrap_err().kind, Kind::Usage);
+    }
+
+    #[test]
+    fn a_start_is_one_frame_and_a_motion() {
+        assert_eq!(frames("job start").unwrap(), ["860001000110000001000000"]);
+        assert_eq!(frames("job start --wait 2m").unwrap(), ["860001000110000001000000"]);
+        assert_eq!(intent("job start"), "start the selected job");
+        assert_eq!(StartJob.risk(), Risk::Motion);
+    }
+
+    #[test]
+    fn an_absent_task_is_data() {
+        let info = JobInfo { name: Text::cut(b"\x85\x41"), line: 3, step: 0, speed_override: 3333 };
+        let refusal = Refusal(wire::Status::refused(0xA001));
+        let tasks = Jobs {
+            tasks: vec![
+                Task::new(0, Ok(&info), Encoding::ShiftJis),
+                Task::new(1, Err(&refusal), Encoding::ShiftJis),
+                Task::new(2, Ok(&JobInfo::default()), Encoding::ShiftJis),
+            ],
+        };
+        let json = serde_json::to_string(&tasks).unwrap();
+        assert!(
+            json.contains(r#""job":"\\x85A","job_hex":"8541","line":3,"step":0,"speed_override_percent":33.33}"#),
+            "{json}"
+        );
+        assert!(json.contains(r#""task":1,"exists":false,"job":null,"line":null"#), "{json}");
+        assert!(json.contains(r#""refusal":"0xA001""#), "{json}");
+        assert_eq!(
+            render::csv(&tasks.view(), None),
+            "task,job,line,step,override\nmaster,\\x85A,3,0,33.33\nsub 1,(no such task: 0xA001),-,-,-\nsub 2,-,0,0,0.00\n"
+        );
+    }
+
+    fn status(bits: &[StatusBit]) -> ControllerStatus {
+        bits.iter().fold(ControllerStatus::default(), |status, bit| status.with(*bit, true))
+    }
+
+    #[test]
+    fn a_job_is_watched_from_start_to_end() {
+        let (idle, runs) = (status(&[StatusBit::ServoOn]), status(&[StatusBit::ServoOn, StatusBit::Running]));
+        let mut watch = Watch::new(None);
+        assert_eq!(watch.look(Duration::ZERO, idle), Look::Running, "the bit may come a moment later");
+        assert_eq!(watch.look(Duration::from_millis(100), runs), Look::Running);
+        assert_eq!(watch.look(Duration::from_secs(3600), runs), Look::Running);
+        assert_eq!(watch.look(Duration::from_secs(3601), idle), Look::Ended);
+        assert_eq!(Watch::new(None).look(START_WITHIN, idle), Look::NotSeen);
+        let limit = Duration::from_secs(1);
+        assert_eq!(Watch::new(Some(limit)).look(limit, runs), Look::Late(limit));
+    }
+
+    #[test]
+    fn what_stops_a_job_is_told() {
+        let base = [StatusBit::ServoOn, StatusBit::Running];
+        let look = |more: StatusBit| Watch::new(None).look(Duration::ZERO, status(&base).with(more, true));
+        assert_eq!(look(StatusBit::Alarm), Look::Stopped(Trouble::Alarm));
+        assert!(matches!(look(StatusBit::HoldExternal), Look::Stopped(Trouble::Hold(_))));
+        assert_eq!(look(StatusBit::Error), Look::Running);
+    }
+}

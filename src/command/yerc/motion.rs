@@ -1,0 +1,124 @@
+//! What can stop a motion or a job while somebody waits for its end.
+
+use std::time::Duration;
+
+use super::alarm;
+use super::link::Link;
+use super::orders::usage;
+use crate::controller::yerc::payload::{ControllerStatus, StatusBit};
+use crate::controller::yerc::query::ReadAlarm;
+use crate::failure::{Failure, Kind};
+
+/// Pause between two looks: a controller answers in 5 to 20 ms, and nothing is gained by pressing it.
+pub(super) const LOOK_EVERY: Duration = Duration::from_millis(100);
+/// How long a controller may take to begin what it has accepted.
+pub(super) const START_WITHIN: Duration = Duration::from_secs(3);
+
+/// A state of the controller in which nothing moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Trouble {
+    /// An alarm is present.
+    Alarm,
+    /// An error is present.
+    Error,
+    /// Held, by what.
+    Hold(&'static str),
+    /// Servo power is off.
+    ServoOff,
+    /// The mode switch stands on teach.
+    Teach,
+}
+
+/// What can hold a robot, and what releases it.
+const HOLDS: [(StatusBit, &str, &str); 3] = [
+    (StatusBit::HoldPendant, "pendant", "release HOLD on the pendant"),
+    (StatusBit::HoldExternal, "external signal", "clear the external hold (PLC, door, interlock)"),
+    (StatusBit::HoldCommand, "command", "`yerc hold off` releases it"),
+];
+
+impl Trouble {
+    /// What a status says, the weightiest first; there was none of it when the controller accepted the order.
+    pub(super) fn of(status: ControllerStatus) -> Option<Self> {
+        let hold = HOLDS.iter().find(|row| status.has(row.0));
+        if status.alarm() {
+            Some(Self::Alarm)
+        } else if let Some((_, by, _)) = hold {
+            Some(Self::Hold(by))
+        } else if status.error() {
+            Some(Self::Error)
+        } else if !status.servo_on() {
+            Some(Self::ServoOff)
+        } else if status.has(StatusBit::Teach) {
+            Some(Self::Teach)
+        } else {
+            None
+        }
+    }
+
+    /// The failure that tells it: what had been `done` before, and where the robot stands.
+    pub(super) async fn failure(self, link: &mut Link, done: &str, place: Option<&str>) -> Failure {
+        let what = match self {
+            Self::Alarm => present_alarm(link).await,
+            Self::Error => "an error came up".to_owned(),
+            Self::Hold(by) => format!("hold by {by} came on"),
+            Self::ServoOff => "servo power went off".to_owned(),
+            Self::Teach => "the mode was switched to teach".to_owned(),
+        };
+        let place = place.map(|place| format!("; it stands at {place}")).unwrap_or_default();
+        let hint = match self {
+            Self::Alarm => "`yerc alarm list` tells more; remove the cause, then `yerc alarm reset`".to_owned(),
+            Self::Error => "read the pendant; `yerc alarm cancel` clears the error".to_owned(),
+            Self::Hold(by) => {
+                let how = HOLDS.iter().find(|row| row.1 == by).map_or("release it", |row| row.2);
+                format!("{how}; what was interrupted may then go on")
+            }
+            Self::ServoOff => "look for a stop or an open door before `yerc servo on`".to_owned(),
+            Self::Teach => "somebody is at the pendant; ask before going on".to_owned(),
+        };
+        Failure::new(Kind::ConditionNotMet, format!("{done}, but {what}{place}")).hint(hint)
+    }
+}
+
+/// The latest alarm; that there is one must be told even if it cannot be read.
+async fn present_alarm(link: &mut Link) -> String {
+    let question = match ReadAlarm::new(1, false).map_err(usage) {
+        Ok(question) => question,
+        Err(failure) => return format!("an alarm came up ({failure})"),
+    };
+    match link.ask(&question).await {
+        Ok(alarm) if !alarm.is_none() => format!("{} came up", alarm::in_a_line(&alarm, link.encoding, link.model)),
+        Ok(_) => "an alarm came up and is gone again".to_owned(),
+        Err(failure) => format!("an alarm came up, which could not be read: {failure}"),
+    }
+}
+
+/// Contact lost while waiting: what was `done` goes on unseen, so its outcome is unknown.
+pub(super) fn lost(done: &str, failure: Failure) -> Failure {
+    let message = format!("{done}, but its end was not seen: {failure}");
+    Failure { kind: Kind::OutcomeUnknown, message, ..failure }
+        .hint("do not send it again; `yerc status` and `yerc position` tell what came of it")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_weightiest_trouble_is_named() {
+        let fine = ControllerStatus::default().with(StatusBit::ServoOn, true).with(StatusBit::Play, true);
+        let with = |bits: &[StatusBit]| Trouble::of(bits.iter().fold(fine, |status, bit| status.with(*bit, true)));
+        assert_eq!(with(&[]), None);
+        assert_eq!(with(&[StatusBit::Running, StatusBit::CommandRemote]), None);
+        assert_eq!(with(&[StatusBit::HoldCommand, StatusBit::Alarm]), Some(Trouble::Alarm));
+        assert_eq!(with(&[StatusBit::HoldCommand, StatusBit::Error]), Some(Trouble::Hold("command")));
+        assert_eq!(with(&[StatusBit::Teach]), Some(Trouble::Teach));
+        assert_eq!(Trouble::of(ControllerStatus::default()), Some(Trouble::ServoOff));
+    }
+
+    #[test]
+    fn a_lost_contact_leaves_the_outcome_open() {
+        let failure = lost("the job was started", Failure::new(Kind::NoAnswer, "silence").code("0x1"));
+        assert_eq!(failure.kind, Kind::OutcomeUnknown);
+        assert_eq!(failure.message, "the job was started, but its end was not seen: silence");
+    }
+}

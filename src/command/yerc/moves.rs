@@ -1,0 +1,450 @@
+//! `yerc move joint|linear|relative` and `yerc move pulse joint|linear` (FS and DX 3.3.39, 3.3.40).
+
+mod arguments;
+mod going;
+
+use clap::Args;
+
+use self::arguments::{
+    By, Forms, Frame, Mover, Part, Speed, To, Values, base_lengths, base_pulses, base_told, robot_pulses, split,
+    station_pulses, told,
+};
+use self::going::{Goal, Going, Moved};
+use super::Family;
+use super::link::Link;
+use super::orders::usage;
+use crate::command::{Command, Context, Verbs, commands};
+use crate::controller::Risk;
+use crate::controller::yerc::Model;
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::{CartesianMove, ExtendedForm, Form, MoveLayout, PositionKind, PulseMove};
+use crate::controller::yerc::query::{Coordinates, MoveCartesian, MoveKind, MovePulse};
+use crate::controller::yerc::units;
+use crate::failure::Failure;
+
+commands! {
+    /// Motions.
+    pub enum Move of Family {
+        /// To a position, each axis on its own way
+        Joint(Joint),
+        /// To a position, in a straight line
+        Linear(Linear),
+        /// By a distance, in a straight line
+        Relative(Relative),
+        /// To pulses: joint, linear
+        Pulse(Verbs<Pulse>),
+    }
+}
+
+commands! {
+    /// Motions to pulses.
+    pub enum Pulse of Family {
+        /// Each axis on its own way
+        Joint(PulseJoint),
+        /// In a straight line
+        Linear(PulseLinear),
+    }
+}
+
+/// A cartesian target with everything that goes with it.
+#[derive(Debug, Args)]
+struct Target {
+    #[command(flatten)]
+    to: To,
+    #[command(flatten)]
+    frame: Frame,
+    #[command(flatten)]
+    forms: Forms,
+    /// Axes of the robot's base, in mm
+    #[arg(long, value_name = "MM,…", allow_hyphen_values = true, value_parser = base_lengths)]
+    base_axes: Option<Values>,
+    /// Axes of a station, in pulses
+    #[arg(long, value_name = "PULSES,…", allow_hyphen_values = true, value_parser = station_pulses)]
+    station_axes: Option<Values>,
+    #[command(flatten)]
+    mover: Mover,
+}
+
+impl Target {
+    fn intent(&self, way: &str, speed: Speed) -> String {
+        let Self { to, frame, forms, base_axes, station_axes, mover } = self;
+        let robot = to.coordinates();
+        let base = base_told(base_axes.as_ref(), units::MILLIMETRE);
+        let place = told(frame.coordinate.into(), robot.as_ref().map(|axes| &axes[..]), base, station_axes.as_ref());
+        let how = if robot.is_some() { format!(" in {}, {}", frame.told(), forms.told()) } else { String::new() };
+        format!("move {} {way} to {place}{how} at {speed}", mover.group)
+    }
+
+    fn going(&self, link: &Link, kind: MoveKind, speed: Speed) -> Result<Going<MoveCartesian>, Failure> {
+        let Self { to, frame, forms, base_axes, station_axes, mover } = self;
+        let part = split(mover.group, to.coordinates(), "--to", base_axes.as_ref(), station_axes.as_ref())?;
+        let coordinate = PositionKind::from(frame.coordinate);
+        let mut order = plain(link, mover, speed, frame);
+        order.form = forms.form;
+        order.extended = forms.extended_form;
+        let (goal, unnamed) = match part {
+            Part::Robot(target, base) => {
+                order.target = target;
+                order.base = base.map(Values::padded).unwrap_or_default();
+                let goal = match coordinate {
+                    PositionKind::Base => Goal::Base(target, frame.tool),
+                    _ => Goal::Unknown(Coordinates::Base),
+                };
+                (goal, unnamed_base(mover.group, base))
+            }
+            Part::Station(axes) => {
+                order.station_axes = axes.padded();
+                (Goal::Pulses(axes.0.clone()), vec![(mover.group, axes.0.len(), "--station-axes")])
+            }
+        };
+        let order = MoveCartesian::new(link.model, kind, order).map_err(usage)?;
+        Ok(Going { order, group: mover.group, goal, unnamed, no_wait: mover.no_wait })
+    }
+}
+
+/// A cartesian move without a target yet.
+fn plain(link: &Link, mover: &Mover, speed: Speed, frame: &Frame) -> CartesianMove {
+    let (robot, station) = mover.words();
+    CartesianMove {
+        layout: if link.move_words == 25 { MoveLayout::Words25 } else { MoveLayout::Words26 },
+        robot,
+        station,
+        class: speed.class,
+        speed: speed.word,
+        coordinate: frame.coordinate.into(),
+        target: [0; 6],
+        reserved: [0; 2],
+        form: Form::default(),
+        extended: ExtendedForm::default(),
+        tool: frame.tool,
+        user: frame.user,
+        base: [0; 3],
+        station_axes: [0; 6],
+    }
+}
+
+/// The base that carries a robot has the robot's number; its axes move along with the robot.
+fn unnamed_base(group: Group, base: Option<&Values>) -> Vec<(Group, usize, &'static str)> {
+    match group {
+        Group::Robot(number) => vec![(Group::Base(number), base.map_or(0, |base| base.0.len()), "--base-axes")],
+        _ => Vec::new(),
+    }
+}
+
+macro_rules! motion {
+    (
+        $(#[$doc:meta])* $name:ident { $(#[$speed_doc:meta])* speed: $parser:expr, $target:ident: $type:ty }, $id:literal,
+        |$this:ident, $link:ident| $intent:expr, $going:expr
+    ) => {
+        $(#[$doc])*
+        #[derive(Debug, Args)]
+        pub struct $name {
+            $(#[$speed_doc])*
+            #[arg(long, value_parser = $parser)]
+            speed: Speed,
+            #[command(flatten)]
+            $target: $type,
+        }
+
+        impl Command for $name {
+            type Family = Family;
+            type Report = Moved;
+            const ID: &'static str = $id;
+
+            fn risk(&self) -> Risk {
+                Risk::Motion
+            }
+
+            fn intent(&self) -> String {
+                let $this = self;
+                $intent
+            }
+
+            async fn run(&self, context: Context<'_, Family>) -> Result<Moved, Failure> {
+                let $this = self;
+                let $link = &*context.link;
+                let going = $going?;
+                going.run(context.link, context.screen).await
+            }
+        }
+    };
+}
+
+motion! {
+    /// Moves to a position, axes interpolated (0x8A, instance 1).
+    Joint {
+        /// Share of the greatest speed, such as 10%
+        speed: Speed::percent, target: Target
+    }, "yerc.move.joint",
+    |this, link| this.target.intent("by its joints", this.speed), this.target.going(link, MoveKind::Link, this.speed)
+}
+motion! {
+    /// Moves to a position in a straight line (0x8A, instance 2).
+    Linear {
+        /// Speed along the path or of the rotation, such as 100mm/s or 20deg/s
+        speed: Speed::path, target: Target
+    }, "yerc.move.linear",
+    |this, link| this.target.intent("in a straight line", this.speed),
+    this.target.going(link, MoveKind::Straight, this.speed)
+}
+motion! {
+    /// Moves by a distance in a straight line (0x8A, instance 3).
+    Relative {
+        /// Speed along the path or of the rotation, such as 100mm/s or 20deg/s
+        speed: Speed::path, distance: Distance
+    }, "yerc.move.relative",
+    |this, link| this.distance.intent(this.speed), this.distance.going(link, this.speed)
+}
+motion! {
+    /// Moves to pulses, axes interpolated (0x8B, instance 1).
+    PulseJoint {
+        /// Share of the greatest speed, such as 10%
+        speed: Speed::percent, target: PulseTarget
+    }, "yerc.move.pulse.joint",
+    |this, link| this.target.intent("by its joints", this.speed),
+    this.target.going(link.model, MoveKind::Link, this.speed)
+}
+motion! {
+    /// Moves to pulses in a straight line (0x8B, instance 2).
+    PulseLinear {
+        /// Speed along the path or of the rotation, such as 100mm/s or 20deg/s
+        speed: Speed::path, target: PulseTarget
+    }, "yerc.move.pulse.linear",
+    |this, link| this.target.intent("in a straight line", this.speed),
+    this.target.going(link.model, MoveKind::Straight, this.speed)
+}
+
+/// A distance with everything that goes with it.
+#[derive(Debug, Args)]
+struct Distance {
+    #[command(flatten)]
+    by: By,
+    #[command(flatten)]
+    frame: Frame,
+    /// Distances of the axes of the robot's base, in mm
+    #[arg(long, value_name = "MM,…", allow_hyphen_values = true, value_parser = base_lengths)]
+    base_axes: Option<Values>,
+    /// Distances of the axes of a station, in pulses
+    #[arg(long, value_name = "PULSES,…", allow_hyphen_values = true, value_parser = station_pulses)]
+    station_axes: Option<Values>,
+    #[command(flatten)]
+    mover: Mover,
+}
+
+impl Distance {
+    /// The distances of a robot, unless only a station moves.
+    fn robot(&self) -> Option<[i32; 6]> {
+        let by = self.by.distances();
+        (self.station_axes.is_none() || by != [0; 6]).then_some(by)
+    }
+
+    fn intent(&self, speed: Speed) -> String {
+        let Self { frame, base_axes, station_axes, mover, .. } = self;
+        let robot = self.robot();
+        let base = base_told(base_axes.as_ref(), units::MILLIMETRE);
+        let distance = told(frame.coordinate.into(), robot.as_ref().map(|axes| &axes[..]), base, station_axes.as_ref());
+        let how = if robot.is_some() { format!(" in {}", frame.told()) } else { String::new() };
+        format!("move {} in a straight line by {distance}{how} at {speed}", mover.group)
+    }
+
+    fn going(&self, link: &Link, speed: Speed) -> Result<Going<MoveCartesian>, Failure> {
+        let Self { frame, base_axes, station_axes, mover, .. } = self;
+        let mut order = plain(link, mover, speed, frame);
+        let goal = match split(mover.group, self.robot(), "--by", base_axes.as_ref(), station_axes.as_ref())? {
+            Part::Robot(by, base) => {
+                order.target = by;
+                order.base = base.map(Values::padded).unwrap_or_default();
+                match (PositionKind::from(frame.coordinate), by, base) {
+                    (PositionKind::Base, [x, y, z, 0, 0, 0], None) => Goal::Shift([x, y, z], frame.tool),
+                    _ => Goal::Unknown(Coordinates::Base),
+                }
+            }
+            Part::Station(axes) => {
+                order.station_axes = axes.padded();
+                Goal::Unknown(Coordinates::Pulse)
+            }
+        };
+        if order.target == [0; 6] && order.base == [0; 3] && order.station_axes == [0; 6] {
+            return Err(Failure::usage("every distance is 0: nothing would move")
+                .hint("give at least one of --x --y --z --rx --ry --rz, or --by"));
+        }
+        let order = MoveCartesian::new(link.model, MoveKind::Incremental, order).map_err(usage)?;
+        Ok(Going { order, group: mover.group, goal, unnamed: Vec::new(), no_wait: mover.no_wait })
+    }
+}
+
+/// A target in pulses with everything that goes with it.
+#[derive(Debug, Args)]
+struct PulseTarget {
+    /// The target: pulses of six axes, and of a seventh and eighth where there are
+    #[arg(long, value_name = "S,L,U,R,B,T[,E]", allow_hyphen_values = true, value_parser = robot_pulses,
+        required_unless_present = "station_axes")]
+    pulses: Option<Values>,
+    /// Tool number
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=63))]
+    tool: u32,
+    /// Axes of the robot's base, in pulses
+    #[arg(long, value_name = "PULSES,…", allow_hyphen_values = true, value_parser = base_pulses)]
+    base_axes: Option<Values>,
+    /// Axes of a station, in pulses
+    #[arg(long, value_name = "PULSES,…", allow_hyphen_values = true, value_parser = station_pulses)]
+    station_axes: Option<Values>,
+    #[command(flatten)]
+    mover: Mover,
+}
+
+impl PulseTarget {
+    fn intent(&self, way: &str, speed: Speed) -> String {
+        let Self { pulses, tool, base_axes, station_axes, mover } = self;
+        let robot = pulses.as_ref().map(|pulses| &pulses.0[..]);
+        let base = base_told(base_axes.as_ref(), units::PULSE);
+        let place = told(PositionKind::Pulse, robot, base, station_axes.as_ref());
+        format!("move {} {way} to {place} in pulses, tool {tool}, at {speed}", mover.group)
+    }
+
+    fn going(&self, model: Model, kind: MoveKind, speed: Speed) -> Result<Going<MovePulse>, Failure> {
+        let Self { pulses, tool, base_axes, station_axes, mover } = self;
+        let part = split(mover.group, pulses.as_ref(), "--pulses", base_axes.as_ref(), station_axes.as_ref())?;
+        let (robot, station) = mover.words();
+        let mut order = PulseMove {
+            robot,
+            station,
+            class: speed.class,
+            speed: speed.word,
+            axes: [0; 8],
+            tool: *tool,
+            base: [0; 3],
+            station_axes: [0; 6],
+        };
+        let (target, unnamed) = match part {
+            Part::Robot(axes, base) => {
+                order.axes = axes.padded();
+                order.base = base.map(Values::padded).unwrap_or_default();
+                let mut unnamed = unnamed_base(mover.group, base);
+                unnamed.push((mover.group, axes.0.len(), "--pulses"));
+                (axes, unnamed)
+            }
+            Part::Station(axes) => {
+                order.station_axes = axes.padded();
+                (axes, vec![(mover.group, axes.0.len(), "--station-axes")])
+            }
+        };
+        let order = MovePulse::new(model, kind, order).map_err(usage)?;
+        let goal = Goal::Pulses(target.0.clone());
+        Ok(Going { order, group: mover.group, goal, unnamed, no_wait: mover.no_wait })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::yerc::rehearse::{frames, frames_on, golden, intent, objection};
+    use crate::failure::Kind;
+
+    /// Head of a frame, and the words of its data.
+    fn words(frame: &str) -> (&str, Vec<i32>) {
+        let bytes: Vec<u8> =
+            (16..frame.len()).step_by(2).map(|at| u8::from_str_radix(&frame[at..at + 2], 16).unwrap()).collect();
+        let words = bytes.chunks_exact(4).map(|word| i32::from_le_bytes(word.try_into().unwrap()));
+        (&frame[..16], words.collect())
+    }
+
+    #[test]
+    fn a_straight_move_is_the_golden_frame() {
+        for line in [
+            "move linear --to 185,0,125,180,0,0 --speed 70mm/s --tool 1",
+            "move linear --x 185.000 --y 0 --z 125 --rx 180 --ry -0 --rz 0 --speed 70.0mm/s --tool 1 --no-wait",
+        ] {
+            assert_eq!(frames(line).unwrap(), [golden("R75")], "{line}");
+        }
+    }
+
+    #[test]
+    fn a_pulse_move_is_the_golden_frame() {
+        assert_eq!(frames("move pulse joint --pulses 0,0,0,0,-90000,0 --speed 10%").unwrap(), [golden("R77")]);
+    }
+
+    #[test]
+    fn every_word_of_a_cartesian_move_is_in_its_place() {
+        let line = "move joint --group R2 --to -1,2,-3,4,-5,6 --speed 50% --coordinate user --user 7 --tool 8 \
+                    --form back,lower,noflip,s-ge180 --extended-form w-ge180 --base-axes 1.5,-2";
+        let expected =
+            [2, 0, 0, 5000, 18, -1000, 2000, -3000, 40_000, -50_000, 60_000, 0, 0, 0b10_0111, 0b1_0000, 8, 7];
+        let axes = [1500, -2000, 0, 0, 0, 0, 0, 0, 0];
+        let sent = frames(line).unwrap();
+        assert_eq!(words(&sent[0]), ("8a00010001020000", [&expected[..], &axes[..]].concat()));
+        // FS 3.3.39 prints one reserved word less.
+        let sent = frames_on("udp://h?model=fs100&move_words=25", line).unwrap();
+        assert_eq!(words(&sent[0]).1, [&expected[..11], &expected[12..], &axes[..]].concat());
+    }
+
+    #[test]
+    fn distances_not_given_are_zero_but_not_all() {
+        let sent = frames("move relative --z -50 --rz 0.5 --speed 20deg/s --coordinate tool").unwrap();
+        let (head, data) = words(&sent[0]);
+        assert_eq!(head, "8a00030001020000");
+        assert_eq!(data[..11], [1, 0, 2, 200, 19, 0, 0, -50_000, 0, 0, 5000]);
+        assert_eq!(frames("move relative --by 0,0,-50,0,0,0.5 --speed 20deg/s --coordinate tool").unwrap(), sent);
+        for nothing in ["--x 0", "--by 0,0,0,0,0,0", "--base-axes 0"] {
+            let failure = frames(&format!("move relative {nothing} --speed 1mm/s")).unwrap_err();
+            assert_eq!((failure.kind, &failure.message[..19]), (Kind::Usage, "every distance is 0"));
+        }
+        assert!(objection("move relative --speed 1mm/s").contains("--by"));
+    }
+
+    #[test]
+    fn a_station_moves_by_its_own_axes() {
+        let sent = frames("move pulse joint --group S2 --station-axes 100,-200 --speed 5%").unwrap();
+        let (_, data) = words(&sent[0]);
+        assert_eq!(data[..4], [0, 2, 0, 500]);
+        assert_eq!(data[4..16], [0; 12]);
+        assert_eq!(data[16..], [100, -200, 0, 0, 0, 0]);
+        for wrong in [
+            "move joint --group S1 --to 1,2,3,4,5,6 --speed 1%",
+            "move joint --group R1 --station-axes 5 --speed 1%",
+            "move joint --to 1,2,3,4,5,6 --station-axes 5 --speed 1%",
+            "move pulse linear --group S1 --station-axes 1 --base-axes 1 --speed 1mm/s",
+            "move relative --group S1 --x 5 --speed 1mm/s",
+        ] {
+            assert_eq!(frames(wrong).unwrap_err().kind, Kind::Usage, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn no_coordinate_is_guessed() {
+        let missing = objection("move linear --x 1 --y 2 --z 3 --rx 4 --ry 5 --speed 1mm/s");
+        assert!(missing.contains("provided:\n  --rz <DEG>\n"), "{missing}");
+        assert!(objection("move linear --to 1,2,3 --speed 1mm/s").contains("six numbers"));
+        assert!(objection("move linear --to 1,2,3,4,5,6 --x 1 --speed 1mm/s").contains("cannot be used with"));
+        assert!(objection("move linear --to 1,2,3,4,5,6").contains("--speed"));
+        assert!(objection("move pulse joint --pulses 1,2,3,4,5 --speed 1%").contains("6 to 8"));
+        assert!(objection("move joint --to 1,2,3,4,5,6 --speed 1% --coordinate user").contains("--user"));
+    }
+
+    #[test]
+    fn speed_and_group_suit_the_motion() {
+        assert!(objection("move joint --to 1,2,3,4,5,6 --speed 10mm/s").contains("percent"));
+        assert!(objection("move linear --to 1,2,3,4,5,6 --speed 10%").contains("mm/s or deg/s"));
+        assert!(objection("move joint --to 1,2,3,4,5,6 --speed 1% --group B1").contains("--base-axes"));
+        let failure =
+            frames_on("udp://h?model=fs100", "move joint --to 1,2,3,4,5,6 --speed 1% --group R3").unwrap_err();
+        assert!(failure.message.contains("robot number is 3; allowed: 1 to 2"), "{failure}");
+    }
+
+    #[test]
+    fn the_question_names_target_and_speed() {
+        assert_eq!(
+            intent("move linear --to 185,0,125,180,0,0 --speed 70mm/s --tool 1 --form noflip"),
+            "move R1 in a straight line to x=185.000 y=0.000 z=125.000 mm, rx=180.0000 ry=0.0000 rz=0.0000 deg in base \
+             coordinates, tool 1, form front+upper+noflip at 70.0 mm/s"
+        );
+        assert_eq!(
+            intent("move pulse joint --pulses 0,0,0,0,-90000,0 --speed 10%"),
+            "move R1 by its joints to s=0 l=0 u=0 r=0 b=-90000 t=0 in pulses, tool 0, at 10.00 %"
+        );
+        assert_eq!(
+            intent("move relative --z -5 --speed 1mm/s --base-axes 1"),
+            "move R1 in a straight line by x=0.000 y=0.000 z=-5.000 mm, rx=0.0000 ry=0.0000 rz=0.0000 deg, base 1.000 mm \
+             in base coordinates, tool 0 at 1.0 mm/s"
+        );
+    }
+}

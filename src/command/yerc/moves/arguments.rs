@@ -1,0 +1,446 @@
+//! What the command line of a move says, read exactly into the integers of the wire.
+
+use std::fmt;
+
+use clap::{Args, ValueEnum};
+
+use crate::command::yerc::position::{extended_words, form_words, in_a_line};
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::{ExtendedForm, Form, PositionKind, SpeedClass};
+use crate::controller::yerc::units::{self, Unit};
+use crate::failure::Failure;
+
+/// Who moves, and who waits.
+#[derive(Debug, Args)]
+pub(super) struct Mover {
+    /// The robot or station that moves: R1 …, S1 …
+    #[arg(long, default_value = "R1", value_parser = mover)]
+    pub(super) group: Group,
+    /// Return when the controller has accepted the motion, not when it has ended
+    #[arg(long)]
+    pub(super) no_wait: bool,
+}
+
+impl Mover {
+    /// The words of the frame: robot number and station number, one of them 0.
+    pub(super) fn words(&self) -> (u32, u32) {
+        match self.group {
+            Group::Robot(number) => (number.into(), 0),
+            Group::Base(_) => (0, 0),
+            Group::Station(number) => (0, number.into()),
+        }
+    }
+}
+
+fn mover(text: &str) -> Result<Group, String> {
+    match text.parse()? {
+        group @ Group::Base(_) => Err(format!("{group} moves with its robot: name the robot, and give --base-axes")),
+        group => Ok(group),
+    }
+}
+
+/// A whole target in coordinates.
+#[derive(Debug, Args)]
+pub(super) struct To {
+    /// The target: x, y, z in mm and rx, ry, rz in degrees
+    #[arg(long, value_name = "X,Y,Z,RX,RY,RZ", allow_hyphen_values = true, value_parser = coordinates,
+        conflicts_with_all = ["x", "y", "z", "rx", "ry", "rz"])]
+    to: Option<[i32; 6]>,
+    #[command(flatten)]
+    single: Single<true>,
+}
+
+impl To {
+    /// The six coordinates; `None` if there are none, which only a station may do without.
+    pub(super) fn coordinates(&self) -> Option<[i32; 6]> {
+        let [x, y, z, rx, ry, rz] = self.single.values();
+        self.to.or_else(|| Some([x?, y?, z?, rx?, ry?, rz?]))
+    }
+}
+
+/// A distance in coordinates.
+#[derive(Debug, Args)]
+pub(super) struct By {
+    /// The distance: x, y, z in mm and rx, ry, rz in degrees
+    #[arg(long, alias = "to", value_name = "X,Y,Z,RX,RY,RZ", allow_hyphen_values = true, value_parser = coordinates,
+        conflicts_with_all = ["x", "y", "z", "rx", "ry", "rz"],
+        required_unless_present_any = ["x", "y", "z", "rx", "ry", "rz", "base_axes", "station_axes"])]
+    by: Option<[i32; 6]>,
+    #[command(flatten)]
+    single: Single<false>,
+}
+
+impl By {
+    /// The six distances; those not given are 0.
+    pub(super) fn distances(&self) -> [i32; 6] {
+        self.by.unwrap_or_else(|| self.single.values().map(Option::unwrap_or_default))
+    }
+}
+
+/// A coordinate each. All of them are required of a target, as a forgotten one must not become 0.
+#[derive(Debug)]
+struct Single<const ALL: bool>([Option<i32>; 6]);
+
+impl<const ALL: bool> Single<ALL> {
+    fn values(&self) -> [Option<i32>; 6] {
+        self.0
+    }
+}
+
+/// Id of each coordinate.
+const COORDINATES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+
+impl<const ALL: bool> Args for Single<ALL> {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        COORDINATES.iter().enumerate().fold(command, |command, (axis, id)| {
+            let arg = clap::Arg::new(*id).long(*id).allow_hyphen_values(true);
+            let arg = match axis {
+                0..=2 => arg.value_name("MM").value_parser(millimetres).help("A coordinate in mm"),
+                _ => arg.value_name("DEG").value_parser(degrees).help("An angle in degrees"),
+            };
+            command.arg(if ALL { arg.required_unless_present_any(["to", "station_axes"]) } else { arg })
+        })
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<const ALL: bool> clap::FromArgMatches for Single<ALL> {
+    fn from_arg_matches(matches: &clap::ArgMatches) -> Result<Self, clap::Error> {
+        Ok(Self(COORDINATES.map(|id| matches.get_one(id).copied())))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &clap::ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// What the coordinates refer to.
+#[derive(Debug, Args)]
+pub(super) struct Frame {
+    /// Coordinates that the numbers are in
+    #[arg(long, value_enum, default_value = "base")]
+    pub(super) coordinate: Coordinate,
+    /// Tool number
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=63))]
+    pub(super) tool: u32,
+    /// User coordinate number
+    #[arg(long, value_name = "N", default_value_t = 0, required_if_eq("coordinate", "user"),
+        value_parser = clap::value_parser!(u32).range(0..=63))]
+    pub(super) user: u32,
+}
+
+/// Coordinates of a move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Coordinate {
+    /// Base coordinates
+    Base,
+    /// Robot coordinates
+    Robot,
+    /// A user coordinate system, by --user
+    User,
+    /// Tool coordinates
+    Tool,
+}
+
+impl From<Coordinate> for PositionKind {
+    fn from(coordinate: Coordinate) -> Self {
+        match coordinate {
+            Coordinate::Base => Self::Base,
+            Coordinate::Robot => Self::Robot,
+            Coordinate::User => Self::User,
+            Coordinate::Tool => Self::Tool,
+        }
+    }
+}
+
+impl Frame {
+    /// For the question before the motion.
+    pub(super) fn told(&self) -> String {
+        let name = match self.coordinate {
+            Coordinate::Base => "base coordinates".to_owned(),
+            Coordinate::Robot => "robot coordinates".to_owned(),
+            Coordinate::User => format!("user coordinates {}", self.user),
+            Coordinate::Tool => "tool coordinates".to_owned(),
+        };
+        format!("{name}, tool {}", self.tool)
+    }
+}
+
+/// How the arm reaches the target.
+#[derive(Debug, Args)]
+pub(super) struct Forms {
+    /// Form of the arm; of each pair not named, the first: front|back, upper|lower, flip|noflip, r-lt180|r-ge180,
+    /// t-lt180|t-ge180, s-lt180|s-ge180
+    #[arg(long, value_name = "WORD,…", default_value = "front,upper,flip", value_parser = form)]
+    pub(super) form: Form,
+    /// More of the form, likewise: l-lt180|l-ge180, then u-, b-, e-, w-
+    #[arg(long, value_name = "WORD,…", default_value = "l-lt180", value_parser = extended_form)]
+    pub(super) extended_form: ExtendedForm,
+}
+
+impl Forms {
+    /// For the question before the motion.
+    pub(super) fn told(&self) -> String {
+        let extended = extended_words(self.extended_form);
+        let plus = if extended.is_empty() { "" } else { "+" };
+        format!("form {}{plus}{extended}", form_words(self.form))
+    }
+}
+
+/// Bits that a move defines; the others are reserved (FS and DX 3.3.39).
+const MOVE_FORM_BITS: usize = 6;
+const MOVE_EXTENDED_FORM_BITS: usize = 5;
+
+fn form(text: &str) -> Result<Form, String> {
+    bits(text, MOVE_FORM_BITS, |word| Form(word).words().collect()).map(Form)
+}
+
+fn extended_form(text: &str) -> Result<ExtendedForm, String> {
+    bits(text, MOVE_EXTENDED_FORM_BITS, |word| ExtendedForm(word).words().collect()).map(ExtendedForm)
+}
+
+/// Reads words; `words` gives those of a value, bit 0 first.
+fn bits(text: &str, count: usize, words: impl Fn(u32) -> Vec<&'static str>) -> Result<u32, String> {
+    let (clear, set) = (words(0), words(u32::MAX));
+    let pairs = clear.iter().zip(&set).take(count);
+    let (mut given, mut value) = (0_u32, 0_u32);
+    for word in text.split([',', '+']).map(str::trim) {
+        let found =
+            pairs.clone().position(|(clear, set)| word.eq_ignore_ascii_case(clear) || word.eq_ignore_ascii_case(set));
+        let Some(bit) = found else {
+            let all: Vec<String> = pairs.map(|(clear, set)| format!("{clear}|{set}")).collect();
+            return Err(format!("'{word}' is none of {}", all.join(", ")));
+        };
+        if given >> bit & 1 == 1 {
+            return Err(format!("'{word}': {}|{} is given twice", clear[bit], set[bit]));
+        }
+        given |= 1 << bit;
+        value |= u32::from(word.eq_ignore_ascii_case(set[bit])) << bit;
+    }
+    Ok(value)
+}
+
+/// A speed in the integer and class of the wire.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Speed {
+    pub(super) class: SpeedClass,
+    pub(super) word: u32,
+}
+
+/// 100 % in 0.01 %.
+const FULL_SPEED: u32 = 10_000;
+/// Suffix, class and unit of every way to say a speed.
+const SPEEDS: [(&str, SpeedClass, Unit); 3] = [
+    ("%", SpeedClass::Percent, units::PERCENT),
+    ("mm/s", SpeedClass::Linear, units::MILLIMETRE_PER_SECOND),
+    ("deg/s", SpeedClass::Angular, units::DEGREE_PER_SECOND),
+];
+
+impl Speed {
+    /// Of a joint move: `10%`.
+    pub(super) fn percent(text: &str) -> Result<Self, String> {
+        match Self::parse(text)? {
+            Self { class: SpeedClass::Percent, word } if word > FULL_SPEED => {
+                Err(format!("'{text}' is more than 100%"))
+            }
+            speed @ Self { class: SpeedClass::Percent, .. } => Ok(speed),
+            _ => Err("a joint move takes its speed in percent, such as 10%".to_owned()),
+        }
+    }
+
+    /// Of a straight move: `100mm/s` or `20deg/s`.
+    pub(super) fn path(text: &str) -> Result<Self, String> {
+        match Self::parse(text)? {
+            Self { class: SpeedClass::Percent, .. } => {
+                Err("a straight move takes its speed in mm/s or deg/s, such as 100mm/s".to_owned())
+            }
+            speed => Ok(speed),
+        }
+    }
+
+    fn parse(text: &str) -> Result<Self, String> {
+        let found = SPEEDS.iter().find_map(|(suffix, class, unit)| Some((text.strip_suffix(suffix)?, *class, *unit)));
+        let (number, class, unit) = found.ok_or("a speed has its unit: 10%, 100mm/s or 20deg/s")?;
+        let word = unit.parse(number.trim_end()).map_err(|error| error.to_string())?;
+        match u32::try_from(word) {
+            Ok(word @ 1..) => Ok(Self { class, word }),
+            _ => Err(format!("'{text}' is no speed: it must be more than 0")),
+        }
+    }
+}
+
+impl fmt::Display for Speed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = SPEEDS.iter().find(|row| row.1 == self.class).map_or(units::PERCENT, |row| row.2);
+        write!(f, "{} {}", unit.show_unsigned(self.word), unit.symbol)
+    }
+}
+
+/// Values of axes, as many as were given.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct Values(pub(super) Vec<i32>);
+
+impl Values {
+    /// The values in a field of `N` words; those not given are 0.
+    pub(super) fn padded<const N: usize>(&self) -> [i32; N] {
+        let mut words = [0; N];
+        for (word, value) in words.iter_mut().zip(&self.0) {
+            *word = *value;
+        }
+        words
+    }
+}
+
+/// Axes of a base; as many as a move has words for.
+const MAX_BASE: usize = 3;
+/// Axes of a station; likewise.
+const MAX_STATION: usize = 6;
+/// Axes of a robot that must be named, and that can be.
+const ROBOT: std::ops::RangeInclusive<usize> = 6..=8;
+
+/// Base axes of a cartesian move, in mm.
+pub(super) fn base_lengths(text: &str) -> Result<Values, String> {
+    list(text, units::MILLIMETRE, 1..=MAX_BASE)
+}
+
+/// Base axes of a pulse move.
+pub(super) fn base_pulses(text: &str) -> Result<Values, String> {
+    list(text, units::PULSE, 1..=MAX_BASE)
+}
+
+/// Station axes.
+pub(super) fn station_pulses(text: &str) -> Result<Values, String> {
+    list(text, units::PULSE, 1..=MAX_STATION)
+}
+
+/// Robot axes.
+pub(super) fn robot_pulses(text: &str) -> Result<Values, String> {
+    list(text, units::PULSE, ROBOT)
+}
+
+fn list(text: &str, unit: Unit, count: std::ops::RangeInclusive<usize>) -> Result<Values, String> {
+    let values = text.split(',').map(|value| unit.parse(value.trim())).collect::<Result<Vec<_>, _>>();
+    let values = values.map_err(|error| error.to_string())?;
+    if count.contains(&values.len()) {
+        return Ok(Values(values));
+    }
+    Err(format!("{} to {} numbers of {} are wanted, {} given", count.start(), count.end(), unit.symbol, values.len()))
+}
+
+fn coordinates(text: &str) -> Result<[i32; 6], String> {
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    let wrong = || format!("x,y,z,rx,ry,rz are wanted, six numbers; {} given", parts.len());
+    let parts: [&str; 6] = parts.as_slice().try_into().map_err(|_| wrong())?;
+    let mut values = [0; 6];
+    for (axis, (value, part)) in values.iter_mut().zip(parts).enumerate() {
+        let read = PositionKind::Base.unit(axis).parse(part);
+        *value = read.map_err(|error| format!("{}: {error}", COORDINATES[axis]))?;
+    }
+    Ok(values)
+}
+
+fn millimetres(text: &str) -> Result<i32, String> {
+    units::MILLIMETRE.parse(text).map_err(|error| error.to_string())
+}
+
+fn degrees(text: &str) -> Result<i32, String> {
+    units::DEGREE.parse(text).map_err(|error| error.to_string())
+}
+
+/// What of the target a group moves by: robots by `robot` values and their base, stations by their own axes alone.
+pub(super) fn split<'a, T>(
+    group: Group,
+    robot: Option<T>,
+    flag: &str,
+    base: Option<&'a Values>,
+    station: Option<&'a Values>,
+) -> Result<Part<'a, T>, Failure> {
+    let wrong = |message: String| {
+        Err(Failure::usage(message).hint("a robot and a station cannot move in one command (FS and DX 3.3.39)"))
+    };
+    match (group, robot, station) {
+        (Group::Station(_), Some(_), _) => {
+            wrong(format!("{group} is a station: it moves by --station-axes, not {flag}"))
+        }
+        (Group::Station(_), None, _) if base.is_some() => wrong(format!("{group} is a station: it has no --base-axes")),
+        (Group::Station(_), None, Some(station)) => Ok(Part::Station(station)),
+        (Group::Station(_), None, None) => wrong(format!("the target of {group} is missing: --station-axes")),
+        (_, Some(_), Some(_)) => wrong(format!("{group} is a robot: --station-axes move stations, such as --group S1")),
+        (_, None, _) => wrong(format!("the target of {group} is missing: {flag}")),
+        (_, Some(robot), None) => Ok(Part::Robot(robot, base)),
+    }
+}
+
+/// The target of one group.
+#[derive(Debug)]
+pub(super) enum Part<'a, T> {
+    /// Of a robot, and of its base where given.
+    Robot(T, Option<&'a Values>),
+    /// Of a station.
+    Station(&'a Values),
+}
+
+/// The target for the question before the motion.
+pub(super) fn told(
+    kind: PositionKind,
+    robot: Option<&[i32]>,
+    base: Option<String>,
+    station: Option<&Values>,
+) -> String {
+    let robot = robot.map(|axes| in_a_line(kind, axes, true));
+    let station = station.map(|axes| in_a_line(PositionKind::Pulse, &axes.0, false));
+    [robot, base.map(|base| format!("base {base}")), station].into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// Base axes for the question before the motion.
+pub(super) fn base_told(base: Option<&Values>, unit: Unit) -> Option<String> {
+    let values: Vec<String> = base?.0.iter().map(|value| unit.show(*value).to_string()).collect();
+    Some(format!("{} {}", values.join(" "), unit.symbol))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn speeds_have_their_unit_and_class() {
+        assert_eq!(Speed::percent("10%"), Ok(Speed { class: SpeedClass::Percent, word: 1000 }));
+        assert_eq!(Speed::percent("0.01%").map(|speed| speed.word), Ok(1));
+        assert_eq!(Speed::percent("100.00 %").map(|speed| speed.word), Ok(10_000));
+        assert_eq!(Speed::path("70mm/s"), Ok(Speed { class: SpeedClass::Linear, word: 700 }));
+        assert_eq!(Speed::path("20.5deg/s"), Ok(Speed { class: SpeedClass::Angular, word: 205 }));
+        for wrong in ["10", "100.01%", "0%", "-1%", "1.234%", "100mm/s", "%", "fast"] {
+            assert!(Speed::percent(wrong).is_err(), "{wrong}");
+        }
+        for wrong in ["10%", "0mm/s", "0.05mm/s", "10mm", "1e3mm/s", "10cm/s"] {
+            assert!(Speed::path(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(Speed::path("70mm/s").unwrap().to_string(), "70.0 mm/s");
+    }
+
+    #[test]
+    fn forms_in_words() {
+        assert_eq!(form("front,lower,noflip"), Ok(Form(0b110)));
+        assert_eq!(form("noflip+s-ge180"), Ok(Form(0b10_0100)));
+        assert_eq!(extended_form("w-ge180,l-lt180"), Ok(ExtendedForm(0b1_0000)));
+        assert!(form("front,back").unwrap_err().contains("front|back is given twice"));
+        assert!(form("redundant-back").unwrap_err().contains("noflip"), "bits 6 and 7 are reserved in moves");
+        assert!(form("").is_err());
+    }
+
+    #[test]
+    fn lists_are_exact_and_counted() {
+        assert_eq!(coordinates("-1,0,+2.5,180,0,-0.0001"), Ok([-1000, 0, 2500, 1_800_000, 0, -1]));
+        assert!(coordinates("1,2,3").unwrap_err().contains("3 given"));
+        assert!(coordinates("1,2,3,4,5,6.00001").unwrap_err().starts_with("rz: "));
+        assert_eq!(robot_pulses("1,2,3,4,5,-6"), Ok(Values(vec![1, 2, 3, 4, 5, -6])));
+        assert!(robot_pulses("1,2,3,4,5").is_err());
+        assert!(robot_pulses("1,2,3,4,5,6.5").is_err());
+        assert!(base_lengths("1,2,3,4").is_err());
+        assert_eq!(base_lengths("1.5").unwrap().padded::<3>(), [1500, 0, 0]);
+    }
+}

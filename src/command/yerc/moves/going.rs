@@ -1,0 +1,376 @@
+//! A motion from the order to its end: what is asked before, and what is watched after.
+
+use std::time::Duration;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+use tokio::time::Instant;
+
+use crate::command::Report;
+use crate::command::yerc::link::Link;
+use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost};
+use crate::command::yerc::orders::usage;
+use crate::command::yerc::position::{self, PositionReport, in_a_line};
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::{ControllerStatus, Position, PositionKind};
+use crate::controller::yerc::query::{Coordinates, Query, ReadPosition, ReadStatus};
+use crate::controller::yerc::units::{self, Unit};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::output::view::{Cell, Tone, View};
+use crate::settings::duration;
+
+/// A motion that has been checked.
+#[derive(Debug)]
+pub(super) struct Going<Q> {
+    /// The order.
+    pub(super) order: Q,
+    /// Who moves.
+    pub(super) group: Group,
+    /// Where to, as far as a position that is read can be compared with it.
+    pub(super) goal: Goal,
+    /// Groups whose axes the order moves to 0 beyond those that were named: group, axes named, flag to name them with.
+    pub(super) unnamed: Vec<(Group, usize, &'static str)>,
+    /// Return on acceptance.
+    pub(super) no_wait: bool,
+}
+
+/// Where a motion leads.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Goal {
+    /// To pulses.
+    Pulses(Vec<i32>),
+    /// To base coordinates with this tool.
+    Base([i32; 6], u32),
+    /// By a distance along base coordinates, without turning, with this tool.
+    Shift([i32; 3], u32),
+    /// To something that a position, read in these coordinates, does not tell.
+    Unknown(Coordinates),
+}
+
+impl Goal {
+    const fn coordinates(&self) -> Coordinates {
+        match self {
+            Self::Pulses(_) => Coordinates::Pulse,
+            Self::Base(..) | Self::Shift(..) => Coordinates::Base,
+            Self::Unknown(coordinates) => *coordinates,
+        }
+    }
+
+    /// With the start known, a distance is a target.
+    fn from(self, start: &Position) -> Self {
+        let Self::Shift(by, tool) = self else { return self };
+        let mut target = [0; 6];
+        for (axis, value) in target.iter_mut().enumerate() {
+            let here = start.axes.padded()[axis];
+            let Some(there) = here.checked_add(by.get(axis).copied().unwrap_or(0)) else {
+                return Self::Unknown(Coordinates::Base);
+            };
+            *value = there;
+        }
+        Self::Base(target, tool)
+    }
+
+    /// Whether this position is the target; `None` if that cannot be told.
+    fn is_reached(&self, here: &Position) -> Option<bool> {
+        let axes = here.axes.as_slice();
+        match self {
+            Self::Pulses(target) => Some(target.iter().zip(axes).all(|(t, h)| is_near(units::PULSE, *t, *h))),
+            // Coordinates of another tool are other coordinates.
+            Self::Base(target, tool) if here.tool == *tool && axes.len() >= target.len() => {
+                let unit = |axis| PositionKind::Base.unit(axis);
+                let mut near = target.iter().zip(axes).enumerate().map(|(axis, (t, h))| is_near(unit(axis), *t, *h));
+                let (place, turn) = (near.by_ref().take(3).all(|near| near), near.all(|near| near));
+                match (place, turn) {
+                    (false, _) => Some(false),
+                    (true, true) => Some(true),
+                    // Different angles can name the same orientation.
+                    (true, false) => None,
+                }
+            }
+            Self::Base(..) | Self::Shift(..) | Self::Unknown(_) => None,
+        }
+    }
+}
+
+/// How far a robot that has arrived may be from its target: 0.1 mm, 0.1 degree, 100 pulses (less than 0.1 degree on the
+/// usual axes). Coarser than any robot stands, finer than any motion worth a command.
+fn is_near(unit: Unit, target: i32, here: i32) -> bool {
+    within(unit, target, here, 100, 1000)
+}
+
+/// How far a standing robot's readings may differ: 0.02 mm, 0.02 degree, 20 pulses.
+fn is_same(unit: Unit, one: i32, other: i32) -> bool {
+    within(unit, one, other, 20, 200)
+}
+
+fn within(unit: Unit, one: i32, other: i32, others: i64, degrees: i64) -> bool {
+    const TURN: i64 = 3_600_000;
+    let difference = (i64::from(one) - i64::from(other)).abs();
+    if unit == units::DEGREE {
+        // 180 and -180 degrees are the same.
+        let difference = difference % TURN;
+        return difference.min(TURN - difference) <= degrees;
+    }
+    difference <= others
+}
+
+impl<Q: Query<Answer = ()>> Going<Q> {
+    /// Orders the motion and, unless told otherwise, waits for its end.
+    pub(super) async fn run(self, link: &mut Link, screen: &Screen) -> Result<Moved, Failure> {
+        let Self { order, group, mut goal, unnamed, no_wait } = self;
+        let coordinates = goal.coordinates();
+        let mut start = None;
+        if !link.is_dry() {
+            for (group, named, flag) in unnamed {
+                refuse_silent_zeros(link, group, named, flag).await?;
+            }
+            if !no_wait {
+                let (position, _) = position::ask(link, group, coordinates).await?;
+                goal = goal.from(&position);
+                start = Some(position);
+            }
+        }
+        link.ask(&order).await?;
+        let mut moved =
+            Moved { accepted: true, group: group.to_string(), at_target: None, reached: None, elapsed_ms: None };
+        let Some(start) = start else { return Ok(moved) };
+
+        let done = format!("the motion of {group} was accepted");
+        let progress = screen.spinner(&format!("{group} moves"));
+        let began = Instant::now();
+        let mut watch = Watch::new(start);
+        loop {
+            let status = link.ask(&ReadStatus).await.map_err(|failure| lost(&done, failure))?;
+            let asked = position::ask(link, group, coordinates).await;
+            let (here, report) = asked.map_err(|failure| lost(&done, failure))?;
+            let at_target = goal.is_reached(&here);
+            let place = in_a_line(here.kind, here.axes.as_slice(), matches!(group, Group::Robot(_)));
+            match watch.look(began.elapsed(), status, here, at_target) {
+                Look::Moving => progress.say(&format!("{group} {place}")),
+                Look::Ended if at_target == Some(false) => {
+                    return Err(Failure::new(
+                        Kind::ConditionNotMet,
+                        format!("{done}, but it ended short of its target; it stands at {place}"),
+                    )
+                    .hint("somebody or something stopped it without an alarm: look at the pendant before going on"));
+                }
+                Look::Ended => {
+                    moved.at_target = at_target;
+                    moved.reached = Some(report);
+                    moved.elapsed_ms = u64::try_from(began.elapsed().as_millis()).ok();
+                    return Ok(moved);
+                }
+                Look::Stopped(trouble) => return Err(trouble.failure(link, &done, Some(&place)).await),
+                Look::NotBegun => {
+                    let within = duration::display(START_WITHIN);
+                    return Err(Failure::new(
+                        Kind::ConditionNotMet,
+                        format!("{done}, but it has not begun within {within}; it stands at {place}"),
+                    )
+                    .hint("it may still begin: keep clear, and look at `yerc status` and the pendant"));
+                }
+            }
+            tokio::time::sleep(LOOK_EVERY).await;
+        }
+    }
+}
+
+/// A move has words for every axis, and 0 in those that the operator did not name would move them there. That is
+/// only right for axes that are not fitted, or stand at 0.
+async fn refuse_silent_zeros(link: &mut Link, group: Group, named: usize, flag: &str) -> Result<(), Failure> {
+    let question = ReadPosition::new(link.model, group, Coordinates::Pulse).map_err(usage)?;
+    // A group that the controller does not have cannot move.
+    let Ok(position) = link.try_ask(&question).await? else { return Ok(()) };
+    silent_zero(group, &position, named, flag).map_or(Ok(()), Err)
+}
+
+fn silent_zero(group: Group, position: &Position, named: usize, flag: &str) -> Option<Failure> {
+    let (axis, value) = position.axes.as_slice().iter().enumerate().skip(named).find(|(_, value)| **value != 0)?;
+    let message =
+        format!("axis {} of {group} stands at {value} pulses and has no target: it would move to 0", axis + 1);
+    Some(Failure::usage(message).hint(format!("nothing was sent; name every axis of {group} with {flag}")))
+}
+
+/// Watches a motion from its acceptance to its end.
+#[derive(Debug)]
+struct Watch {
+    start: Position,
+    last: Position,
+    looked: bool,
+    seen: bool,
+}
+
+/// What a look at status and position says about the motion.
+#[derive(Debug, PartialEq, Eq)]
+enum Look {
+    /// Look again.
+    Moving,
+    /// It has ended.
+    Ended,
+    /// Something stopped it.
+    Stopped(Trouble),
+    /// Nothing moved in time.
+    NotBegun,
+}
+
+impl Watch {
+    fn new(start: Position) -> Self {
+        Self { start, last: start, looked: false, seen: false }
+    }
+
+    /// The position was read after the status: once the status says that nothing runs, it is the last one. The running
+    /// bit may come a moment after the acceptance, so standing still counts from the second look on, and only once the
+    /// motion was seen or its target is where the robot stands.
+    fn look(&mut self, elapsed: Duration, status: ControllerStatus, here: Position, at_target: Option<bool>) -> Look {
+        self.seen |= status.running() || !stands(&self.start, &here);
+        let is_still = !status.running() && self.looked && stands(&self.last, &here);
+        self.looked = true;
+        self.last = here;
+        if let Some(trouble) = Trouble::of(status) {
+            return Look::Stopped(trouble);
+        }
+        match (is_still, self.seen || at_target == Some(true)) {
+            (true, true) => Look::Ended,
+            (_, false) if elapsed >= START_WITHIN => Look::NotBegun,
+            _ => Look::Moving,
+        }
+    }
+}
+
+fn stands(one: &Position, other: &Position) -> bool {
+    let axes = one.axes.as_slice().iter().zip(other.axes.as_slice()).enumerate();
+    axes.into_iter().all(|(axis, (a, b))| is_same(one.kind.unit(axis), *a, *b))
+}
+
+/// What became of a motion.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Moved {
+    /// The controller took the order.
+    accepted: bool,
+    /// Who moved.
+    group: String,
+    /// Whether the position reached is the target; null if nobody waited, or if base coordinates do not tell.
+    at_target: Option<bool>,
+    /// Where it stands; null if nobody waited.
+    reached: Option<PositionReport>,
+    /// From the acceptance to the end; null if nobody waited.
+    elapsed_ms: Option<u64>,
+}
+
+impl Report for Moved {
+    fn view(&self) -> View {
+        let motion = match (&self.reached, self.at_target) {
+            (None, _) => Cell::from("accepted"),
+            (Some(_), Some(true)) => Cell::from("target reached").tone(Tone::Good),
+            (Some(_), _) => Cell::from("ended").tone(Tone::Good),
+        };
+        View::fields([
+            ("group", self.group.as_str().into()),
+            ("motion", motion),
+            ("position", Cell::maybe(self.reached.as_ref().map(PositionReport::line))),
+            ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::yerc::payload::{Axes, ExtendedForm, Form, StatusBit};
+
+    const HOME: [i32; 6] = [100_000, 0, 500_000, 1_800_000, 0, 0];
+
+    fn at(axes: [i32; 6]) -> Position {
+        Position {
+            kind: PositionKind::Base,
+            form: Form(0),
+            tool: 1,
+            user: 0,
+            extended: ExtendedForm(0),
+            axes: Axes::new(&axes).unwrap(),
+        }
+    }
+
+    fn status(running: bool) -> ControllerStatus {
+        ControllerStatus::default().with(StatusBit::ServoOn, true).with(StatusBit::Running, running)
+    }
+
+    fn after(millis: u64) -> Duration {
+        Duration::from_millis(millis)
+    }
+
+    #[test]
+    fn a_target_is_told_from_what_is_not() {
+        let goal = Goal::Base(HOME, 1);
+        assert_eq!(goal.is_reached(&at(HOME)), Some(true));
+        assert_eq!(goal.is_reached(&at([100_050, 0, 500_000, -1_800_000, 0, 0])), Some(true), "180 is -180");
+        assert_eq!(goal.is_reached(&at([100_101, 0, 500_000, 1_800_000, 0, 0])), Some(false));
+        assert_eq!(goal.is_reached(&at([100_000, 0, 500_000, 0, 1_800_000, 0])), None, "other angles may be the same");
+        assert_eq!(Goal::Base(HOME, 2).is_reached(&at(HOME)), None, "another tool");
+        let pulses = Goal::Pulses(vec![1000, -1000]);
+        let here = Position { kind: PositionKind::Pulse, axes: Axes::new(&[1050, -1000, 7]).unwrap(), ..at(HOME) };
+        assert_eq!(pulses.is_reached(&here), Some(true));
+        let here = Position { axes: Axes::new(&[1101, -1000]).unwrap(), ..here };
+        assert_eq!(pulses.is_reached(&here), Some(false));
+    }
+
+    #[test]
+    fn a_distance_is_a_target_once_the_start_is_known() {
+        let goal = Goal::Shift([0, 0, -500], 1).from(&at(HOME));
+        assert_eq!(goal, Goal::Base([100_000, 0, 499_500, 1_800_000, 0, 0], 1));
+        assert_eq!(Goal::Shift([i32::MAX, 0, 0], 1).from(&at(HOME)), Goal::Unknown(Coordinates::Base));
+    }
+
+    #[test]
+    fn the_running_bit_may_come_late() {
+        let mut watch = Watch::new(at(HOME));
+        let there = [200_000, 0, 500_000, 1_800_000, 0, 0];
+        assert_eq!(watch.look(after(0), status(false), at(HOME), Some(false)), Look::Moving);
+        assert_eq!(watch.look(after(100), status(false), at(HOME), Some(false)), Look::Moving);
+        assert_eq!(watch.look(after(200), status(true), at(HOME), Some(false)), Look::Moving);
+        assert_eq!(watch.look(after(300), status(true), at(there), Some(true)), Look::Moving);
+        assert_eq!(watch.look(after(400), status(false), at(there), Some(true)), Look::Ended);
+    }
+
+    #[test]
+    fn a_motion_shorter_than_a_look_is_seen_by_its_place() {
+        let mut watch = Watch::new(at(HOME));
+        let there = [101_000, 0, 500_000, 1_800_000, 0, 0];
+        assert_eq!(watch.look(after(0), status(false), at(there), None), Look::Moving);
+        assert_eq!(watch.look(after(100), status(false), at(there), None), Look::Ended);
+    }
+
+    #[test]
+    fn a_target_where_the_robot_stands_is_reached_at_once() {
+        let mut watch = Watch::new(at(HOME));
+        assert_eq!(watch.look(after(0), status(false), at(HOME), Some(true)), Look::Moving);
+        assert_eq!(watch.look(after(100), status(false), at(HOME), Some(true)), Look::Ended);
+    }
+
+    #[test]
+    fn what_never_begins_is_told() {
+        let mut watch = Watch::new(at(HOME));
+        assert_eq!(watch.look(after(0), status(false), at(HOME), None), Look::Moving);
+        assert_eq!(watch.look(START_WITHIN, status(false), at(HOME), None), Look::NotBegun);
+    }
+
+    #[test]
+    fn alarm_and_hold_end_the_waiting() {
+        let mut watch = Watch::new(at(HOME));
+        let alarmed = status(true).with(StatusBit::Alarm, true);
+        assert_eq!(watch.look(after(0), alarmed, at(HOME), None), Look::Stopped(Trouble::Alarm));
+        let held = status(false).with(StatusBit::HoldPendant, true);
+        assert_eq!(watch.look(after(100), held, at(HOME), None), Look::Stopped(Trouble::Hold("pendant")));
+    }
+
+    #[test]
+    fn axes_that_were_not_named_must_stand_at_zero() {
+        let base = |axes: &[i32]| Position { kind: PositionKind::Pulse, axes: Axes::new(axes).unwrap(), ..at(HOME) };
+        assert!(silent_zero(Group::Base(1), &base(&[0, 0]), 0, "--base-axes").is_none());
+        assert!(silent_zero(Group::Base(1), &base(&[5, 0]), 1, "--base-axes").is_none());
+        let failure = silent_zero(Group::Base(1), &base(&[5, 7]), 1, "--base-axes").unwrap();
+        assert!(failure.message.starts_with("axis 2 of B1 stands at 7 pulses"), "{failure}");
+        assert_eq!(failure.kind, Kind::Usage);
+    }
+}

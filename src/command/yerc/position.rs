@@ -1,0 +1,413 @@
+//! `yerc position`, and positions in reports.
+
+use std::fmt::Write as _;
+
+use clap::{Args, ValueEnum};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Serialize, Serializer};
+
+use super::Family;
+use super::link::Link;
+use super::orders::usage;
+use crate::command::{Command, Context, Report};
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::{self, Axes, ExtendedForm, Form, MAX_AXES, PositionKind};
+use crate::controller::yerc::query::{Coordinates, ReadPosition};
+use crate::controller::yerc::units::{self, Unit};
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Table, View};
+
+/// Where a group stands (FS and DX 3.3.6).
+#[derive(Debug, Args)]
+pub struct Position {
+    /// Control group: R1 …, B1 …, S1 …
+    #[arg(long, default_value = "R1")]
+    group: Group,
+    /// In pulses, in base coordinates (robots only), or both [default: what the group has]
+    #[arg(long, value_enum)]
+    coordinates: Option<Which>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Which {
+    /// Pulses of each axis
+    Pulse,
+    /// X Y Z Rx Ry Rz in base coordinates
+    Base,
+    /// Both
+    Both,
+}
+
+impl Command for Position {
+    type Family = Family;
+    type Report = PositionReport;
+    const ID: &'static str = "yerc.position";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<PositionReport, Failure> {
+        let link = context.link;
+        let which = match (self.coordinates, self.group) {
+            (Some(which), _) => which,
+            (None, Group::Robot(_)) => Which::Both,
+            (None, _) => Which::Pulse,
+        };
+        let wanted: &[Coordinates] = match which {
+            Which::Pulse => &[Coordinates::Pulse],
+            Which::Base => &[Coordinates::Base],
+            Which::Both => &[Coordinates::Pulse, Coordinates::Base],
+        };
+        let question = |coordinates: &Coordinates| ReadPosition::new(link.model, self.group, *coordinates);
+        let questions: Vec<ReadPosition> = wanted.iter().map(question).collect::<Result<_, _>>().map_err(usage)?;
+        let answers = link.ask_all(&questions).await?;
+        let mut report = PositionReport::nowhere(self.group);
+        for (coordinates, position) in wanted.iter().zip(answers) {
+            report.add(*coordinates, &position)?;
+        }
+        Ok(report)
+    }
+}
+
+/// Asks where a group stands.
+pub(super) async fn ask(
+    link: &mut Link,
+    group: Group,
+    coordinates: Coordinates,
+) -> Result<(payload::Position, PositionReport), Failure> {
+    let position = link.ask(&ReadPosition::new(link.model, group, coordinates).map_err(usage)?).await?;
+    let mut report = PositionReport::nowhere(group);
+    report.add(coordinates, &position)?;
+    Ok((position, report))
+}
+
+/// Where a control group stands.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct PositionReport {
+    /// Control group, such as `R1`.
+    group: String,
+    /// By axis; null if not asked for.
+    pulse: Option<PulsePosition>,
+    /// In base coordinates; null if not asked for.
+    base: Option<CartesianPosition>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct PulsePosition {
+    /// By axis: `s`, `l`, `u`, `r`, `b`, `t`, `e` of a robot, `axis_1` and so on of other groups; only axes answered.
+    pulses: ByAxis,
+    tool: u32,
+}
+
+/// Six coordinates and how the arm reaches them.
+#[derive(Debug, Serialize, JsonSchema)]
+struct CartesianPosition {
+    x_mm: Option<f64>,
+    y_mm: Option<f64>,
+    z_mm: Option<f64>,
+    rx_deg: Option<f64>,
+    ry_deg: Option<f64>,
+    rz_deg: Option<f64>,
+    /// The angle of a seventh axis.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    re_deg: Option<f64>,
+    tool: u32,
+    user: u32,
+    /// A word for each bit of the form.
+    form: Vec<&'static str>,
+    /// The word of the form as received.
+    form_raw: u32,
+    /// A word for each bit of the extended form.
+    extended_form: Vec<&'static str>,
+    /// The word of the extended form as received.
+    extended_form_raw: u32,
+    #[serde(skip)]
+    axes: Axes,
+}
+
+impl PositionReport {
+    fn nowhere(group: Group) -> Self {
+        Self { group: group.to_string(), pulse: None, base: None }
+    }
+
+    /// Where it stands, in a line.
+    pub(super) fn line(&self) -> String {
+        let pulses = self
+            .pulse
+            .as_ref()
+            .map(|pulse| in_a_line(PositionKind::Pulse, pulse.pulses.axes.as_slice(), pulse.pulses.is_robot));
+        let base = self.base.as_ref().map(|base| in_a_line(PositionKind::Base, base.axes.as_slice(), true));
+        pulses.into_iter().chain(base).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Takes an answer in the coordinates that were asked for.
+    fn add(&mut self, asked: Coordinates, position: &payload::Position) -> Result<(), Failure> {
+        match (asked, position.kind) {
+            (Coordinates::Pulse, PositionKind::Pulse) => {
+                let pulses = ByAxis::new(position.axes, self.group.starts_with('R'));
+                self.pulse = Some(PulsePosition { pulses, tool: position.tool });
+            }
+            (Coordinates::Base, PositionKind::Base) => self.base = Some(position.into()),
+            (_, kind) => {
+                let message = format!("unexpected answer: a position of type {} was not asked for", kind.word());
+                return Err(Failure::new(Kind::Malformed, message).hint("-vvv shows the bytes"));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl From<&payload::Position> for CartesianPosition {
+    fn from(position: &payload::Position) -> Self {
+        let axes = position.axes.as_slice();
+        let value = |axis: usize| axes.get(axis).map(|value| decimal(*value, position.kind.unit(axis)));
+        Self {
+            x_mm: value(0),
+            y_mm: value(1),
+            z_mm: value(2),
+            rx_deg: value(3),
+            ry_deg: value(4),
+            rz_deg: value(5),
+            re_deg: value(6),
+            tool: position.tool,
+            user: position.user,
+            form: position.form.words().collect(),
+            form_raw: position.form.0,
+            extended_form: position.extended.words().collect(),
+            extended_form_raw: position.extended.0,
+            axes: position.axes,
+        }
+    }
+}
+
+/// The value of a wire integer. It is the binary number nearest to the decimal one, so it prints with the same digits.
+pub(super) fn decimal(value: i32, unit: Unit) -> f64 {
+    f64::from(value) / 10_f64.powi(unit.decimals.into())
+}
+
+/// Names of the axes of a robot; other groups have numbers (FS and DX 3.3.5). An eighth is not named by the manuals.
+pub(super) const ROBOT_AXES: [&str; MAX_AXES] = ["S", "L", "U", "R", "B", "T", "E", "8"];
+const CARTESIAN_AXES: [&str; MAX_AXES] = ["X", "Y", "Z", "Rx", "Ry", "Rz", "Re", "8"];
+const NUMBERED_AXES: [&str; MAX_AXES] = ["1", "2", "3", "4", "5", "6", "7", "8"];
+
+/// A number for each axis, under its name.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ByAxis {
+    axes: Axes,
+    is_robot: bool,
+}
+
+impl ByAxis {
+    /// `is_robot` decides about the names.
+    pub(super) fn new(axes: Axes, is_robot: bool) -> Self {
+        Self { axes, is_robot }
+    }
+
+    /// Names as people know them, and the values that are there.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (&'static str, i32)> {
+        let names = if self.is_robot { ROBOT_AXES } else { NUMBERED_AXES };
+        names.into_iter().zip(self.axes.as_slice().iter().copied())
+    }
+}
+
+impl Serialize for ByAxis {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.rows().map(|(name, value)| {
+            let is_number = name.starts_with(|first: char| first.is_ascii_digit());
+            (if is_number { format!("axis_{name}") } else { name.to_lowercase() }, value)
+        }))
+    }
+}
+
+impl JsonSchema for ByAxis {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "ByAxis".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        <std::collections::BTreeMap<String, i32>>::json_schema(generator)
+    }
+}
+
+impl Report for PositionReport {
+    fn view(&self) -> View {
+        let pulses: Vec<[Cell; 2]> = self.pulse.iter().flat_map(|pulse| pulse.pulses.rows()).map(pulse_row).collect();
+        let base: Vec<[Cell; 3]> = self.base.iter().flat_map(CartesianPosition::rows).collect();
+        let mut table = Table { empty: "the controller answered no axis", ..Table::default() };
+        let blank = || Cell::from("");
+        if self.pulse.is_some() {
+            table.columns.extend(["axis", "pulses"]);
+        }
+        if self.base.is_some() {
+            table.columns.extend(["base", "value", "unit"]);
+        }
+        for index in 0..pulses.len().max(base.len()) {
+            let mut row = Vec::new();
+            if self.pulse.is_some() {
+                row.extend(pulses.get(index).cloned().unwrap_or_else(|| [blank(), blank()]));
+            }
+            if self.base.is_some() {
+                row.extend(base.get(index).cloned().unwrap_or_else(|| [blank(), blank(), blank()]));
+            }
+            table.rows.push(row);
+        }
+        View::table(table)
+    }
+}
+
+fn pulse_row((name, value): (&'static str, i32)) -> [Cell; 2] {
+    [name.into(), value.into()]
+}
+
+impl CartesianPosition {
+    /// Name, value and unit of everything.
+    fn rows(&self) -> Vec<[Cell; 3]> {
+        let axes = CARTESIAN_AXES.iter().zip(self.axes.as_slice()).enumerate();
+        let mut rows: Vec<[Cell; 3]> = axes
+            .map(|(axis, (name, value))| {
+                let unit = PositionKind::Base.unit(axis);
+                [(*name).into(), Cell::number(unit.show(*value).to_string()), unit.symbol.into()]
+            })
+            .collect();
+        rows.push(["tool".into(), self.tool.into(), "".into()]);
+        rows.push(["user".into(), self.user.into(), "".into()]);
+        rows.push(["form".into(), short(&self.form, self.form_raw, 3).into(), "".into()]);
+        if self.extended_form_raw != 0 {
+            let words = short(&self.extended_form, self.extended_form_raw, 0);
+            rows.push(["extended".into(), words.into(), "".into()]);
+        }
+        rows
+    }
+}
+
+/// The first `always` words of a form whatever they are, the others where they are set.
+fn short(words: &[&str], bits: u32, always: usize) -> String {
+    let told = words.iter().enumerate().filter(|(bit, _)| *bit < always || bits >> bit & 1 == 1);
+    told.map(|(_, word)| *word).collect::<Vec<_>>().join("+")
+}
+
+/// The words of a form in short, as `--form` takes them.
+pub(super) fn form_words(form: Form) -> String {
+    short(&form.words().collect::<Vec<_>>(), form.0, 3)
+}
+
+/// The words of an extended form that are set.
+pub(super) fn extended_words(form: ExtendedForm) -> String {
+    short(&form.words().collect::<Vec<_>>(), form.0, 0)
+}
+
+/// Axes in a line for messages: `x=100.000 y=0.000 z=0.000 mm, rx=180.0000 ry=0.0000 rz=0.0000 deg`, or `s=0 l=0`.
+pub(super) fn in_a_line(kind: PositionKind, axes: &[i32], is_robot: bool) -> String {
+    let names = match (kind.is_cartesian(), is_robot) {
+        (true, _) => CARTESIAN_AXES,
+        (false, true) => ROBOT_AXES,
+        (false, false) => NUMBERED_AXES,
+    };
+    let mut line = String::new();
+    let mut last = None;
+    for (axis, (name, value)) in names.iter().zip(axes).enumerate() {
+        let unit = kind.unit(axis);
+        if let Some(last) = last.filter(|last: &Unit| *last != unit) {
+            // Writing to a string cannot fail.
+            let _ = write!(line, " {},", last.symbol);
+        }
+        let space = if axis == 0 { "" } else { " " };
+        let _ = write!(line, "{space}{}={}", name.to_lowercase(), unit.show(*value));
+        last = Some(unit);
+    }
+    if let Some(unit) = last.filter(|unit| *unit != units::PULSE) {
+        let _ = write!(line, " {}", unit.symbol);
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::yerc::rehearse::{frames, frames_on, golden, objection};
+    use crate::output::render;
+
+    fn base(axes: &[i32]) -> payload::Position {
+        payload::Position {
+            kind: PositionKind::Base,
+            form: Form(0b100),
+            tool: 2,
+            user: 0,
+            extended: ExtendedForm(0),
+            axes: Axes::new(axes).unwrap(),
+        }
+    }
+
+    fn pulses(axes: &[i32]) -> payload::Position {
+        payload::Position { kind: PositionKind::Pulse, form: Form(0), ..base(axes) }
+    }
+
+    #[test]
+    fn a_robot_is_read_in_both_coordinates_and_others_in_pulses() {
+        assert_eq!(frames("position").unwrap(), ["7500010000010000".to_owned(), golden("R13")]);
+        assert_eq!(frames("position --coordinates base --group r2").unwrap(), ["7500660000010000"]);
+        assert_eq!(frames("position --group S24").unwrap(), ["75002c0000010000"]);
+        for wrong in ["position --group B1 --coordinates base", "position --group S1 --coordinates both"] {
+            assert_eq!(frames(wrong).unwrap_err().kind, Kind::Usage, "{wrong}");
+        }
+        let failure = frames_on("udp://h?model=fs100", "position --group S4").unwrap_err();
+        assert!(failure.message.contains("S4 does not exist on a fs100"), "{failure}");
+        assert!(objection("position --group X1").contains("R1 to R8"));
+    }
+
+    #[test]
+    fn a_position_is_exact_in_json() {
+        let mut report = PositionReport::nowhere(Group::R1);
+        report.add(Coordinates::Pulse, &pulses(&[-90000, 1, 2, 3, 4, 5])).unwrap();
+        report.add(Coordinates::Base, &base(&[185_001, -1, 600_000, 1_800_000, 0, -1])).unwrap();
+        let json = serde_json::to_value(&report).unwrap();
+        assert_eq!(json["pulse"]["pulses"].to_string(), r#"{"s":-90000,"l":1,"u":2,"r":3,"b":4,"t":5}"#);
+        assert_eq!(json["base"]["x_mm"].to_string(), "185.001");
+        assert_eq!(json["base"]["y_mm"].to_string(), "-0.001");
+        assert_eq!(json["base"]["rz_deg"].to_string(), "-0.0001");
+        assert_eq!(json["base"]["form"][2], "noflip");
+        assert_eq!(json["base"]["form_raw"], 4);
+        assert!(json["base"].get("re_deg").is_none());
+    }
+
+    #[test]
+    fn both_coordinates_stand_side_by_side() {
+        let mut report = PositionReport::nowhere(Group::R1);
+        report.add(Coordinates::Pulse, &pulses(&[1, 2, 3, 4, 5, 6])).unwrap();
+        report.add(Coordinates::Base, &base(&[100_000, 0, 0, 1_800_000, 0, 0])).unwrap();
+        assert_eq!(
+            render::csv(&report.view(), None),
+            "axis,pulses,base,value,unit\nS,1,X,100.000,mm\nL,2,Y,0.000,mm\nU,3,Z,0.000,mm\nR,4,Rx,180.0000,deg\n\
+             B,5,Ry,0.0000,deg\nT,6,Rz,0.0000,deg\n,,tool,2,\n,,user,0,\n,,form,front+upper+noflip,\n"
+        );
+    }
+
+    #[test]
+    fn other_groups_have_numbered_axes() {
+        let mut report = PositionReport::nowhere(Group::Station(1));
+        report.add(Coordinates::Pulse, &pulses(&[7, -8])).unwrap();
+        assert_eq!(
+            serde_json::to_value(&report).unwrap()["pulse"]["pulses"].to_string(),
+            r#"{"axis_1":7,"axis_2":-8}"#
+        );
+        assert_eq!(render::csv(&report.view(), None), "axis,pulses\n1,7\n2,-8\n");
+    }
+
+    #[test]
+    fn an_answer_in_other_coordinates_is_malformed() {
+        let mut report = PositionReport::nowhere(Group::R1);
+        let failure = report.add(Coordinates::Base, &pulses(&[1])).unwrap_err();
+        assert_eq!(failure.kind, Kind::Malformed);
+    }
+
+    #[test]
+    fn lines_for_messages() {
+        let line = in_a_line(PositionKind::Base, &[100_000, 0, -1, 1_800_000, 0, 0], true);
+        assert_eq!(line, "x=100.000 y=0.000 z=-0.001 mm, rx=180.0000 ry=0.0000 rz=0.0000 deg");
+        assert_eq!(in_a_line(PositionKind::Pulse, &[1, 2], true), "s=1 l=2");
+        assert_eq!(in_a_line(PositionKind::Pulse, &[1, 2], false), "1=1 2=2");
+        assert_eq!(form_words(Form(0b1001)), "back+upper+flip+r-ge180");
+        assert_eq!(extended_words(ExtendedForm(0b10)), "u-ge180");
+    }
+}
