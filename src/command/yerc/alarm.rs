@@ -321,7 +321,9 @@ impl Report for PastAlarms {
         let columns = ["class", "#", "code", "name", "sub-code", "type", "time", "board"];
         let mut table = Table::new(&columns, "no alarm");
         for PastAlarm { class, number, alarm } in &self.alarms {
-            let [code, name, sub_code, kind, time, board] = alarm.cells();
+            let [code, name, sub_code, _, time, board] = alarm.cells();
+            // The words of the type would leave no room for the name.
+            let kind = Cell::from(alarm.kind);
             table.row([(*class).into(), (*number).into(), code, name, sub_code, kind, time, board]);
         }
         View::table(table)

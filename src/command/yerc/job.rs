@@ -395,7 +395,7 @@ mod tests {
     #[test]
     fn selection_is_the_frame_of_the_manual() {
         let r51 = golden("R51");
-        assert_eq!(frames("job select TESTJOB --line 10").unwrap(), [r51.clone()]);
+        assert_eq!(frames("job select TESTJOB --line 10").unwrap(), std::slice::from_ref(&r51));
         assert_eq!(frames("job select TESTJOB.jbi --line 10").unwrap(), [r51]);
         assert!(frames("job select TESTJOB --task 15").unwrap()[0].starts_with("87001900"));
         assert!(objection("job select A --task 1 --line 2").contains("cannot be used with"));

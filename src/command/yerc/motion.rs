@@ -10,7 +10,7 @@ use crate::controller::yerc::query::ReadAlarm;
 use crate::failure::{Failure, Kind};
 
 /// Pause between two looks: a controller answers in 5 to 20 ms, and nothing is gained by pressing it.
-pub(super) const LOOK_EVERY: Duration = Duration::from_millis(100);
+pub(super) const LOOK_EVERY: Duration = Duration::from_millis(50);
 /// How long a controller may take to begin what it has accepted.
 pub(super) const START_WITHIN: Duration = Duration::from_secs(3);
 

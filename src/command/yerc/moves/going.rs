@@ -161,7 +161,10 @@ impl<Q: Query<Answer = ()>> Going<Q> {
                     moved.elapsed_ms = u64::try_from(began.elapsed().as_millis()).ok();
                     return Ok(moved);
                 }
-                Look::Stopped(trouble) => return Err(trouble.failure(link, &done, Some(&place)).await),
+                Look::Stopped(trouble) => {
+                    let place = resting_place(link, group, coordinates, here, place).await;
+                    return Err(trouble.failure(link, &done, Some(&place)).await);
+                }
                 Look::NotBegun => {
                     let within = duration::display(START_WITHIN);
                     return Err(Failure::new(
@@ -174,6 +177,30 @@ impl<Q: Query<Answer = ()>> Going<Q> {
             tokio::time::sleep(LOOK_EVERY).await;
         }
     }
+}
+
+/// Looks that a robot gets to come to rest, two seconds.
+const LOOKS_TO_REST: u32 = 40;
+
+/// Where a robot that is being stopped comes to rest, in words; where it was seen last if it cannot be asked.
+async fn resting_place(
+    link: &mut Link,
+    group: Group,
+    coordinates: Coordinates,
+    mut last: Position,
+    mut place: String,
+) -> String {
+    for _ in 0..LOOKS_TO_REST {
+        tokio::time::sleep(LOOK_EVERY).await;
+        let Ok((here, _)) = position::ask(link, group, coordinates).await else { break };
+        let is_at_rest = stands(&last, &here);
+        place = in_a_line(here.kind, here.axes.as_slice(), matches!(group, Group::Robot(_)));
+        last = here;
+        if is_at_rest {
+            break;
+        }
+    }
+    place
 }
 
 /// A move has words for every axis, and 0 in those that the operator did not name would move them there. That is
