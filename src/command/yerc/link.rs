@@ -17,7 +17,7 @@ use crate::controller::yerc::files::data_frame;
 use crate::controller::yerc::query::{Hold, Query};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::session::{
-    Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Upload, UploadEnd,
+    Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd,
 };
 use crate::controller::yerc::simulator::{Simulator, Start};
 use crate::controller::yerc::status;
@@ -235,6 +235,12 @@ impl Link {
 
     /// Sends a request as it is and returns the data of the answer.
     pub async fn exchange(&mut self, request: &Request) -> Result<Result<Vec<u8>, Refusal>, Failure> {
+        let reply = self.reply(request).await?;
+        Ok(if reply.status.is_ok() { Ok(reply.data) } else { Err(Refusal(reply.status)) })
+    }
+
+    /// Sends a request as it is and returns the whole answer, good or bad.
+    pub async fn reply(&mut self, request: &Request) -> Result<Reply, Failure> {
         self.admit(request).await?;
         let risk = request.risk();
         let frame = request.frame(0);
@@ -244,8 +250,7 @@ impl Link {
         self.totals.exchanges += 1;
         self.heard(session.counters());
         match ended {
-            Ended::Answered(reply) if reply.status.is_ok() => Ok(Ok(reply.data)),
-            Ended::Answered(reply) => Ok(Err(Refusal(reply.status))),
+            Ended::Answered(reply) => Ok(reply),
             Ended::NoAnswer(counters) => Err(self.silence(counters)),
             Ended::OutcomeUnknown(counters) => Err(self.unknown(counters)),
         }
