@@ -17,7 +17,7 @@ pub use axes::{Axes, AxisNames, MAX_AXES};
 pub use info::{JobInfo, ManagementTime, SystemInfo, elapsed_seconds};
 pub use moves::{CartesianMove, MoveLayout, PulseMove, SpeedClass};
 pub use position::{BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
-pub use position_text::PositionTextError;
+pub use position_text::{NamedAxis, PositionTextError};
 pub use status::{ControllerStatus, CycleMode, StatusBit};
 pub use text::{Text, TextError};
 

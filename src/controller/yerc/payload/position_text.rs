@@ -17,6 +17,17 @@ const NUMBERED_AXES: [&str; MAX_AXES] = ["1", "2", "3", "4", "5", "6", "7", "8"]
 /// The axes that a robot position must name, so that a forgotten one does not become 0.
 const REQUIRED_AXES: usize = 6;
 
+/// An axis of a position as the text form names it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NamedAxis {
+    /// `x`, `s`, or a number where axes have no letters.
+    pub key: &'static str,
+    /// What `value` counts.
+    pub unit: Unit,
+    /// As on the wire.
+    pub value: i32,
+}
+
 /// A text that is no position.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum PositionTextError {
@@ -99,7 +110,7 @@ impl FromStr for Position {
 impl fmt::Display for Position {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (names, axes) = (axis_names(self.kind), self.axes.padded());
-        let shown = shown_axes(&axes, REQUIRED_AXES);
+        let shown = self.shown_axes();
         write_kind(f, self.kind, &PositionKind::ALL)?;
         write_axes(f, &names, &axes[..shown], |axis| self.kind.unit(axis))?;
         write!(f, ",tool={},user={}", self.tool, self.user)?;
@@ -113,8 +124,32 @@ impl fmt::Display for Position {
     }
 }
 
+impl Position {
+    /// All eight axes; 0 where the controller sent none.
+    pub fn named_axes(&self) -> [NamedAxis; MAX_AXES] {
+        named(axis_names(self.kind), self.axes, |axis| self.kind.unit(axis))
+    }
+
+    /// How many of them the text form shows: six, or up to the last that is not 0.
+    pub fn shown_axes(&self) -> usize {
+        shown_axes(&self.axes.padded(), REQUIRED_AXES)
+    }
+}
+
 macro_rules! nine_word_text {
     ($name:ident, $kinds:expr, $units:expr) => {
+        impl $name {
+            /// All eight axes; 0 where the controller sent none.
+            pub fn named_axes(&self) -> [NamedAxis; MAX_AXES] {
+                named(group_axis_names(self.kind), self.axes, |_| $units(self.kind))
+            }
+
+            /// How many of them the text form shows: up to the last that is not 0, and x, y, z of a base.
+            pub fn shown_axes(&self) -> usize {
+                shown_axes(&self.axes.padded(), if self.kind == PositionKind::Base { 3 } else { 1 })
+            }
+        }
+
         impl FromStr for $name {
             type Err = PositionTextError;
 
@@ -129,7 +164,7 @@ macro_rules! nine_word_text {
         impl fmt::Display for $name {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 let (names, axes) = (group_axis_names(self.kind), self.axes.padded());
-                let shown = shown_axes(&axes, if self.kind == PositionKind::Base { 3 } else { 1 });
+                let shown = self.shown_axes();
                 write_kind(f, self.kind, $kinds)?;
                 write_axes(f, &names, &axes[..shown], |_| $units(self.kind))
             }
@@ -281,6 +316,11 @@ fn flags(key: &'static str, text: Option<&str>, bits: &[Bit]) -> Result<u32, Pos
         value |= set;
     }
     Ok(value)
+}
+
+fn named(keys: [&'static str; MAX_AXES], axes: Axes, unit: impl Fn(usize) -> Unit) -> [NamedAxis; MAX_AXES] {
+    let values = axes.padded();
+    std::array::from_fn(|axis| NamedAxis { key: keys[axis], unit: unit(axis), value: values[axis] })
 }
 
 /// At least so many axes, and up to the last that is not 0.
