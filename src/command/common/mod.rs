@@ -1,6 +1,7 @@
 //! Commands that are about no single controller.
 
 pub mod completions;
+pub mod decode;
 mod explain;
 pub mod help;
 pub mod man;
@@ -23,6 +24,9 @@ pub enum Common {
     Robots(robots::Robots),
     /// Serve the simulators on real sockets
     Sim(sim::Sim),
+    /// Explain bytes of the line
+    #[command(subcommand)]
+    Decode(decode::Decode),
     /// What an error or alarm code means and what to do
     #[command(subcommand)]
     Explain(explain::Explain),
@@ -43,6 +47,7 @@ impl Common {
             Self::Status(overview) => return run.robots(&overview).await,
             Self::Sim(sim) => return sim.run(run).await,
             Self::Robots(robots) => robots.run(run),
+            Self::Decode(decode) => decode.run(run),
             Self::Explain(explain) => explain.run(run),
             Self::Completions(completions) => completions.run(run),
             Self::Man(man) => man.run(run),

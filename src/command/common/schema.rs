@@ -40,6 +40,7 @@ pub fn all() -> Vec<SchemaEntry> {
     let mut all = <Yerc as Noun<link::Yerc>>::schemas();
     all.extend(<Overview as Noun<link::Yerc>>::schemas());
     all.extend([
+        SchemaEntry { id: "decode.yerc", schema: || schemars::schema_for!(super::decode::Frames) },
         SchemaEntry { id: "dry-run", schema: || schemars::schema_for!(Rehearsal) },
         SchemaEntry { id: "explain.yerc", schema: || schemars::schema_for!(super::explain::Codes) },
         SchemaEntry { id: "robots.list", schema: || schemars::schema_for!(super::robots::List) },

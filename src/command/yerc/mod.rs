@@ -4,6 +4,7 @@ mod alarm;
 mod axes;
 mod hours;
 mod info;
+mod io;
 mod job;
 pub mod link;
 mod motion;
@@ -11,10 +12,16 @@ mod moves;
 mod orders;
 pub mod overview;
 mod position;
+mod raw;
+mod register;
 #[cfg(test)]
 mod rehearse;
 mod status;
+#[cfg(test)]
+mod testing;
 mod trace;
+mod var;
+mod writes;
 
 pub use link::Yerc as Family;
 
@@ -37,6 +44,12 @@ commands! {
         PositionError(axes::PositionError),
         /// The torque of each axis
         Torque(axes::Torque),
+        /// Variables: get, set, dump, restore
+        Var(Verbs<var::Var>),
+        /// Signals: get, set
+        Io(Verbs<io::Io>),
+        /// Registers: get, set
+        Register(Verbs<register::Register>),
         /// Switch servo power
         Servo(orders::Servo),
         /// Hold the robot, or let it go on
@@ -53,5 +66,7 @@ commands! {
         Hours(hours::Hours),
         /// Software version, robot models, parameters
         Info(info::Info),
+        /// Send any request and explain the answer
+        Raw(raw::Raw),
     }
 }

@@ -1,0 +1,84 @@
+//! `yerc io get`.
+
+use std::collections::{BTreeMap, HashSet};
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::super::Family;
+use super::super::orders::usage;
+use super::signal::{self, Signal, Signals};
+use super::{GroupState, SignalState, group_table, signal_table};
+use crate::command::{Command, Context, Report};
+use crate::controller::yerc::variables::{parse_numbers, plan_io_reads};
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// Signals to read.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Signals have the numbers of the manuals and the pendant: #20010 to #20017 are the eight of group \
+                        2001. Numbers that end in 8 or 9 do not exist; a range passes over them."
+)]
+pub struct Get {
+    /// Such as 20010, #20010 or 20010..20027
+    #[arg(required_unless_present = "groups", value_name = "NUMBER", value_parser = Signals::parse)]
+    signals: Vec<Signals>,
+    /// Whole groups of eight, such as 2001 or 2001..2010 (repeatable)
+    #[arg(long = "group", value_name = "GROUP", value_parser = Groups::parse)]
+    groups: Vec<Groups>,
+}
+
+#[derive(Debug, Clone)]
+struct Groups(Vec<u16>);
+
+impl Groups {
+    fn parse(text: &str) -> Result<Self, String> {
+        parse_numbers(text).map(Self).map_err(|error| error.to_string())
+    }
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = States;
+    const ID: &'static str = "yerc.io.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<States, Failure> {
+        let link = context.link;
+        let model = link.model;
+        let signals: Vec<Signal> = once(self.signals.iter().flat_map(|signals| signals.0.iter().copied()));
+        let groups: Vec<u16> = once(self.groups.iter().flat_map(|groups| groups.0.iter().copied()));
+        let wanted: Vec<u16> = signals.iter().map(|signal| signal.group).chain(groups.iter().copied()).collect();
+        for &group in &wanted {
+            signal::class(model, group)?;
+        }
+        let steps = plan_io_reads(model, &wanted).map_err(usage)?;
+        let bytes: BTreeMap<u16, u8> = link.ask_all(&steps).await?.into_iter().flatten().collect();
+        let signals = signals.into_iter().filter_map(|signal| {
+            let byte = *bytes.get(&signal.group)?;
+            Some(SignalState::new(model, signal, signal.is_on(byte)))
+        });
+        let groups = groups.into_iter().filter_map(|group| Some(GroupState::new(model, group, *bytes.get(&group)?)));
+        Ok(States { signals: signals.collect::<Result<_, _>>()?, groups: groups.collect::<Result<_, _>>()? })
+    }
+}
+
+fn once<T: Copy + Eq + std::hash::Hash>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut seen = HashSet::new();
+    items.filter(|item| seen.insert(*item)).collect()
+}
+
+/// Signals and groups in the order they were asked for.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct States {
+    signals: Vec<SignalState>,
+    /// What `--group` asked for.
+    groups: Vec<GroupState>,
+}
+
+impl Report for States {
+    fn view(&self) -> View {
+        View { sections: [signal_table(&self.signals), group_table(&self.groups)].into_iter().flatten().collect() }
+    }
+}

@@ -1,0 +1,222 @@
+//! `yerc io set`.
+
+use std::collections::BTreeMap;
+use std::str::FromStr;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::super::Family;
+use super::super::orders::usage;
+use super::super::register::unsigned;
+use super::super::writes::{Order, runs, write_all};
+use super::signal::{self, Signal};
+use super::{GroupState, SignalState, group_table, signal_table};
+use crate::command::yerc::link::Link;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::yerc::query::Query as _;
+use crate::controller::yerc::variables::{IoStep, WriteIoStep, plan_io_reads, plan_io_writes};
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// Signals to switch.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Only network inputs can be written from a PC: #27010 to #29567 on a DX200, #25010 to #26287 on \
+                        an FS100. The protocol writes eight signals at a time: the group is read, the named signals \
+                        are changed, and the other seven are written back as they were read. If something else changes \
+                        one of them in between, that change is undone. --group writes all eight without reading."
+)]
+pub struct Set {
+    /// Such as 27010=on or #27011=off
+    #[arg(required_unless_present = "groups", value_name = "NUMBER=on|off")]
+    signals: Vec<Switch>,
+    /// All eight signals of a group, such as 2701=0xA5, the first one lowest (repeatable)
+    #[arg(long = "group", value_name = "GROUP=VALUE")]
+    groups: Vec<Whole>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Switch {
+    signal: Signal,
+    on: bool,
+}
+
+impl FromStr for Switch {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (signal, state) = text.split_once('=').ok_or("a signal, '=' and a state are expected, as in 27010=on")?;
+        let on = match state {
+            "on" | "1" => true,
+            "off" | "0" => false,
+            _ => return Err(format!("'{state}' is no state; there are on and off")),
+        };
+        Ok(Self { signal: signal.parse()?, on })
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Whole {
+    group: u16,
+    value: u8,
+}
+
+impl FromStr for Whole {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (group, value) = text.split_once('=').ok_or("a group, '=' and a value are expected, as in 2701=0xA5")?;
+        let number = unsigned(group).filter(|_| !group.starts_with("0x")).and_then(|group| u16::try_from(group).ok());
+        let group = number.ok_or_else(|| format!("'{group}' is no group; #27010 to #27017 are group 2701"))?;
+        let parsed = unsigned(value).and_then(|value| u8::try_from(value).ok());
+        let value = parsed.ok_or_else(|| format!("'{value}' is not a number from 0 to 255 (0x00 to 0xFF)"))?;
+        Ok(Self { group, value })
+    }
+}
+
+/// What is to become of a group: bits of the mask are set to those of the value, the others stay.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+struct Change {
+    mask: u8,
+    value: u8,
+}
+
+impl Change {
+    const fn apply(self, byte: u8) -> u8 {
+        byte & !self.mask | self.value & self.mask
+    }
+}
+
+impl Command for Set {
+    type Family = Family;
+    type Report = Switched;
+    const ID: &'static str = "yerc.io.set";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Switched, Failure> {
+        let Context { link, screen, .. } = context;
+        let model = link.model;
+        let changes = self.changes()?;
+        for &group in changes.keys() {
+            signal::writable(model, group)?;
+        }
+        let partial: Vec<u16> =
+            changes.iter().filter(|(_, change)| change.mask != u8::MAX).map(|(group, _)| *group).collect();
+        let reads = plan_io_reads(model, &partial).map_err(usage)?;
+        if link.is_dry() && !reads.is_empty() {
+            return foresee(link, &reads, &changes).await;
+        }
+        let found: BTreeMap<u16, u8> = match &reads[..] {
+            [] => BTreeMap::new(),
+            reads => link.ask_all(reads).await?.into_iter().flatten().collect(),
+        };
+        let values: Vec<(u16, u8)> = changes
+            .iter()
+            .map(|(group, change)| (*group, change.apply(found.get(group).copied().unwrap_or_default())))
+            .collect();
+        let steps = plan_io_writes(model, &values).map_err(usage)?;
+        write_all(link, screen, &steps).await?;
+        let signals = self.signals.iter().map(|switch| SignalState::new(model, switch.signal, switch.on));
+        let groups = values.into_iter().map(|(group, value)| GroupState::new(model, group, value));
+        Ok(Switched { signals: signals.collect::<Result<_, _>>()?, groups: groups.collect::<Result<_, _>>()? })
+    }
+}
+
+impl Set {
+    /// What is to become of each group. A signal that is named twice is a mistake.
+    fn changes(&self) -> Result<BTreeMap<u16, Change>, Failure> {
+        let mut changes: BTreeMap<u16, Change> = BTreeMap::new();
+        let wholes = self.groups.iter().map(|whole| (whole.group, Change { mask: u8::MAX, value: whole.value }));
+        let switches = self.signals.iter().map(|Switch { signal, on }| {
+            (signal.group, Change { mask: 1 << signal.bit, value: u8::from(*on) << signal.bit })
+        });
+        for (group, change) in wholes.chain(switches) {
+            let known = changes.entry(group).or_default();
+            if known.mask & change.mask != 0 {
+                let bit = u8::try_from((known.mask & change.mask).trailing_zeros()).unwrap_or_default();
+                return Err(Failure::usage(format!("{} is given twice", Signal { group, bit }))
+                    .hint("give each signal one state"));
+            }
+            *known = Change { mask: known.mask | change.mask, value: known.value | change.value };
+        }
+        Ok(changes)
+    }
+}
+
+/// The dry run of a change that depends on what is read first: signals that were not named show as off.
+async fn foresee(link: &mut Link, reads: &[IoStep], changes: &BTreeMap<u16, Change>) -> Result<Switched, Failure> {
+    for read in reads {
+        link.foresee(&read.request(), &format!("reads group {}", runs(read.wanted())));
+    }
+    let values: Vec<(u16, u8)> = changes.iter().map(|(group, change)| (*group, change.apply(0))).collect();
+    for write in plan_io_writes(link.model, &values).map_err(usage)? {
+        let about = format!("writes group {}; signals that are not named keep what was read", runs(write.written()));
+        link.foresee(&write.request(), &about);
+    }
+    // All that can be foreseen is noted: this does not return.
+    link.ask_all::<IoStep>(&[]).await?;
+    Ok(Switched { signals: Vec::new(), groups: Vec::new() })
+}
+
+impl Order for WriteIoStep {
+    type Item = u16;
+
+    fn items(&self) -> Vec<u16> {
+        self.written().to_vec()
+    }
+
+    fn listed(items: Vec<u16>) -> String {
+        format!("group {}", runs(&items))
+    }
+}
+
+/// What the controller confirmed.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Switched {
+    /// The signals that were named.
+    signals: Vec<SignalState>,
+    /// The groups as they were written, all eight signals each.
+    groups: Vec<GroupState>,
+}
+
+impl Report for Switched {
+    fn view(&self) -> View {
+        View { sections: [signal_table(&self.signals), group_table(&self.groups)].into_iter().flatten().collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(signals: &[&str], groups: &[&str]) -> Result<BTreeMap<u16, Change>, Failure> {
+        Set {
+            signals: signals.iter().map(|text| text.parse().unwrap()).collect(),
+            groups: groups.iter().map(|text| text.parse().unwrap()).collect(),
+        }
+        .changes()
+    }
+
+    #[test]
+    fn signals_of_a_group_join_and_leave_the_others_alone() {
+        let changes = set(&["27010=on", "#27017=off", "27020=1"], &["2703=0xA5"]).unwrap();
+        assert_eq!(changes[&2701], Change { mask: 0x81, value: 0x01 });
+        assert_eq!(changes[&2701].apply(0xF0), 0x71);
+        assert_eq!(changes[&2703].apply(0xFF), 0xA5);
+    }
+
+    #[test]
+    fn nothing_is_given_twice() {
+        assert_eq!(set(&["27013=on", "27013=off"], &[]).unwrap_err().message, "#27013 is given twice");
+        assert!(set(&["27013=on"], &["2701=0"]).is_err());
+        assert!("27018=on".parse::<Switch>().is_err());
+        assert!("27010=yes".parse::<Switch>().unwrap_err().contains("on and off"));
+        assert!("2701=256".parse::<Whole>().unwrap_err().contains("0 to 255"));
+    }
+}

@@ -1,0 +1,263 @@
+//! `yerc raw`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::link::{Refusal, hex};
+use super::register::unsigned;
+use crate::command::common::decode::{FieldRow, field_table, parse_hex};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::yerc::describe::{Sender, describe};
+use crate::controller::yerc::request::Request;
+use crate::controller::yerc::session::Reply;
+use crate::controller::yerc::status;
+use crate::controller::yerc::table::{Row, service};
+use crate::controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, MAX_DATA};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Section, View};
+
+/// A request as it is.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Numbers are decimal, or hexadecimal after 0x. A request that the manuals do not list is sent with \
+                        a warning, or refused with --check; what armctl does not know counts as a motion, so it asks \
+                        before it sends. File services that transfer in blocks (load, save, list) are those of `yerc \
+                        file`. If the controller refuses, its answer is printed and the exit code is 3."
+)]
+pub struct Raw {
+    /// Command number, such as 0x72
+    #[arg(long, value_name = "N", value_parser = word, required_unless_present = "file")]
+    command: Option<u16>,
+    /// Instance: which of the things that the command addresses
+    #[arg(long, value_name = "N", value_parser = word, required_unless_present = "file")]
+    instance: Option<u16>,
+    /// Attribute: which field; 0 for all
+    #[arg(long, value_name = "N", value_parser = byte, default_value = "0")]
+    attribute: u8,
+    /// Service: 0x01 or 0x0E read, 0x02 or 0x10 write, 0x33 and 0x34 read and write several
+    #[arg(long, value_name = "N", value_parser = byte)]
+    service: u8,
+    /// Data of the request in hexadecimal; blanks, colons and 0x may stand between
+    #[arg(long, value_name = "HEX", value_parser = Bytes::parse)]
+    data: Option<Bytes>,
+    /// Ask the file server instead of the robot server
+    #[arg(long, conflicts_with_all = ["command", "instance"])]
+    file: bool,
+    /// Refuse here what the manuals do not list for this model
+    #[arg(long)]
+    check: bool,
+}
+
+#[derive(Debug, Clone)]
+struct Bytes(Vec<u8>);
+
+impl Bytes {
+    fn parse(text: &str) -> Result<Self, String> {
+        let bytes = parse_hex(text)?;
+        if bytes.len() > MAX_DATA {
+            return Err(format!("{} bytes; at most {MAX_DATA} fit a frame", bytes.len()));
+        }
+        Ok(Self(bytes))
+    }
+}
+
+fn word(text: &str) -> Result<u16, String> {
+    let number = unsigned(text).and_then(|number| u16::try_from(number).ok());
+    number.ok_or_else(|| "a number from 0 to 65535 (0x0000 to 0xFFFF) is expected".to_owned())
+}
+
+fn byte(text: &str) -> Result<u8, String> {
+    let number = unsigned(text).and_then(|number| u8::try_from(number).ok());
+    number.ok_or_else(|| "a number from 0 to 255 (0x00 to 0xFF) is expected".to_owned())
+}
+
+impl Raw {
+    fn request(&self) -> Request {
+        Request {
+            command: self.command.unwrap_or(0),
+            instance: self.instance.unwrap_or(0),
+            attribute: self.attribute,
+            service: self.service,
+            data: self.data.as_ref().map_or_else(Vec::new, |data| data.0.clone()),
+        }
+    }
+}
+
+impl Command for Raw {
+    type Family = Family;
+    type Report = Answer;
+    const ID: &'static str = "yerc.raw";
+
+    fn risk(&self) -> Risk {
+        self.request().risk()
+    }
+
+    fn intent(&self) -> String {
+        let request = self.request();
+        let name = request.row().map_or("unknown to armctl", |row| row.name);
+        format!(
+            "send a raw request ({name}: command {:#04x}, instance {}, attribute {}, service {:#04x})",
+            request.command, request.instance, request.attribute, request.service
+        )
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Answer, Failure> {
+        let Context { link, screen, .. } = context;
+        let request = self.request();
+        if !self.file && request.division() == Division::File {
+            return Err(Failure::usage("command 0 is that of the file server").hint("use --file without --command"));
+        }
+        if self.file && matches!(request.service, service::LOAD | service::SAVE | service::LIST) {
+            return Err(Failure::usage(format!("file service {:#04x} transfers blocks", request.service))
+                .hint("use `yerc file put`, `yerc file get` or `yerc file list`"));
+        }
+        let doubt = request.check(link.model).err().map(|error| error.to_string());
+        if let Some(doubt) = &doubt {
+            if self.check {
+                return Err(Failure::usage(doubt.clone()).hint("without --check it is sent all the same"));
+            }
+            screen.note(&format!("warning: {doubt}"));
+        }
+        let reply = link.reply(&request).await?;
+        Ok(Answer::new(&request, doubt, reply))
+    }
+}
+
+/// What was asked and what came back.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Answer {
+    request: Asked,
+    /// `0x00` is success.
+    status: String,
+    /// Null where the answer has none.
+    added_status: Option<String>,
+    /// The status in words.
+    meaning: String,
+    cause: String,
+    remedy: String,
+    /// Data part of the answer.
+    data_hex: String,
+    data_bytes: usize,
+    /// The data part field by field.
+    fields: Vec<FieldRow>,
+    elapsed_ms: f64,
+    /// Copies of the request that were sent.
+    attempts: u32,
+    #[serde(skip)]
+    refusal: Option<Failure>,
+}
+
+/// A request in numbers and words.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Asked {
+    command: String,
+    instance: u16,
+    attribute: u8,
+    service: String,
+    data_hex: String,
+    /// What the command is called, if it is known.
+    name: Option<&'static str>,
+    /// Manual and section, if it is known.
+    section: Option<String>,
+    /// What the manuals have against it.
+    warning: Option<String>,
+}
+
+impl Answer {
+    fn new(request: &Request, warning: Option<String>, reply: Reply) -> Self {
+        let Reply { status, data, elapsed, attempts } = reply;
+        let explanation = status::explain(status);
+        let frame = AnswerFrame {
+            division: request.division(),
+            ack: true,
+            id: 0,
+            block: LAST_BLOCK,
+            service: request.service.wrapping_add(ANSWER_BIT),
+            status,
+            data: data.get(..MAX_DATA).unwrap_or(&data),
+        };
+        let fields = describe(&frame.emit(), Sender::Controller, Some(request)).fields;
+        let row = request.row();
+        Self {
+            request: Asked {
+                command: format!("{:#04x}", request.command),
+                instance: request.instance,
+                attribute: request.attribute,
+                service: format!("{:#04x}", request.service),
+                data_hex: hex(&request.data),
+                name: row.map(|row| row.name),
+                section: row.map(Row::citation),
+                warning,
+            },
+            status: format!("{:#04x}", status.code),
+            added_status: match status.added_size {
+                0 => None,
+                1 => Some(format!("{:#06x}", status.added)),
+                _ => Some(format!("{:#010x}", status.added)),
+            },
+            meaning: explanation.name.into_owned(),
+            cause: explanation.cause.into_owned(),
+            remedy: explanation.remedy.into_owned(),
+            data_hex: hex(&data),
+            data_bytes: data.len(),
+            fields: fields.into_iter().filter(|field| field.offset >= HEADER_LEN).map(FieldRow::from).collect(),
+            elapsed_ms: elapsed.as_secs_f64() * 1000.0,
+            attempts,
+            refusal: (!status.is_ok()).then(|| Refusal(status).into()),
+        }
+    }
+}
+
+impl Report for Answer {
+    fn view(&self) -> View {
+        let name = self.request.name.unwrap_or("unknown command");
+        let about =
+            self.request.section.as_ref().map_or_else(|| name.to_owned(), |section| format!("{name} ({section})"));
+        let view = View::fields([
+            ("request", about.into()),
+            ("status", self.status.as_str().into()),
+            ("added status", Cell::maybe(self.added_status.as_deref())),
+            ("meaning", self.meaning.as_str().into()),
+            ("data", if self.data_hex.is_empty() { "-".into() } else { self.data_hex.as_str().into() }),
+        ]);
+        if self.fields.is_empty() { view } else { view.and(Section::Table(field_table(&self.fields))) }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.refusal.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::controller::yerc::wire::Status;
+    use crate::failure::Kind;
+
+    fn answer(status: Status, data: &[u8]) -> Answer {
+        let request = Request { command: 0x7A, instance: 5, attribute: 1, service: 0x0E, data: Vec::new() };
+        let reply = Reply { status, data: data.to_vec(), elapsed: Duration::from_millis(5), attempts: 1 };
+        Answer::new(&request, None, reply)
+    }
+
+    #[test]
+    fn a_refusal_is_data_and_a_failure() {
+        let refused = answer(Status::refused(0x2060), &[]);
+        assert_eq!((refused.status.as_str(), refused.added_status.as_deref()), ("0x1f", Some("0x2060")));
+        let failure = Report::failure(&refused).unwrap();
+        assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Refused, Some("0x2060")));
+    }
+
+    #[test]
+    fn data_is_explained() {
+        let value = answer(Status::OK, &[200]);
+        assert!(Report::failure(&value).is_none());
+        let field = &value.fields[0];
+        assert_eq!((field.offset, field.size, field.name.as_str(), field.meaning.as_str()), (32, 1, "value", "200"));
+    }
+}

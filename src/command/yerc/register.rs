@@ -1,0 +1,195 @@
+//! `yerc register`: 16-bit words that ladder program and PC share.
+
+use std::collections::{BTreeMap, HashSet};
+use std::str::FromStr;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::orders::usage;
+use super::writes::{Order, runs, write_all};
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::Risk;
+use crate::controller::yerc::variables::{WriteRegisterStep, parse_numbers, plan_register_reads, plan_register_writes};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
+
+commands! {
+    /// What can be done with registers.
+    pub enum Register of Family {
+        /// Read registers: 0 to 999
+        Get(Get),
+        /// Write registers: 0 to 559
+        Set(Set),
+    }
+}
+
+/// Registers to read.
+#[derive(Debug, Args)]
+pub struct Get {
+    /// Such as 5 or 0..20
+    #[arg(required = true, value_name = "N", value_parser = Numbers::parse)]
+    registers: Vec<Numbers>,
+}
+
+#[derive(Debug, Clone)]
+struct Numbers(Vec<u16>);
+
+impl Numbers {
+    fn parse(text: &str) -> Result<Self, String> {
+        parse_numbers(text).map(Self).map_err(|error| error.to_string())
+    }
+}
+
+/// Registers to write.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "A register that the ladder program writes takes the value and loses it again at once: read it \
+                        back where that matters."
+)]
+pub struct Set {
+    /// Such as 5=1000 or 5=0x03E8
+    #[arg(required = true, value_name = "N=VALUE")]
+    assignments: Vec<Assignment>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Assignment {
+    number: u16,
+    value: u16,
+}
+
+impl FromStr for Assignment {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (number, value) = text.split_once('=').ok_or("a number, '=' and a value are expected, as in 5=1000")?;
+        let numbers = parse_numbers(number).map_err(|error| error.to_string())?;
+        let [number] = numbers[..] else { return Err(format!("'{number}' are several; give each its value")) };
+        let parsed = unsigned(value).and_then(|value| u16::try_from(value).ok());
+        let value = parsed.ok_or_else(|| format!("'{value}' is not a number from 0 to 65535 (0x0000 to 0xFFFF)"))?;
+        Ok(Self { number, value })
+    }
+}
+
+/// Reads decimal digits, or hexadecimal ones after `0x`.
+pub fn unsigned(text: &str) -> Option<u32> {
+    let (digits, radix) = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(digits) => (digits, 16),
+        None => (text, 10),
+    };
+    let plain = digits.chars().all(|c| c.is_digit(radix));
+    if plain { u32::from_str_radix(digits, radix).ok() } else { None }
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Registers;
+    const ID: &'static str = "yerc.register.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Registers, Failure> {
+        let numbers: Vec<u16> = self.registers.iter().flat_map(|numbers| numbers.0.iter().copied()).collect();
+        let steps = plan_register_reads(context.link.model, &numbers).map_err(usage)?;
+        let answers: BTreeMap<u16, u16> = context.link.ask_all(&steps).await?.into_iter().flatten().collect();
+        let mut seen = HashSet::new();
+        let once = numbers.into_iter().filter(|number| seen.insert(*number));
+        Ok(Registers { registers: once.filter_map(|number| Some(Word::new(number, *answers.get(&number)?))).collect() })
+    }
+}
+
+impl Command for Set {
+    type Family = Family;
+    type Report = WrittenRegisters;
+    const ID: &'static str = "yerc.register.set";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<WrittenRegisters, Failure> {
+        let Context { link, screen, .. } = context;
+        let mut seen = HashSet::new();
+        if let Some(twice) = self.assignments.iter().find(|assignment| !seen.insert(assignment.number)) {
+            return Err(Failure::usage(format!("register {} is given twice", twice.number)).hint("give it one value"));
+        }
+        let values: Vec<(u16, u16)> = self.assignments.iter().map(|it| (it.number, it.value)).collect();
+        let steps = plan_register_writes(link.model, &values).map_err(usage)?;
+        write_all(link, screen, &steps).await?;
+        Ok(WrittenRegisters { written: values.into_iter().map(|(number, value)| Word::new(number, value)).collect() })
+    }
+}
+
+impl Order for WriteRegisterStep {
+    type Item = u16;
+
+    fn items(&self) -> Vec<u16> {
+        self.written().to_vec()
+    }
+
+    fn listed(items: Vec<u16>) -> String {
+        format!("register {}", runs(&items))
+    }
+}
+
+/// A register.
+#[derive(Debug, PartialEq, Eq, Serialize, JsonSchema)]
+struct Word {
+    number: u16,
+    value: u16,
+    /// `0x03e8`.
+    value_hex: String,
+}
+
+impl Word {
+    fn new(number: u16, value: u16) -> Self {
+        Self { number, value, value_hex: format!("{value:#06x}") }
+    }
+}
+
+/// Registers in the order they were asked for.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Registers {
+    registers: Vec<Word>,
+}
+
+/// Registers the controller confirmed.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct WrittenRegisters {
+    written: Vec<Word>,
+}
+
+fn table(first: &'static str, words: &[Word]) -> View {
+    let mut table = Table::new(&[first, "value", "hex"], "no registers");
+    for word in words {
+        table.row([word.number.into(), word.value.into(), Cell::from(word.value_hex.as_str())]);
+    }
+    View::table(table)
+}
+
+impl Report for Registers {
+    fn view(&self) -> View {
+        table("register", &self.registers)
+    }
+}
+
+impl Report for WrittenRegisters {
+    fn view(&self) -> View {
+        table("written", &self.written)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_in_decimal_and_hexadecimal() {
+        assert_eq!("10=0x1234".parse(), Ok(Assignment { number: 10, value: 0x1234 }));
+        assert_eq!("559=65535".parse(), Ok(Assignment { number: 559, value: 65535 }));
+        for wrong in ["5", "5=", "5=0x", "5=-1", "5=65536", "5=0x10000", "5=1_0", "5=+1", "-1=0", "1..2=0", "=1"] {
+            assert!(wrong.parse::<Assignment>().is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Command lines without a controller: what they would send.
+
+use std::future::poll_fn;
+use std::task::Poll;
+
+use clap::Parser as _;
+use serde_json::Value;
+
+use super::Family;
+use crate::cli::{Cli, Top};
+use crate::command::{Access, Context, Family as _, Noun as _};
+use crate::failure::Failure;
+use crate::output::{ColorChoice, Format, Screen};
+use crate::settings::inventory::Options;
+use crate::settings::target::Family as Name;
+use crate::settings::{Selection, Sources};
+
+/// What `armctl yerc -t TARGET WORDS…` would send: the `data.frames` of a dry run. A command line that cannot be parsed
+/// fails with the parser's message.
+pub fn rehearse(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
+    let line = [&["armctl", "yerc", "-t", target], words].concat();
+    let cli = Cli::try_parse_from(line).map_err(|error| Failure::usage(error.to_string()))?;
+    let Top::Yerc(noun) = cli.command else { return Err(Failure::usage("not a yerc command")) };
+    let command = noun.command();
+    let selection = Selection { target: cli.globals.target, ..Selection::default() };
+    let flags = Options { encoding: cli.globals.encoding, ..Options::default() };
+    let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(Name::Yerc))?.remove(0);
+    let screen = Screen::new(Format::Json, ColorChoice::Never, true, 0);
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
+    runtime.block_on(async {
+        let access = Access { granted: command.risk(), dry_run: true, trace: None };
+        let mut link = Family::connect(&robot, access, &screen).await?;
+        {
+            let mut run = command.run(Context { robot: &robot, link: &mut link, screen: &screen });
+            match poll_fn(|task| Poll::Ready(run.as_mut().poll(task))).await {
+                Poll::Ready(Err(failure)) => return Err(failure),
+                Poll::Ready(Ok(_)) | Poll::Pending => {}
+            }
+        }
+        Ok(Family::rehearsed(&mut link))
+    })
+}
+
+/// The frames of [`rehearse`] in hexadecimal, with request ids counted from `id`, as the golden frames have them.
+pub fn frames(target: &str, words: &[&str], id: u8) -> Vec<String> {
+    let frames = rehearse(target, words).unwrap_or_else(|failure| panic!("{words:?}: {failure:?}"));
+    let hex = frames.iter().map(|frame| frame["hex"].as_str().expect("frames have hex").to_owned());
+    hex.zip(id..).map(|(hex, id)| format!("{}{id:02x}{}", &hex[..22], &hex[24..])).collect()
+}
+
+/// A golden frame by its id.
+pub fn golden(id: &str) -> String {
+    let all: Value = serde_json::from_str(include_str!("../../../tests/data/yerc-frames.json")).expect("golden frames");
+    let frame = all.as_array().and_then(|all| all.iter().find(|frame| frame["id"] == id));
+    frame.and_then(|frame| frame["hex"].as_str()).unwrap_or_else(|| panic!("no golden frame {id}")).to_owned()
+}
+
+const DX200: &str = "udp://127.0.0.1?model=dx200";
+const FS100: &str = "udp://127.0.0.1?model=fs100";
+
+/// Request id of a golden frame, its name, model, words.
+#[track_caller]
+fn same(id: &str, target: &str, words: &[&str]) {
+    let golden = golden(id);
+    let number = u8::from_str_radix(&golden[22..24], 16).expect("an id");
+    assert_eq!(frames(target, words, number), [golden], "{id}: {words:?}");
+}
+
+/// Owned words as a command line.
+#[track_caller]
+fn same_many(id: &str, target: &str, first: &[&str], rest: &[String]) {
+    let words: Vec<&str> = first.iter().copied().chain(rest.iter().map(String::as_str)).collect();
+    same(id, target, &words);
+}
+
+#[test]
+fn single_writes_are_the_golden_frames() {
+    same("R19", DX200, &["io", "set", "--group", "2956=0xA5"]);
+    same("M03t", DX200, &["register", "set", "10=0x1234"]);
+    same("R21", FS100, &["register", "set", "559=65535"]);
+    same("R23", FS100, &["var", "set", "B99=255"]);
+    same("R25", FS100, &["var", "set", "I5=-2"]);
+    same("R27", FS100, &["var", "set", "R3=1.5"]);
+    same("R29", FS100, &["var", "set", "S7=HELLO"]);
+    same("R29", DX200, &["var", "set", "--s16", "S7=HELLO"]);
+    same("R31", DX200, &["var", "set", "P1=pulse:s=1000,l=-2000,u=3000,r=-4000,b=5000,t=-6000"]);
+    same("R33", DX200, &["var", "set", "P3=user:x=0.001,y=0.002,z=0.003,rx=0.0004,ry=0.0005,rz=0.0006,user=2"]);
+    same("R35", DX200, &["var", "set", "BP5.axis1=-1"]);
+    same("R37", DX200, &["var", "set", "EX10=pulse:1=100,2=200"]);
+}
+
+#[test]
+fn plural_reads_and_writes_are_the_golden_frames() {
+    same("R57", DX200, &["io", "get", "--group", "1..474"]);
+    same("R59", FS100, &["io", "set", "--group", "2502=0x80", "--group", "2501=1"]);
+    same("R61", DX200, &["register", "set", "100=100", "102=300", "101=200"]);
+    same("R63", DX200, &["var", "get", "B10..B11"]);
+    same("R71", DX200, &["var", "get", "EX0..EX12"]);
+    let doubles: Vec<String> = (0..118).map(|n| format!("D{n}={}", n * 1000)).collect();
+    same_many("R65", DX200, &["var", "set"], &doubles);
+    let strings: Vec<String> = (0..29).map(|n| format!("S{n}=STR{n:02}")).collect();
+    same_many("R67", DX200, &["var", "set", "--s16"], &strings);
+    let strings: Vec<String> = (0..14).map(|n| format!("S{n}=LONG STRING {n:02}")).collect();
+    same_many("R79", DX200, &["var", "set"], &strings);
+    let pulses = (0..9).map(|n| format!("P{n}=pulse:s={n},l={},u={},r={},b={},t={}", -n, 2 * n, -2 * n, 3 * n, -3 * n));
+    same_many("R69", DX200, &["var", "set"], &pulses.collect::<Vec<_>>());
+}
+
+#[test]
+fn many_variables_are_a_handful_of_requests() {
+    let commands =
+        |words: &[&str]| frames(DX200, words, 0).iter().map(|frame| frame[48..52].to_owned()).collect::<Vec<_>>();
+    assert_eq!(commands(&["var", "get", "B0..B99", "I0..I99", "D0..D99"]), ["0203", "0303", "0403"]);
+    assert_eq!(commands(&["var", "get", "D5", "B0", "B0"]), ["7a00", "7c00"]);
+    assert_eq!(commands(&["var", "dump", "-", "--kinds", "P"]).len(), 15);
+    assert_eq!(commands(&["var", "dump", "-", "--kinds", "s"]).len(), 8);
+}
+
+#[test]
+fn a_change_of_one_signal_is_foreseen() {
+    let plan = rehearse(DX200, &["io", "set", "27010=on", "27011=off"]).unwrap();
+    let [read, write] = &plan[..] else { panic!("{plan:?}") };
+    assert_eq!(read["about"], "reads group 2701");
+    assert_eq!(&read["hex"].as_str().unwrap()[48..], "78008d0a010e0000");
+    assert!(write["about"].as_str().unwrap().starts_with("writes group 2701"));
+    assert_eq!(&write["hex"].as_str().unwrap()[48..], "78008d0a0110000001");
+}
+
+#[test]
+fn what_cannot_be_meant_is_not_sent() {
+    let failed = |words: &[&str]| {
+        let failure = rehearse(DX200, words).unwrap_err();
+        assert_eq!(failure.kind.exit(), 2, "{words:?}");
+        format!("{} {}", failure.message, failure.hint.unwrap_or_default())
+    };
+    assert!(failed(&["var", "set", "I0=1", "B0=256"]).contains("'256' is not a number from 0 to 255"));
+    assert!(failed(&["var", "set", "B0=1", "B0=2"]).contains("B0 is given twice"));
+    assert!(failed(&["var", "set", "S0=123456789012345678901234567890123"]).contains("33 bytes"));
+    assert!(failed(&["var", "set", "--s16", "S0=12345678901234567"]).contains("17 bytes"));
+    assert!(failed(&["var", "set", "S0=한글"]).contains("shift_jis"));
+    assert!(failed(&["io", "get", "9"]).contains("there is no signal #00009"));
+    assert!(failed(&["io", "get", "5200"]).contains("does not exist on a dx200"));
+    assert!(failed(&["io", "set", "10010=on"]).contains("robot user output"));
+    assert!(failed(&["register", "get", "1000"]).contains("0-559, 560-999"));
+    assert!(failed(&["register", "set", "560=1"]).contains("0-559"));
+    assert!(failed(&["raw", "--file", "--service", "0x32"]).contains("yerc file list"));
+    assert!(failed(&["raw", "--command", "0x8D", "--instance", "1", "--service", "1", "--check"]).contains("0x008d"));
+}
+
+#[test]
+fn raw_sends_what_it_is_told() {
+    let words = [
+        "raw",
+        "--command",
+        "0x80",
+        "--instance",
+        "5",
+        "--attribute",
+        "2",
+        "--service",
+        "0x10",
+        "--data",
+        "ff ff:ff,0xff",
+    ];
+    same("R35", DX200, &words);
+    same("M01", DX200, &["raw", "--command", "0x72", "--instance", "1", "--service", "0x01"]);
+}

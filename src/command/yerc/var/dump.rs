@@ -1,0 +1,242 @@
+//! `yerc var dump`.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use clap::Args;
+use jiff::Timestamp;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::json;
+use tempfile::NamedTempFile;
+
+use super::super::Family;
+use super::entry::{Entry, is_undefined};
+use super::get::Named;
+use super::read::{once, read_all};
+use super::{in_form, listed, parse_kind};
+use crate::command::{Command, Context, Report};
+use crate::controller::yerc::variables::{Reference, VariableKind};
+use crate::failure::Failure;
+use crate::output::escape;
+use crate::output::view::View;
+
+/// What the files begin with, so that another file is not taken for one.
+pub const FORMAT: &str = "armctl-variables";
+/// The layout of the files.
+pub const VERSION: u64 = 1;
+
+/// What to save and where.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "A dump is whole or is not written: if the controller refuses a variable for another reason than \
+                        that it is undefined, the dump fails and names it. Undefined positions stand in the file as \
+                        null. `var restore` writes a dump back."
+)]
+pub struct Dump {
+    /// A new file, or - for stdout
+    file: PathBuf,
+    /// Only these kinds: B,I,D,R,S,P,BP,EX
+    #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = parse_kind, conflicts_with = "ranges")]
+    kinds: Vec<VariableKind>,
+    /// Exactly these, such as B0..B199,P0..P9, instead of all standard numbers
+    #[arg(long, value_name = "REF", value_delimiter = ',', value_parser = Named::parse)]
+    ranges: Vec<Named>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+    /// The robot whose variables went into the file, so that a second robot does not replace them.
+    #[arg(skip)]
+    taken: OnceLock<String>,
+}
+
+impl Command for Dump {
+    type Family = Family;
+    type Report = Dumped;
+    const ID: &'static str = "yerc.var.dump";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Dumped, Failure> {
+        let Context { robot, link, screen } = context;
+        let references = once(self.references().map(|reference| in_form(reference, link.model, false)));
+        let is_stdout = self.file == Path::new("-");
+        let place = if is_stdout { None } else { self.place(&robot.name, link.is_dry())? };
+        let progress = screen.spinner("reading");
+        let answers = read_all(link, &references, |wanted, known| {
+            progress.say(&format!("reading {} ({known} of {})", listed(wanted.iter().copied()), references.len()));
+        })
+        .await?;
+        drop(progress);
+        let refused =
+            |reference: &&Reference| matches!(answers.get(reference), Some(Err(refusal)) if !is_undefined(*refusal));
+        let missing: Vec<Reference> = references.iter().filter(refused).copied().collect();
+        if let Some(Err(refusal)) = missing.first().and_then(|reference| answers.get(reference)) {
+            let failure = Failure::from(*refusal);
+            let message =
+                format!("{}: {}; no dump was written", listed(missing), failure.message.trim_end_matches('.'));
+            return Err(Failure { message, ..failure }.hint("--kinds or --ranges leaves them out"));
+        }
+        let variables: Vec<Entry> = references
+            .iter()
+            .filter_map(|reference| Some(Entry::new(*reference, answers.get(reference)?, link.encoding)))
+            .collect();
+        let document = Document {
+            format: FORMAT,
+            version: VERSION,
+            family: "yerc",
+            robot: robot.name.clone(),
+            target: robot.target.value.url().to_owned(),
+            simulated: robot.target.value.is_simulated(),
+            model: link.model.name(),
+            encoding: link.encoding.label(),
+            taken_at: Timestamp::now().to_string(),
+            variables,
+        };
+        let Some(place) = place else { return Ok(Dumped::Document(document)) };
+        let summary = Summary {
+            file: self.file.display().to_string(),
+            variables: document.variables.len(),
+            undefined: document.variables.iter().filter(|entry| !entry.has_value()).count(),
+            taken_at: document.taken_at.clone(),
+        };
+        self.keep(place, &document.text()?)?;
+        Ok(Dumped::Summary(summary))
+    }
+}
+
+impl Dump {
+    /// What was asked for, or all standard numbers of the kinds.
+    fn references(&self) -> impl Iterator<Item = Reference> {
+        let kinds = VariableKind::all().filter(|kind| {
+            *kind != VariableKind::S16 && self.ranges.is_empty() && (self.kinds.is_empty() || self.kinds.contains(kind))
+        });
+        let standard =
+            kinds.flat_map(|kind| (0..=kind.last_standard()).map(move |number| Reference::new(kind, number)));
+        self.ranges.iter().flat_map(|named| named.0.clone()).chain(standard)
+    }
+
+    /// The file beside the one to be written, made before the controller is asked: what cannot be written is known
+    /// at once.
+    fn place(&self, robot: &str, dry: bool) -> Result<Option<NamedTempFile>, Failure> {
+        let shown = self.file.display();
+        if self.taken.get_or_init(|| robot.to_owned()) != robot {
+            return Err(Failure::usage(format!("{shown} is for the variables of one robot"))
+                .hint("run the command once for each robot, with a file each"));
+        }
+        if !self.force && self.file.symlink_metadata().is_ok() {
+            return Err(exists(&self.file));
+        }
+        if dry {
+            return Ok(None);
+        }
+        let folder = self.file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".armctl-");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt as _;
+
+            // As any new file: what the user's umask leaves of it.
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        builder.tempfile_in(folder).map(Some).map_err(|error| Failure::io(folder.display(), &error))
+    }
+
+    fn keep(&self, mut place: NamedTempFile, text: &str) -> Result<(), Failure> {
+        let failed = |error: std::io::Error| Failure::io(self.file.display(), &error);
+        place.write_all(text.as_bytes()).map_err(failed)?;
+        place.as_file().sync_all().map_err(failed)?;
+        if self.force {
+            place.persist(&self.file).map_err(|error| failed(error.error))?;
+        } else {
+            place.persist_noclobber(&self.file).map_err(|error| match error.error.kind() {
+                std::io::ErrorKind::AlreadyExists => exists(&self.file),
+                _ => failed(error.error),
+            })?;
+        }
+        Ok(())
+    }
+}
+
+fn exists(file: &Path) -> Failure {
+    Failure::local(format!("{} exists already", file.display())).hint("--force replaces it; nothing was read")
+}
+
+/// A dump, or where it went.
+#[derive(Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Dumped {
+    /// With `-`.
+    Document(Document),
+    /// With a file.
+    Summary(Summary),
+}
+
+/// What a dump file holds.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Document {
+    /// `armctl-variables`.
+    format: &'static str,
+    version: u64,
+    family: &'static str,
+    robot: String,
+    target: String,
+    simulated: bool,
+    model: &'static str,
+    /// In which strings were decoded.
+    encoding: &'static str,
+    taken_at: String,
+    variables: Vec<Entry>,
+}
+
+/// Where a dump went.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Summary {
+    file: String,
+    /// How many it holds.
+    variables: usize,
+    /// How many of them are undefined.
+    undefined: usize,
+    taken_at: String,
+}
+
+impl Document {
+    /// The file: a variable a line, so that two dumps can be compared line by line.
+    fn text(&self) -> Result<String, Failure> {
+        let head = json!({
+            "format": self.format, "version": self.version, "family": self.family, "robot": self.robot,
+            "target": self.target, "simulated": self.simulated, "model": self.model, "encoding": self.encoding,
+            "taken_at": self.taken_at,
+        });
+        let mut text = String::from("{\n");
+        for (name, value) in head.as_object().into_iter().flatten() {
+            text.extend(["  ", &line(name)?, ": ", &line(value)?, ",\n"]);
+        }
+        text.push_str("  \"variables\": [");
+        let mut separator = "\n";
+        for entry in &self.variables {
+            text.extend([separator, "    ", &line(entry)?]);
+            separator = ",\n";
+        }
+        text.push_str("\n  ]\n}\n");
+        Ok(text)
+    }
+}
+
+fn line<T: Serialize + ?Sized>(value: &T) -> Result<String, Failure> {
+    escape::json_line(value).map_err(|error| Failure::local(format!("dump as JSON: {error}")))
+}
+
+impl Report for Dumped {
+    fn view(&self) -> View {
+        match self {
+            Self::Document(document) => View::text(document.text().unwrap_or_else(|failure| failure.message)),
+            Self::Summary(summary) => View::fields([
+                ("file", summary.file.as_str().into()),
+                ("variables", summary.variables.into()),
+                ("undefined", summary.undefined.into()),
+                ("taken at", summary.taken_at.as_str().into()),
+            ]),
+        }
+    }
+}

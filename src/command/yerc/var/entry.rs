@@ -1,0 +1,354 @@
+//! A variable in JSON, both ways.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::{Map, Value as Json};
+
+use super::in_form;
+use super::position::{self, PositionData};
+use crate::command::yerc::link::{Refusal, hex};
+use crate::controller::text::Encoding;
+use crate::controller::yerc::Model;
+use crate::controller::yerc::payload::Text;
+use crate::controller::yerc::status;
+use crate::controller::yerc::variables::{Reference, Value, VariableKind};
+use crate::failure::{Failure, Kind};
+
+/// A variable and what it holds.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Entry {
+    /// `B0`.
+    name: String,
+    /// `B`, `I`, `D`, `R`, `S`, `P`, `BP` or `EX`.
+    kind: &'static str,
+    number: u16,
+    /// Null where the controller has none.
+    value: Option<Data>,
+    /// The bytes on the wire, where the value does not lead back to them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    value_hex: Option<String>,
+    /// Why there is no value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refused: Option<Refused>,
+}
+
+/// The value of a variable.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Data {
+    /// B, I, D.
+    Integer(i32),
+    /// R, in the fewest digits that lead back to it.
+    Real(f64),
+    /// S; also an R that is no number: `NaN`, `inf`, `-inf`.
+    Text(String),
+    /// P, BP, EX.
+    Position(Box<PositionData>),
+}
+
+/// What the controller said instead of a value.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+struct Refused {
+    /// `0xB005`.
+    code: String,
+    /// In words.
+    meaning: String,
+    /// The variable exists and has not been taught yet.
+    undefined: bool,
+}
+
+/// Added status of a variable without a value. The manuals give 0xB001 another meaning too, which cannot occur where
+/// one variable is read (3.3.16; DX chapter 5).
+const UNDEFINED: [u32; 2] = [0xB005, 0xB001];
+
+/// Whether a refusal to read one variable says that it holds nothing.
+pub fn is_undefined(Refusal(status): Refusal) -> bool {
+    UNDEFINED.contains(&status.added)
+}
+
+impl Entry {
+    /// What a controller answered.
+    pub fn new(reference: Reference, answer: &Result<Value, Refusal>, encoding: Encoding) -> Self {
+        let (name, kind, number) = (reference.to_string(), reference.kind.letters(), reference.number);
+        let (value, value_hex, refused) = match answer {
+            Ok(value) => {
+                let (data, hex) = data_of(value, encoding);
+                (Some(data), hex, None)
+            }
+            Err(refusal) => {
+                let explanation = status::explain(refusal.0);
+                let meaning = explanation.name.into_owned();
+                (None, None, Some(Refused { code: explanation.code_text, meaning, undefined: is_undefined(*refusal) }))
+            }
+        };
+        Self { name, kind, number, value, value_hex, refused }
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its value as a person reads it, or why there is none.
+    pub fn shown(&self) -> String {
+        match (&self.value, &self.refused) {
+            (Some(data), _) => data.to_string(),
+            (None, Some(Refused { undefined: false, code, meaning })) => format!("refused: {meaning} ({code})"),
+            (None, _) => "undefined".to_owned(),
+        }
+    }
+
+    /// Whether it has a value, and that is a number.
+    pub fn is_number(&self) -> bool {
+        matches!(self.value, Some(Data::Integer(_) | Data::Real(_)))
+    }
+
+    /// Whether it has a value.
+    pub fn has_value(&self) -> bool {
+        self.value.is_some()
+    }
+
+    /// Why it has none, as a failure.
+    pub fn failure(&self) -> Option<Failure> {
+        let Refused { code, meaning, .. } = self.refused.as_ref()?;
+        let failure = Failure::new(Kind::Refused, format!("{}: {meaning}", self.name)).code(code.as_str());
+        Some(failure.hint(format!("`armctl explain yerc {code}` tells what to do about it")))
+    }
+}
+
+impl std::fmt::Display for Data {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Integer(value) => value.fmt(f),
+            // With a point or an exponent, so that it reads as a real.
+            Self::Real(value) => write!(f, "{value:?}"),
+            Self::Text(text) => f.write_str(text),
+            Self::Position(position) => f.write_str(position.text()),
+        }
+    }
+}
+
+fn data_of(value: &Value, encoding: Encoding) -> (Data, Option<String>) {
+    let text = |bytes: &[u8]| {
+        let name = encoding.name(bytes);
+        (Data::Text(name.text), name.hex)
+    };
+    match value {
+        Value::Byte(value) => (Data::Integer((*value).into()), None),
+        Value::Integer(value) => (Data::Integer((*value).into()), None),
+        Value::Double(value) => (Data::Integer(*value), None),
+        Value::Real(value) => match shortest(*value) {
+            Some(value) => (Data::Real(value), None),
+            None => (Data::Text(value.to_string()), Some(hex(&value.to_le_bytes()))),
+        },
+        Value::Short(value) => text(value.as_bytes()),
+        Value::Long(value) => text(value.as_bytes()),
+        Value::Position(_) | Value::Base(_) | Value::External(_) => {
+            let position = PositionData::of(value).map(Box::new);
+            (position.map_or(Data::Text(String::new()), Data::Position), None)
+        }
+    }
+}
+
+/// The 64-bit number that is written with the digits of the 32-bit one; none for what is no number.
+fn shortest(value: f32) -> Option<f64> {
+    if value.is_finite() { format!("{value:?}").parse().ok() } else { None }
+}
+
+/// How the variables of a file are read.
+#[derive(Debug, Clone, Copy)]
+pub struct Reading {
+    /// Of the robot they are for.
+    pub model: Model,
+    /// In which strings were decoded.
+    pub encoding: Encoding,
+}
+
+const KEYS: [&str; 6] = ["name", "kind", "number", "value", "value_hex", "refused"];
+
+impl Reading {
+    /// Reads an entry of a dump: the variable, and its value unless that is null. The error begins with the place in the
+    /// entry, such as `.value: `.
+    pub fn entry(self, entry: &Json) -> Result<(Reference, Option<Value>), String> {
+        let object = entry.as_object().ok_or(": an object is expected")?;
+        if let Some(key) = object.keys().find(|key| !KEYS.contains(&key.as_str())) {
+            return Err(format!(".{key}: unknown; there are {}", KEYS.join(", ")));
+        }
+        let name = object.get("name").and_then(Json::as_str).ok_or(".name: a name such as \"B0\" is expected")?;
+        let reference: Reference = name.parse().map_err(|error| format!(".name: {error}"))?;
+        let reference = in_form(reference, self.model, false);
+        if object.get("kind").is_some_and(|kind| kind != reference.kind.letters()) {
+            return Err(format!(".kind: contradicts the name {name}"));
+        }
+        if object.get("number").is_some_and(|number| number.as_u64() != Some(reference.number.into())) {
+            return Err(format!(".number: contradicts the name {name}"));
+        }
+        let bytes =
+            object.get("value_hex").map(|digits| from_hex(digits).map_err(|error| format!(".value_hex: {error}")));
+        let value = match (object.get("value"), bytes.transpose()?) {
+            (None, _) => return Err(".value: missing; null is for what is undefined".to_owned()),
+            (Some(Json::Null), None) => None,
+            (Some(value), Some(bytes)) => Some(self.exact(reference.kind, value, &bytes)?),
+            (Some(value), None) => Some(self.value(reference.kind, value).map_err(|error| format!(".value{error}"))?),
+        };
+        Ok((reference, value))
+    }
+
+    /// Reads a value in the form that an entry holds it. The error begins with the place in the value.
+    pub fn value(self, kind: VariableKind, value: &Json) -> Result<Value, String> {
+        let typed = |text: &[u8]| Value::from_text(kind, text).map_err(|error| format!(": {error}"));
+        match (kind, value) {
+            (VariableKind::P | VariableKind::Bp | VariableKind::Ex, Json::Object(object)) => {
+                position::read(kind, object)
+            }
+            (VariableKind::P | VariableKind::Bp | VariableKind::Ex, Json::String(text)) => typed(text.as_bytes()),
+            (VariableKind::P | VariableKind::Bp | VariableKind::Ex, _) => {
+                Err(": a position is an object, or a text such as \"pulse:…\"".to_owned())
+            }
+            (VariableKind::S16 | VariableKind::S32, Json::String(text)) => {
+                typed(&self.encoding.encode(text).map_err(|error| format!(": {error}"))?)
+            }
+            (VariableKind::S16 | VariableKind::S32, _) => Err(": a string is expected".to_owned()),
+            // The digits as they stand there, so that no real is rounded twice.
+            (_, Json::Number(number)) => typed(number.to_string().as_bytes()),
+            _ => Err(": a number is expected".to_owned()),
+        }
+    }
+
+    /// A value that only its bytes tell; what stands beside them must still belong to them.
+    fn exact(self, kind: VariableKind, shown: &Json, bytes: &[u8]) -> Result<Value, String> {
+        let value = match kind {
+            VariableKind::S16 => Text::new(bytes).map(Value::Short).map_err(|error| format!(".value_hex: {error}"))?,
+            VariableKind::S32 => Text::new(bytes).map(Value::Long).map_err(|error| format!(".value_hex: {error}"))?,
+            VariableKind::R => {
+                let bytes = bytes.try_into().map_err(|_| ".value_hex: 4 bytes are expected")?;
+                Value::Real(f32::from_le_bytes(bytes))
+            }
+            _ => return Err(".value_hex: only strings and reals have one".to_owned()),
+        };
+        let (data, _) = data_of(&value, self.encoding);
+        let expected = match data {
+            Data::Text(text) => Json::String(text),
+            Data::Real(value) => Json::from(value),
+            Data::Integer(_) | Data::Position(_) => Json::Null,
+        };
+        if *shown == expected {
+            Ok(value)
+        } else {
+            Err(".value: is not what value_hex says; remove value_hex to use the value".to_owned())
+        }
+    }
+}
+
+fn from_hex(digits: &Json) -> Result<Vec<u8>, &'static str> {
+    let wrong = "pairs of hexadecimal digits are expected";
+    let digits = digits.as_str().ok_or(wrong)?.as_bytes();
+    if digits.len() % 2 == 1 {
+        return Err(wrong);
+    }
+    let digit = |byte: u8| char::from(byte).to_digit(16).and_then(|digit| u8::try_from(digit).ok()).ok_or(wrong);
+    digits.chunks_exact(2).map(|pair| Ok(digit(pair[0])? << 4 | digit(pair[1])?)).collect()
+}
+
+/// The position in a JSON file: the object itself, an entry that holds it, or the whole report of `var get` for one
+/// variable.
+pub fn position_in(json: &Json) -> Result<&Json, &'static str> {
+    let inner = |object: &Map<String, Json>, key: &str| object.contains_key(key);
+    match json {
+        Json::Object(object) if inner(object, "text") || inner(object, "type") => Ok(json),
+        Json::Object(object) if inner(object, "value") => Ok(&object["value"]),
+        Json::Object(object) if inner(object, "data") => position_in(&object["data"]),
+        Json::Object(object) if inner(object, "variables") => match object["variables"].as_array().map(Vec::as_slice) {
+            Some([only]) => position_in(only),
+            _ => Err("the file holds several variables; keep the one that is meant"),
+        },
+        _ => Err("the file holds no position; `var get P1 --json` shows one"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::controller::yerc::wire::Status;
+
+    const READING: Reading = Reading { model: Model::Dx200, encoding: Encoding::ShiftJis };
+
+    fn round(name: &str, value: &Value) -> Json {
+        let reference = in_form(name.parse().unwrap(), READING.model, false);
+        let json = serde_json::to_value(Entry::new(reference, &Ok(value.clone()), READING.encoding)).unwrap();
+        // As it comes back from a file.
+        let json: Json = serde_json::from_str(&json.to_string()).unwrap();
+        let (back, read) = READING.entry(&json).unwrap();
+        assert_eq!((back, read.map(|value| value.emit())), (reference, Some(value.emit())), "{json}");
+        json
+    }
+
+    #[test]
+    fn numbers_survive_json() {
+        assert_eq!(round("B7", &Value::Byte(255)), json!({"name": "B7", "kind": "B", "number": 7, "value": 255}));
+        round("I0", &Value::Integer(-32768));
+        round("D0", &Value::Double(i32::MIN));
+        assert_eq!(round("R0", &Value::Real(1.1))["value"], json!(1.1));
+        for bits in [0, 1, 0x8000_0000, 0x3F80_0001, 0x7F7F_FFFF, 0x0080_0000, 0x4B7F_FFFF, 0x7F80_0000, 0xFFC0_0001] {
+            round("R0", &Value::Real(f32::from_bits(bits)));
+        }
+        let mut bits = 12345_u32;
+        for _ in 0..20_000 {
+            bits = bits.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            round("R0", &Value::Real(f32::from_bits(bits)));
+        }
+    }
+
+    #[test]
+    fn strings_survive_json() {
+        let s = |bytes: &[u8]| Value::Long(Text::new(bytes).unwrap());
+        assert_eq!(round("S0", &s(b"\x83\x65")), json!({"name": "S0", "kind": "S", "number": 0, "value": "テ"}));
+        assert_eq!(round("S0", &s(b"A\xFF"))["value_hex"], json!("41ff"));
+        round("S0", &s(b""));
+        round("S0", &s(b"\x1b[31m\\x80"));
+        round("S0", &s(&[0xFF; 32]));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        let error = |json: Json| READING.entry(&json).unwrap_err();
+        assert_eq!(error(json!({"name": "B0", "value": 256})), ".value: '256' is not a number from 0 to 255");
+        assert_eq!(error(json!({"name": "B0", "value": 1.5})), ".value: '1.5' is not a number from 0 to 255");
+        assert_eq!(error(json!({"name": "B0", "kind": "I", "value": 1})), ".kind: contradicts the name B0");
+        assert_eq!(error(json!({"name": "B0", "number": 1, "value": 1})), ".number: contradicts the name B0");
+        assert_eq!(error(json!({"name": "B0"})), ".value: missing; null is for what is undefined");
+        assert!(error(json!({"name": "B0", "vlaue": 1})).starts_with(".vlaue: unknown"));
+        assert!(error(json!({"name": "S0", "value": "A", "value_hex": "42"})).contains("remove value_hex"));
+        assert!(error(json!({"name": "S0", "value": "A", "value_hex": "4"})).starts_with(".value_hex"));
+        assert_eq!(error(json!({"name": "P0", "value": {"type": "pulse"}})), ".value: axes are missing");
+        let position = json!({"type": "base", "x_mm": "1"});
+        assert_eq!(error(json!({"name": "P0", "value": position})), ".value.x_mm: a number is expected");
+        assert!(error(json!({"name": "S0", "value": "한"})).starts_with(".value: '한'"));
+        assert!(error(json!([1])).starts_with(": an object"));
+        assert_eq!(READING.entry(&json!({"name": "P0", "value": null})).unwrap().1, None);
+    }
+
+    #[test]
+    fn refusals_say_whether_there_is_nothing_to_read() {
+        let p = Reference::new(VariableKind::P, 3);
+        let undefined = Entry::new(p, &Err(Refusal(Status::refused(0xB005))), READING.encoding);
+        assert_eq!(undefined.shown(), "undefined");
+        let json = serde_json::to_value(&undefined).unwrap();
+        assert_eq!(READING.entry(&json).unwrap(), (p, None));
+        let refused = Entry::new(p, &Err(Refusal(Status::refused(0x2010))), READING.encoding);
+        assert!(refused.shown().starts_with("refused: "), "{}", refused.shown());
+    }
+
+    #[test]
+    fn a_position_is_found_in_what_var_get_printed() {
+        let position = json!({"text": "pulse:1=1"});
+        let entry = json!({"name": "EX1", "value": position});
+        for json in [position.clone(), entry.clone(), json!({"ok": true, "data": {"variables": [entry]}})] {
+            assert_eq!(position_in(&json), Ok(&position));
+        }
+        assert!(position_in(&json!({"variables": [entry, entry]})).is_err());
+        assert!(position_in(&json!([])).is_err());
+    }
+}

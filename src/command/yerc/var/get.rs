@@ -1,0 +1,83 @@
+//! `yerc var get`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::super::Family;
+use super::entry::Entry;
+use super::in_form;
+use super::read::{once, read_all};
+use crate::command::{Command, Context, Report};
+use crate::controller::yerc::variables::{Reference, parse_references};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
+
+/// Variables to read.
+#[derive(Debug, Args)]
+#[command(after_help = "A position that was never taught has no value: it is shown as undefined (null in JSON). The \
+                        exit code is 3 only if every variable asked for was refused. Many variables take few requests; \
+                        numbers beyond the standard 0-99 (positions 0-127) exist where the controller's parameters \
+                        say so.")]
+pub struct Get {
+    /// Such as B0, I1..I20, D5, R3, S2, P10, BP1, EX1
+    #[arg(required = true, value_name = "REF", value_parser = Named::parse)]
+    variables: Vec<Named>,
+    /// Read strings by the 16-byte commands, also from a DX200
+    #[arg(long)]
+    s16: bool,
+}
+
+/// A variable or a range of them, as typed.
+#[derive(Debug, Clone)]
+pub struct Named(pub Vec<Reference>);
+
+impl Named {
+    /// `B0`, `B0..B99`, `B0..99`.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        parse_references(text).map(Self).map_err(|error| error.to_string())
+    }
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Variables;
+    const ID: &'static str = "yerc.var.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Variables, Failure> {
+        let link = context.link;
+        let named = self.variables.iter().flat_map(|named| &named.0);
+        let references = once(named.map(|reference| in_form(*reference, link.model, self.s16)));
+        let answers = read_all(link, &references, |_, _| {}).await?;
+        let entries = references.iter().filter_map(|reference| {
+            let answer = answers.get(reference)?;
+            Some(Entry::new(*reference, answer, link.encoding))
+        });
+        Ok(Variables { variables: entries.collect() })
+    }
+}
+
+/// Variables in the order they were asked for.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Variables {
+    variables: Vec<Entry>,
+}
+
+impl Report for Variables {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["name", "value"], "no variables");
+        let numbers = self.variables.iter().all(Entry::is_number);
+        for entry in &self.variables {
+            let value = if numbers { Cell::number(entry.shown()) } else { entry.shown().into() };
+            table.row([entry.name().into(), value]);
+        }
+        View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        if self.variables.iter().any(Entry::has_value) {
+            return None;
+        }
+        self.variables.first().and_then(Entry::failure)
+    }
+}

@@ -1,0 +1,76 @@
+//! `yerc var`: variables, one or many.
+
+mod dump;
+mod entry;
+mod get;
+mod position;
+mod read;
+mod restore;
+mod set;
+
+use super::Family;
+use crate::command::commands;
+use crate::controller::yerc::Model;
+use crate::controller::yerc::variables::{Reference, VariableKind};
+
+commands! {
+    /// What can be done with variables.
+    pub enum Var of Family {
+        /// Read variables: B0 I1..I20 D5 R3 S2 P10 BP1 EX1
+        Get(get::Get),
+        /// Write variables: B0=255 R3=1.5 S7=HELLO P1=base:x=…
+        Set(set::Set),
+        /// Save variables to a JSON file
+        Dump(dump::Dump),
+        /// Write back what a dump holds
+        Restore(restore::Restore),
+    }
+}
+
+/// The same variable, with strings in the form that the model and `--s16` want.
+fn in_form(reference: Reference, model: Model, short: bool) -> Reference {
+    Reference::new(reference.kind.string_form(model, short), reference.number)
+}
+
+/// A kind by its letters, for `--kinds` and `--only`; strings read as the 32-byte form.
+fn parse_kind(letters: &str) -> Result<VariableKind, String> {
+    let kinds: Vec<VariableKind> = VariableKind::all().filter(|kind| *kind != VariableKind::S16).collect();
+    kinds.iter().copied().find(|kind| kind.letters().eq_ignore_ascii_case(letters)).ok_or_else(|| {
+        let all: Vec<&str> = kinds.iter().map(|kind| kind.letters()).collect();
+        format!("there are {}", all.join(", "))
+    })
+}
+
+/// Names in the order given, runs of a kind as `B0..B9`.
+fn listed(references: impl IntoIterator<Item = Reference>) -> String {
+    let mut runs: Vec<(Reference, Reference)> = Vec::new();
+    for reference in references {
+        match runs.last_mut() {
+            Some((_, last)) if last.kind == reference.kind && last.number.checked_add(1) == Some(reference.number) => {
+                *last = reference;
+            }
+            _ => runs.push((reference, reference)),
+        }
+    }
+    let run = |(first, last): &(Reference, Reference)| {
+        if first == last { first.to_string() } else { format!("{first}..{last}") }
+    };
+    runs.iter().map(run).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_are_named_by_their_ends() {
+        let references = ["B0", "B1", "B2", "I5", "D7", "D9"].map(|text| text.parse().unwrap());
+        assert_eq!(listed(references), "B0..B2, I5, D7, D9");
+    }
+
+    #[test]
+    fn kinds_by_letters() {
+        assert_eq!(parse_kind("s"), Ok(VariableKind::S32));
+        assert_eq!(parse_kind("x"), Err("there are B, I, D, R, S, P, BP, EX".to_owned()));
+    }
+}

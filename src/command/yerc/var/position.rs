@@ -1,0 +1,295 @@
+//! Positions in JSON: every axis with its unit, and the text form that `var set` takes.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::{Map, Value as Json, json};
+
+use crate::controller::yerc::payload::{ExtendedForm, Form, NamedAxis, PositionKind};
+use crate::controller::yerc::units::{self, Quantity, Unit};
+use crate::controller::yerc::variables::{Value, VariableKind};
+
+/// A position.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct PositionData {
+    /// As `var set` takes it.
+    text: String,
+    /// `pulse`, `base`, `robot`, `user`, `tool`; `type5` for a number without a name.
+    r#type: String,
+    /// The type as a number.
+    type_code: u32,
+    /// `x_mm`, `y_mm`, `z_mm`, `rx_deg`, `ry_deg`, `rz_deg`, `re_deg`; `s_pulses`, `l_pulses`, …; `axis_8_pulses`.
+    #[serde(flatten)]
+    #[schemars(with = "BTreeMap<String, f64>")]
+    axes: Map<String, Json>,
+    /// What only robot positions have.
+    #[serde(flatten)]
+    arm: Option<Arm>,
+}
+
+/// How a robot reaches a position.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+struct Arm {
+    tool: u32,
+    user: u32,
+    /// The form in words.
+    form: Vec<&'static str>,
+    form_code: u32,
+    /// The extended form in words.
+    extended_form: Vec<&'static str>,
+    extended_form_code: u32,
+}
+
+impl PositionData {
+    /// A value as a position, if it is one.
+    pub fn of(value: &Value) -> Option<Self> {
+        let (text, kind, axes, shown) = match value {
+            Value::Position(position) => {
+                (position.to_string(), position.kind, position.named_axes(), position.shown_axes())
+            }
+            Value::Base(position) => {
+                (position.to_string(), position.kind, position.named_axes(), position.shown_axes())
+            }
+            Value::External(position) => {
+                (position.to_string(), position.kind, position.named_axes(), position.shown_axes())
+            }
+            _ => return None,
+        };
+        let arm = match value {
+            Value::Position(position) => Some(Arm {
+                tool: position.tool,
+                user: position.user,
+                form: position.form.words().collect(),
+                form_code: position.form.0,
+                extended_form: position.extended.words().collect(),
+                extended_form_code: position.extended.0,
+            }),
+            _ => None,
+        };
+        let axes = axes.iter().take(shown).map(|axis| (key(axis), amount(axis.unit.show(axis.value)))).collect();
+        Some(Self { text, r#type: type_name(kind), type_code: kind.word(), axes, arm })
+    }
+
+    /// The text form.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+}
+
+/// Reads a position from its JSON object, from the text, from the fields, or from both where they agree. The error
+/// begins with the place, such as `.x_mm: `.
+pub fn read(kind: VariableKind, object: &Map<String, Json>) -> Result<Value, String> {
+    let from_text = match object.get("text") {
+        Some(Json::String(text)) => Some(parse(kind, text).map_err(|error| format!(".text{error}"))?),
+        Some(_) => return Err(".text: a string is expected".to_owned()),
+        None => None,
+    };
+    let from_fields = if object.contains_key("type") { Some(read_fields(kind, object)?) } else { None };
+    match (from_text, from_fields) {
+        (Some(text), Some(fields)) if text != fields => {
+            Err(": text and the other fields say different things; remove text to use the fields".to_owned())
+        }
+        (Some(_), None) if object.len() > 1 => {
+            Err(": type is missing; give type and all axes, or text alone".to_owned())
+        }
+        (Some(value), _) | (None, Some(value)) => Ok(value),
+        (None, None) => Err(": neither text nor type is there".to_owned()),
+    }
+}
+
+fn read_fields(kind: VariableKind, object: &Map<String, Json>) -> Result<Value, String> {
+    let Some(Json::String(name)) = object.get("type") else {
+        return Err(".type: a string is expected".to_owned());
+    };
+    let mut parts = Vec::new();
+    let mut given = Vec::new();
+    for (name, value) in object {
+        match name.as_str() {
+            "text" | "type" | "type_code" | "form" | "extended_form" => {}
+            "tool" | "user" if kind == VariableKind::P => parts.push(format!("{name}={}", number(name, value)?)),
+            "form_code" if kind == VariableKind::P => parts.extend(flags("form", name, value)?),
+            "extended_form_code" if kind == VariableKind::P => parts.extend(flags("ext", name, value)?),
+            _ => {
+                let axis = axis_of(name).ok_or_else(|| format!(".{name}: no part of a position"))?;
+                parts.push(format!("{axis}={}", number(name, value)?));
+                given.push(name);
+            }
+        }
+    }
+    if parts.is_empty() {
+        return Err(": axes are missing".to_owned());
+    }
+    let value = parse(kind, &format!("{name}:{}", parts.join(",")))?;
+    let data = PositionData::of(&value).ok_or(": no position")?;
+    agrees(object, "type_code", &json!(data.type_code))?;
+    let names: Vec<String> = axes(&value).iter().map(key).collect();
+    if let Some(name) = given.iter().find(|name| !names.contains(name)) {
+        return Err(format!(".{name}: no part of this position; its axes are {}", names.join(", ")));
+    }
+    if let Value::Position(position) = &value {
+        words_agree(object, "form", "form_code", &position.form.words().collect::<Vec<_>>(), position.form == Form(0))?;
+        let (extended, none) = (position.extended, position.extended == ExtendedForm(0));
+        words_agree(object, "extended_form", "extended_form_code", &extended.words().collect::<Vec<_>>(), none)?;
+    }
+    Ok(value)
+}
+
+/// Words that came without their code would be lost, and words that contradict it are a mistake.
+fn words_agree(
+    object: &Map<String, Json>,
+    words: &str,
+    code: &str,
+    expected: &[&'static str],
+    is_default: bool,
+) -> Result<(), String> {
+    match (object.get(words), object.contains_key(code)) {
+        (Some(found), _) if *found == json!(expected) => Ok(()),
+        (Some(_), true) => Err(format!(": {words} and {code} say different things; remove {words} to use {code}")),
+        (Some(_), false) => Err(format!(": {code} is missing; it holds the number that {words} explains")),
+        (None, true) => Ok(()),
+        (None, false) if is_default => Ok(()),
+        (None, false) => Err(format!(": {code} is missing")),
+    }
+}
+
+fn agrees(object: &Map<String, Json>, name: &str, expected: &Json) -> Result<(), String> {
+    match object.get(name) {
+        Some(found) if found != expected => Err(format!(".{name}: {found} contradicts the type, which is {expected}")),
+        _ => Ok(()),
+    }
+}
+
+fn parse(kind: VariableKind, text: &str) -> Result<Value, String> {
+    Value::from_text(kind, text.as_bytes()).map_err(|error| format!(": {error}"))
+}
+
+/// The digits of a number as they stand in the file.
+fn number(name: &str, value: &Json) -> Result<String, String> {
+    match value {
+        Json::Number(number) => Ok(number.to_string()),
+        _ => Err(format!(".{name}: a number is expected")),
+    }
+}
+
+/// A word of flags as the text form takes it; nothing for 0.
+fn flags(key: &str, name: &str, value: &Json) -> Result<Option<String>, String> {
+    let code = value.as_u64().and_then(|code| u32::try_from(code).ok());
+    let code = code.ok_or_else(|| format!(".{name}: a number from 0 to 4294967295 is expected"))?;
+    Ok((code != 0).then(|| format!("{key}={code:#x}")))
+}
+
+fn axes(value: &Value) -> Vec<NamedAxis> {
+    match value {
+        Value::Position(position) => position.named_axes().to_vec(),
+        Value::Base(position) => position.named_axes().to_vec(),
+        Value::External(position) => position.named_axes().to_vec(),
+        _ => Vec::new(),
+    }
+}
+
+/// `x_mm`, `s_pulses`, `axis_8_pulses`.
+fn key(axis: &NamedAxis) -> String {
+    let unit = suffix(axis.unit);
+    if axis.key.starts_with(|c: char| c.is_ascii_digit()) {
+        format!("axis_{}_{unit}", axis.key)
+    } else {
+        format!("{}_{unit}", axis.key)
+    }
+}
+
+/// `x` of `x_mm`, `8` of `axis_8_pulses`.
+fn axis_of(name: &str) -> Option<&str> {
+    let (axis, unit) = name.rsplit_once('_')?;
+    let known = [units::MILLIMETRE, units::DEGREE, units::PULSE].into_iter().any(|known| suffix(known) == unit);
+    known.then(|| axis.strip_prefix("axis_").unwrap_or(axis))
+}
+
+const fn suffix(unit: Unit) -> &'static str {
+    unit.symbol
+}
+
+/// An exact decimal as a number of JSON.
+fn amount(quantity: Quantity) -> Json {
+    let text = quantity.to_string();
+    serde_json::from_str(&text).unwrap_or(Json::String(text))
+}
+
+fn type_name(kind: PositionKind) -> String {
+    PositionKind::ALL
+        .iter()
+        .find(|row| row.0 == kind)
+        .map_or_else(|| format!("type{}", kind.word()), |row| row.2.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn object(json: &Json) -> Map<String, Json> {
+        json.as_object().cloned().unwrap()
+    }
+
+    fn data(kind: VariableKind, text: &str) -> (Value, Json) {
+        let value = parse(kind, text).unwrap();
+        let json = serde_json::to_value(PositionData::of(&value).unwrap()).unwrap();
+        (value, json)
+    }
+
+    #[test]
+    fn positions_survive_json() {
+        for (kind, text) in [
+            (
+                VariableKind::P,
+                "base:x=100.000,y=-0.001,z=0.000,rx=180.0000,ry=0.0001,rz=-90.0000,tool=1,form=back+0x300",
+            ),
+            (VariableKind::P, "pulse:s=1000,l=-2000,u=3000,r=-4000,b=5000,t=-6000,e=7,8=-2147483648,ext=w-ge180"),
+            (VariableKind::P, "type5:1=1,2=2,3=3,4=4,5=5,6=6"),
+            (VariableKind::P, "base:x=2147483.647,y=1,z=1,rx=0,ry=0,rz=214748.3647,re=1.5"),
+            (VariableKind::Bp, "base:x=1.5,y=-2.5,z=0"),
+            (VariableKind::Bp, "pulse:1=-1"),
+            (VariableKind::Ex, "pulse:1=100,2=200"),
+        ] {
+            let (value, json) = data(kind, text);
+            let whole = object(&json);
+            assert_eq!(read(kind, &whole), Ok(value.clone()), "{text}");
+            let mut fields = whole.clone();
+            fields.remove("text");
+            assert_eq!(read(kind, &fields), Ok(value.clone()), "{text}");
+            let text_alone = Map::from_iter([("text".to_owned(), whole["text"].clone())]);
+            assert_eq!(read(kind, &text_alone), Ok(value), "{text}");
+        }
+    }
+
+    #[test]
+    fn names_carry_units() {
+        let (_, json) = data(VariableKind::P, "base:x=100.000,y=0,z=0.5,rx=180,ry=0,rz=0,tool=1");
+        assert_eq!(json["x_mm"], json!(100.0));
+        assert_eq!(json["rx_deg"], json!(180.0));
+        assert_eq!(json["type_code"], json!(16));
+        let (_, json) = data(VariableKind::Ex, "pulse:1=100");
+        assert_eq!(json, json!({"text": "pulse:1=100", "type": "pulse", "type_code": 0, "axis_1_pulses": 100}));
+    }
+
+    #[test]
+    fn contradictions_are_refused() {
+        let (_, json) = data(VariableKind::P, "base:x=1,y=2,z=3,rx=4,ry=5,rz=6");
+        let changed = |name: &str, value: Json| {
+            let mut object = object(&json);
+            object.insert(name.to_owned(), value);
+            read(VariableKind::P, &object).unwrap_err()
+        };
+        assert!(changed("x_mm", json!(9)).contains("remove text"));
+        assert!(changed("x_mm", json!("9")).starts_with(".x_mm: a number"));
+        assert!(changed("x_pulses", json!(9)).contains("twice"));
+        assert!(changed("form_code", json!(1)).contains("form"));
+        assert!(changed("type_code", json!(17)).starts_with(".type_code"));
+        assert!(changed("speed", json!(17)).starts_with(".speed: no part"));
+        let mut lone = object(&json);
+        lone.remove("x_mm");
+        lone.insert("x_deg".to_owned(), json!(1));
+        assert!(read(VariableKind::P, &lone).unwrap_err().starts_with(".x_deg: no part of this position"));
+        lone.remove("type");
+        assert!(read(VariableKind::P, &lone).unwrap_err().starts_with(": type is missing"));
+    }
+}

@@ -1,0 +1,218 @@
+//! `yerc var restore`.
+
+use std::collections::HashMap;
+use std::io::Read as _;
+use std::path::PathBuf;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value as Json;
+
+use super::super::Family;
+use super::super::orders::usage;
+use super::super::writes::{Order, write_all};
+use super::dump::{FORMAT, VERSION};
+use super::entry::Reading;
+use super::{listed, parse_kind};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::text::Encoding;
+use crate::controller::yerc::Model;
+use crate::controller::yerc::variables::{Reference, Value, VariableKind, WriteStep, plan_writes};
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// What to write back.
+#[derive(Debug, Args)]
+#[command(after_help = "The whole file is checked before anything is sent. What is null in it is left alone on the \
+                        controller. If the work is interrupted or refused, the message says which variables were \
+                        written and which were not.")]
+pub struct Restore {
+    /// What `var dump` wrote
+    file: PathBuf,
+    /// Only these kinds: B,I,D,R,S,P,BP,EX
+    #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = parse_kind)]
+    only: Vec<VariableKind>,
+}
+
+impl Command for Restore {
+    type Family = Family;
+    type Report = Restored;
+    const ID: &'static str = "yerc.var.restore";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
+        let Context { link, screen, .. } = context;
+        let shown = self.file.display().to_string();
+        let wrong = |error: String| {
+            Failure::usage(format!("{shown}: {error}")).hint("nothing was sent; correct the file, or take a new dump")
+        };
+        let dump = Dump::parse(&self.read()?, link.model).map_err(wrong)?;
+        let kept: Vec<(Reference, Option<Value>)> =
+            dump.variables.into_iter().filter(|(reference, _)| self.wants(*reference)).collect();
+        let undefined: Vec<Reference> =
+            kept.iter().filter(|(_, value)| value.is_none()).map(|(reference, _)| *reference).collect();
+        let values: Vec<(u16, Value)> =
+            kept.into_iter().filter_map(|(reference, value)| Some((reference.number, value?))).collect();
+        let steps = plan_writes(&values).map_err(usage)?;
+        if steps.is_empty() {
+            return Err(Failure::usage(format!("{shown} holds no values of the kinds wanted"))
+                .hint("--only chooses the kinds; what is null in the file is left alone"));
+        }
+        if dump.model != link.model {
+            screen.note(&format!("the dump was taken from a {}, this is a {}", dump.model, link.model));
+        }
+        if dump.encoding != link.encoding {
+            screen.note(&format!("strings are written in {}, as the dump says", dump.encoding));
+        }
+        if !undefined.is_empty() {
+            screen.note(&format!("left alone, undefined in the dump: {}", listed(undefined.iter().copied())));
+        }
+        write_all(link, screen, &steps).await?;
+        let written: Vec<Reference> = steps.iter().flat_map(WriteStep::written).copied().collect();
+        Ok(Restored {
+            file: shown,
+            written: written.len(),
+            written_names: listed(written),
+            left_alone: undefined.len(),
+            left_alone_names: listed(undefined),
+            requests: steps.len(),
+        })
+    }
+}
+
+/// A dump of every variable that a controller can have is smaller.
+const MOST: u64 = 256 << 20;
+
+impl Restore {
+    fn wants(&self, reference: Reference) -> bool {
+        // Kinds of the flag name strings by their 32-byte form.
+        self.only.is_empty() || self.only.iter().any(|kind| kind.letters() == reference.kind.letters())
+    }
+
+    fn read(&self) -> Result<String, Failure> {
+        let failed = |error| Failure::io(self.file.display(), &error);
+        let file = std::fs::File::open(&self.file).map_err(failed)?;
+        let mut text = String::new();
+        file.take(MOST).read_to_string(&mut text).map_err(failed)?;
+        Ok(text)
+    }
+}
+
+/// A dump that is right from the first byte to the last.
+#[derive(Debug)]
+struct Dump {
+    model: Model,
+    encoding: Encoding,
+    variables: Vec<(Reference, Option<Value>)>,
+}
+
+impl Dump {
+    /// Reads a file for a robot of `model`. The error begins with the place in the JSON.
+    fn parse(text: &str, model: Model) -> Result<Self, String> {
+        let json: Json = serde_json::from_str(text).map_err(|error| format!("no JSON: {error}"))?;
+        if json.get("format").and_then(Json::as_str) != Some(FORMAT) {
+            return Err(format!("format: \"{FORMAT}\" is expected; this is no dump of variables"));
+        }
+        if json.get("version").and_then(Json::as_u64) != Some(VERSION) {
+            return Err(format!("version: {VERSION} is expected; a newer armctl may have written it"));
+        }
+        if json.get("family").is_some_and(|family| family != "yerc") {
+            return Err("family: the dump is of another family than yerc".to_owned());
+        }
+        let text =
+            |name: &str| json.get(name).and_then(Json::as_str).ok_or_else(|| format!("{name}: a name is expected"));
+        let taken_from: Model = text("model")?.parse().map_err(|error| format!("model: {error}"))?;
+        let encoding: Encoding = text("encoding")?.parse().map_err(|error| format!("encoding: {error}"))?;
+        let entries = json.get("variables").and_then(Json::as_array).ok_or("variables: a list is expected")?;
+        let reading = Reading { model, encoding };
+        let mut seen = HashMap::new();
+        let mut variables = Vec::with_capacity(entries.len());
+        for (index, entry) in entries.iter().enumerate() {
+            let (reference, value) = reading.entry(entry).map_err(|error| format!("variables[{index}]{error}"))?;
+            if let Some(first) = seen.insert(reference, index) {
+                return Err(format!("variables[{index}].name: {reference} is in variables[{first}] already"));
+            }
+            variables.push((reference, value));
+        }
+        Ok(Self { model: taken_from, encoding, variables })
+    }
+}
+
+impl Order for WriteStep {
+    type Item = Reference;
+
+    fn items(&self) -> Vec<Reference> {
+        self.written().to_vec()
+    }
+
+    fn listed(items: Vec<Reference>) -> String {
+        listed(items)
+    }
+}
+
+/// What was written back.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Restored {
+    file: String,
+    /// How many variables.
+    written: usize,
+    /// Which, as in `B0..B99, I0..I99`.
+    written_names: String,
+    /// How many the dump has no value for.
+    left_alone: usize,
+    left_alone_names: String,
+    /// Frames it took.
+    requests: usize,
+}
+
+impl Report for Restored {
+    fn view(&self) -> View {
+        View::fields([
+            ("written", self.written_names.as_str().into()),
+            ("left alone", if self.left_alone == 0 { "-".into() } else { self.left_alone_names.as_str().into() }),
+            ("variables", self.written.into()),
+            ("requests", self.requests.into()),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn dump(variables: &Json) -> String {
+        json!({"format": FORMAT, "version": 1, "model": "dx200", "encoding": "shift_jis", "variables": variables})
+            .to_string()
+    }
+
+    #[test]
+    fn the_error_names_the_place() {
+        let error = |text: &str| Dump::parse(text, Model::Dx200).unwrap_err();
+        let entry = |entry: Json| error(&dump(&json!([{"name": "B0", "value": 1}, entry])));
+        assert_eq!(
+            entry(json!({"name": "B1", "value": 256})),
+            "variables[1].value: '256' is not a number from 0 to 255"
+        );
+        assert_eq!(entry(json!({"name": "B0", "value": 2})), "variables[1].name: B0 is in variables[0] already");
+        assert!(error("{").starts_with("no JSON: "));
+        assert!(error("{}").starts_with("format: "));
+        assert!(error(&dump(&json!([])).replace("\"version\":1", "\"version\":2")).starts_with("version: "));
+        assert!(error(&dump(&json!({}))).starts_with("variables: "));
+        assert!(error(&dump(&json!([])).replace("shift_jis", "klingon")).starts_with("encoding: "));
+    }
+
+    #[test]
+    fn strings_must_fit_the_robot() {
+        let text = dump(&json!([{"name": "S0", "value": "12345678901234567"}]));
+        assert!(Dump::parse(&text, Model::Dx200).is_ok());
+        let error = Dump::parse(&text, Model::Fs100).unwrap_err();
+        assert!(error.starts_with("variables[0].value: the text has 17 bytes"), "{error}");
+    }
+}

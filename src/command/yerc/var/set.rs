@@ -1,0 +1,317 @@
+//! `yerc var set`.
+
+use std::io::Read as _;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value as Json;
+
+use super::super::Family;
+use super::super::orders::usage;
+use super::super::writes::{Order, write_all};
+use super::entry::{Entry, Reading, position_in};
+use super::{in_form, listed};
+use crate::command::yerc::link::Link;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::yerc::payload::PayloadError;
+use crate::controller::yerc::query::{Query, WriteField};
+use crate::controller::yerc::request::Request;
+use crate::controller::yerc::variables::{Reference, Value, VariableKind, WriteStep, plan_writes};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
+
+/// Variables to write.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Every value is checked before the first is sent; runs of numbers go in one request. A position \
+                        is pulse:s=0,l=0,u=0,r=0,b=0,t=0 or base:x=…,y=…,z=…,rx=…,ry=…,rz=… in mm and degrees, with \
+                        tool=, user=, form=back+lower+noflip, or @FILE with what `var get P1 --json` printed. BP takes \
+                        base: or pulse:, EX pulse:1=…. P1.tool=2, P1.user=1 and BP5.axis1=-1 write that word alone and \
+                        keep the others; axis words count steps of the wire (pulses, or 0.001 mm and 0.0001 degree)."
+)]
+pub struct Set {
+    /// Such as B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE
+    #[arg(required = true, value_name = "REF=VALUE")]
+    assignments: Vec<Assignment>,
+    /// Write strings by the 16-byte commands, also on a DX200
+    #[arg(long)]
+    s16: bool,
+}
+
+/// `B0=255`, taken apart, and checked as far as that goes without the robot's settings.
+#[derive(Debug, Clone, PartialEq)]
+struct Assignment {
+    reference: Reference,
+    input: Input,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Input {
+    Ready(Value),
+    /// A string, in an encoding yet to be known.
+    Text(String),
+    /// A position in a JSON file.
+    File(PathBuf),
+    /// One word of a position.
+    Field(WriteField),
+}
+
+impl FromStr for Assignment {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, value) = text.split_once('=').ok_or("a variable, '=' and a value are expected, as in B0=255")?;
+        if let Some((name, field)) = name.split_once('.') {
+            let reference: Reference = name.parse().map_err(message)?;
+            return Ok(Self { reference, input: Input::Field(field_of(reference, field, value)?) });
+        }
+        let reference: Reference = name.parse().map_err(message)?;
+        let kind = reference.kind;
+        let input = match value.strip_prefix('@') {
+            Some(path) if kind.is_position() => Input::File(path.into()),
+            _ if matches!(kind, VariableKind::S16 | VariableKind::S32) => Input::Text(value.to_owned()),
+            _ => {
+                let value = Value::from_text(kind, value.as_bytes()).map_err(message)?;
+                if let Value::Position(position) = &value {
+                    in_range("tool", position.tool)?;
+                }
+                Input::Ready(value)
+            }
+        };
+        Ok(Self { reference, input })
+    }
+}
+
+/// Tools are 0 to 63 (3.3.16).
+const LAST_TOOL: u32 = 63;
+
+fn in_range(what: &str, number: u32) -> Result<u32, String> {
+    if number <= LAST_TOOL {
+        Ok(number)
+    } else {
+        Err(format!("{what}: {number} is not a number from 0 to {LAST_TOOL}"))
+    }
+}
+
+/// Attribute and word of a single field (3.3.16 to 3.3.18).
+fn field_of(reference: Reference, field: &str, value: &str) -> Result<WriteField, String> {
+    let kind = reference.kind;
+    if !kind.is_position() {
+        return Err(format!("{reference} has no parts; only positions (P, BP, EX) have"));
+    }
+    // The words before the axes: type, form, tool, user and extended form of a P, the type alone of the others.
+    let before = if kind == VariableKind::P { 5 } else { 1 };
+    let axis =
+        field.strip_prefix("axis").and_then(|number| number.parse::<u8>().ok()).filter(|axis| matches!(axis, 1..=8));
+    let (attribute, word) = match (field, axis) {
+        ("tool" | "user", _) if kind == VariableKind::P => {
+            let number = value.parse().map_err(|_| format!("'{value}' is not a number from 0 to {LAST_TOOL}"))?;
+            (if field == "tool" { 3 } else { 4 }, in_range(field, number)?.to_le_bytes())
+        }
+        (_, Some(axis)) => {
+            let steps: i32 = value.parse().map_err(|_| {
+                format!("'{value}' is not a number from {} to {} (steps of the wire)", i32::MIN, i32::MAX)
+            })?;
+            (before + axis, steps.to_le_bytes())
+        }
+        _ if kind == VariableKind::P => {
+            return Err(format!("'{field}' is no part to write; there are tool, user, axis1 to axis8"));
+        }
+        _ => return Err(format!("'{field}' is no part to write; there are axis1 to axis8")),
+    };
+    WriteField::new(kind, reference.number, attribute, word).map_err(message)
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "made for map_err")]
+fn message(error: impl ToString) -> String {
+    error.to_string()
+}
+
+impl Command for Set {
+    type Family = Family;
+    type Report = Written;
+    const ID: &'static str = "yerc.var.set";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Written, Failure> {
+        let Context { link, screen, .. } = context;
+        let mut values = Vec::new();
+        let mut fields = Vec::new();
+        let mut named: Vec<(Reference, u8)> = Vec::new();
+        for assignment in &self.assignments {
+            let reference = in_form(assignment.reference, link.model, self.s16);
+            let part = match &assignment.input {
+                Input::Field(field) => {
+                    fields.push(Change::Field(reference, field.clone()));
+                    field.request().attribute
+                }
+                input => {
+                    values.push((reference, value_of(reference, input, link)?));
+                    0
+                }
+            };
+            if named.contains(&(reference, part)) {
+                return Err(Failure::usage(format!("{reference} is given twice")).hint("give each variable one value"));
+            }
+            named.push((reference, part));
+        }
+        let plain: Vec<(u16, Value)> =
+            values.iter().map(|(reference, value)| (reference.number, value.clone())).collect();
+        let steps = plan_writes(&plain).map_err(usage)?;
+        let changes: Vec<Change> = steps.into_iter().map(Change::Values).chain(fields).collect();
+        write_all(link, screen, &changes).await?;
+        let entries = values.into_iter().map(|(reference, value)| Entry::new(reference, &Ok(value), link.encoding));
+        let parts = self.assignments.iter().filter_map(Assignment::part);
+        Ok(Written { written: entries.collect(), parts: parts.collect() })
+    }
+}
+
+impl Assignment {
+    fn part(&self) -> Option<Part> {
+        let Input::Field(field) = &self.input else { return None };
+        let request = field.request();
+        let word = request.data.first_chunk().map_or(0, |word| i32::from_le_bytes(*word));
+        Some(Part { name: self.reference.to_string(), attribute: request.attribute, value: word })
+    }
+}
+
+fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, Failure> {
+    let wrong = |error: String| Failure::usage(format!("{reference}: {error}"));
+    match input {
+        Input::Ready(value) => Ok(value.clone()),
+        Input::Text(text) => {
+            let bytes = link.encode(&reference.to_string(), text)?;
+            Value::from_text(reference.kind, &bytes).map_err(|error| {
+                wrong(error.to_string()).hint("shorten the text; full-width characters take two bytes each")
+            })
+        }
+        Input::File(path) => {
+            let wrong = |error: String| Failure::usage(format!("{}: {error}", path.display()));
+            let json: Json = serde_json::from_str(&read(path)?).map_err(|error| wrong(error.to_string()))?;
+            let position = position_in(&json).map_err(|error| wrong(error.to_owned()))?;
+            let reading = Reading { model: link.model, encoding: link.encoding };
+            reading.value(reference.kind, position).map_err(|error| {
+                let error = error.trim_start_matches([':', '.', ' ']);
+                wrong(error.to_owned()).hint(format!("it must be a position of {}", reference.kind.letters()))
+            })
+        }
+        Input::Field(_) => Err(wrong("a part is no value".to_owned())),
+    }
+}
+
+/// A position takes a kilobyte; this is room for a whole report around it.
+const MOST: u64 = 1 << 20;
+
+fn read(path: &PathBuf) -> Result<String, Failure> {
+    let failed = |error| Failure::io(path.display(), &error);
+    let file = std::fs::File::open(path).map_err(failed)?;
+    let mut text = String::new();
+    file.take(MOST).read_to_string(&mut text).map_err(failed)?;
+    Ok(text)
+}
+
+/// A request of `var set`.
+#[derive(Debug, Clone, PartialEq)]
+enum Change {
+    Values(WriteStep),
+    Field(Reference, WriteField),
+}
+
+impl Query for Change {
+    type Answer = ();
+
+    fn request(&self) -> Request {
+        match self {
+            Self::Values(step) => step.request(),
+            Self::Field(_, field) => field.request(),
+        }
+    }
+
+    fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
+        Ok(())
+    }
+}
+
+impl Order for Change {
+    type Item = Reference;
+
+    fn items(&self) -> Vec<Reference> {
+        match self {
+            Self::Values(step) => step.written().to_vec(),
+            Self::Field(reference, _) => vec![*reference],
+        }
+    }
+
+    fn listed(items: Vec<Reference>) -> String {
+        listed(items)
+    }
+}
+
+/// What the controller confirmed.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Written {
+    /// Whole variables.
+    written: Vec<Entry>,
+    /// Single words of positions.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    parts: Vec<Part>,
+}
+
+/// A word of a position.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Part {
+    /// `P1`.
+    name: String,
+    /// Its place, counted from 1, the type.
+    attribute: u8,
+    value: i32,
+}
+
+impl Report for Written {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["written", "value"], "nothing to write");
+        let numbers = self.written.iter().all(Entry::is_number);
+        for entry in &self.written {
+            let value = if numbers { Cell::number(entry.shown()) } else { entry.shown().into() };
+            table.row([entry.name().into(), value]);
+        }
+        for part in &self.parts {
+            table.row([format!("{} word {}", part.name, part.attribute).into(), part.value.into()]);
+        }
+        View::table(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(text: &str) -> String {
+        text.parse::<Assignment>().unwrap_err()
+    }
+
+    #[test]
+    fn values_are_checked_before_anything_is_sent() {
+        assert_eq!(error("B0=256"), "'256' is not a number from 0 to 255");
+        assert_eq!(error("B0"), "a variable, '=' and a value are expected, as in B0=255");
+        assert_eq!(
+            error("X0=1"),
+            "'X0' names no variable; there are B, I, D, R, S, P, BP and EX with a number, e.g. B0 or B0..B99"
+        );
+        assert!(error("P1=base:x=1").starts_with("axis 'y' is missing"));
+        assert_eq!(error("P1=pulse:s=0,l=0,u=0,r=0,b=0,t=0,tool=64"), "tool: 64 is not a number from 0 to 63");
+        assert!(error("B0.tool=1").starts_with("B0 has no parts"));
+        assert!(error("P1.form=1").contains("tool, user, axis1 to axis8"));
+        assert!(error("BP1.tool=1").ends_with("there are axis1 to axis8"));
+        assert!(error("EX1.axis9=1").contains("axis1 to axis8"));
+        assert!("S0=".parse::<Assignment>().is_ok());
+        assert!("S0=@home".parse::<Assignment>().is_ok_and(|it| it.input == Input::Text("@home".to_owned())));
+    }
+}

@@ -1,0 +1,117 @@
+//! Several writes in a row, with an exact account of what was done when one of them fails.
+
+use super::link::Link;
+use crate::command::run::interruptible;
+use crate::controller::yerc::query::Query;
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+
+/// A write and the names of what it writes.
+pub trait Order: Query<Answer = ()> {
+    /// What it writes: a variable, a register, a group of signals.
+    type Item: Clone;
+
+    /// All that it writes.
+    fn items(&self) -> Vec<Self::Item>;
+
+    /// Names in a few words.
+    fn listed(items: Vec<Self::Item>) -> String;
+}
+
+/// Sends the orders one after the other. The first that fails ends it, and the failure says what was written, what may
+/// have been, and what was not. So does Ctrl-C.
+pub async fn write_all<O: Order>(link: &mut Link, screen: &Screen, orders: &[O]) -> Result<(), Failure> {
+    if link.is_dry() {
+        link.ask_all(orders).await?;
+    }
+    let mut done = 0;
+    let progress = (orders.len() > 1).then(|| screen.spinner("writing"));
+    // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
+    let outcome = interruptible(async {
+        for order in orders {
+            if let Some(progress) = &progress {
+                progress.say(&format!("writing {} ({} of {})", O::listed(order.items()), done + 1, orders.len()));
+            }
+            link.ask(order).await?;
+            done += 1;
+        }
+        Ok(())
+    })
+    .await;
+    let failure = match outcome {
+        Ok(Ok(())) => return Ok(()),
+        Ok(Err(failure)) | Err(failure) => failure,
+    };
+    Err(account(failure, orders, done))
+}
+
+/// The failure, and what became of each order; `done` of them were confirmed, the next one failed.
+fn account<O: Order>(failure: Failure, orders: &[O], done: usize) -> Failure {
+    let refused = failure.kind == Kind::Refused;
+    if refused && orders.len() == 1 {
+        return failure;
+    }
+    let (written, rest) = orders.split_at(done.min(orders.len()));
+    let unknown = if refused { 0 } else { 1.min(rest.len()) };
+    let (unknown, rest) = rest.split_at(unknown);
+    let names = |orders: &[O]| O::listed(orders.iter().flat_map(Order::items).collect());
+    let mut parts = vec![failure.message.trim_end_matches('.').to_owned()];
+    match written {
+        [] => parts.push("nothing was written before".to_owned()),
+        written => parts.push(format!("written: {}", names(written))),
+    }
+    for (words, orders) in [("written or not", unknown), ("not written", rest)] {
+        if !orders.is_empty() {
+            parts.push(format!("{words}: {}", names(orders)));
+        }
+    }
+    let message = parts.join("; ");
+    let hint = failure.hint.clone().unwrap_or_else(|| "read them back before you repeat the command".to_owned());
+    Failure { message, ..failure }.hint(hint)
+}
+
+/// Numbers in the order given, runs as `5..9`.
+pub fn runs(numbers: &[u16]) -> String {
+    let mut runs: Vec<(u16, u16)> = Vec::new();
+    for &number in numbers {
+        match runs.last_mut() {
+            Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
+            _ => runs.push((number, number)),
+        }
+    }
+    let run = |&(first, last): &(u16, u16)| if first == last { first.to_string() } else { format!("{first}..{last}") };
+    runs.iter().map(run).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::yerc::Model;
+    use crate::controller::yerc::variables::{WriteRegisterStep, plan_register_writes};
+
+    fn orders() -> Vec<WriteRegisterStep> {
+        let values: Vec<(u16, u16)> = [0, 1, 2, 10, 20, 21].map(|number| (number, 0)).into();
+        plan_register_writes(Model::Dx200, &values).unwrap()
+    }
+
+    #[test]
+    fn a_failure_says_what_became_of_each() {
+        let refused = Failure::new(Kind::Refused, "the controller refused: no. Because.").hint("x");
+        let message = |failure: &Failure, done| account(failure.clone(), &orders(), done).message;
+        assert_eq!(
+            message(&refused, 1),
+            "the controller refused: no. Because; written: register 0..2; not written: register 10, 20..21"
+        );
+        assert_eq!(
+            message(&refused, 0),
+            "the controller refused: no. Because; nothing was written before; not written: register 0..2, 10, 20..21"
+        );
+        let lost = Failure::new(Kind::OutcomeUnknown, "no answer");
+        assert_eq!(
+            message(&lost, 1),
+            "no answer; written: register 0..2; written or not: register 10; not written: register 20..21"
+        );
+        assert_eq!(account(refused.clone(), &orders()[..1], 0), refused);
+        assert!(account(Failure::new(Kind::Interrupted, "Ctrl-C"), &orders(), 2).hint.is_some());
+    }
+}
