@@ -41,6 +41,8 @@ pub struct Context<'a, F: Family> {
     pub link: &'a mut F::Link,
     /// For progress and notes; reports go back to the caller.
     pub screen: &'a Screen,
+    /// Whether other robots may run the same command, so that files need a folder for each.
+    pub several: bool,
 }
 
 /// How a link may be used.

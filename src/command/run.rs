@@ -241,7 +241,8 @@ impl Run {
         let risk = command.risk();
         let access = Access { granted: risk, dry_run: self.gate.dry_run, trace: self.trace.clone() };
         let mut link = interruptible(F::connect(robot, access, &self.screen)).await??;
-        let context = Context { robot, link: &mut link, screen: &self.screen };
+        let context =
+            Context { robot, link: &mut link, screen: &self.screen, several: self.sources.selection.is_plural() };
         if self.gate.dry_run {
             // Such a link only takes notes; the command gets as far as it can without an answer.
             let noted = {

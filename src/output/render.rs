@@ -35,6 +35,7 @@ pub fn csv(view: &View, robot: Option<&str>) -> String {
                 }
             }
             Section::Text(text) => out.push_str(text),
+            Section::Lines(lines) => out.extend(lines.iter().flat_map(|line| [line.text.as_str(), "\n"])),
         }
     }
     out
@@ -56,6 +57,7 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
             }
             return text;
         }
+        Section::Lines(lines) => return lines.iter().map(|line| painted(line, color) + "\n").collect(),
         Section::Fields(fields) => {
             for (name, cell) in fields {
                 // Values of fields stand on the left: they are of different kinds.
@@ -91,6 +93,19 @@ fn styled(cell: &Cell) -> comfy_table::Cell {
         Tone::Bad => shown.fg(Color::Red),
     };
     if cell.is_number { shown.set_alignment(CellAlignment::Right) } else { shown }
+}
+
+/// A line as wide as it is.
+fn painted(line: &Cell, color: bool) -> String {
+    let text = escape::line(&line.text);
+    let code = match line.tone {
+        Tone::Plain => return text.into_owned(),
+        _ if !color => return text.into_owned(),
+        Tone::Good => 32,
+        Tone::Warning => 33,
+        Tone::Bad => 31,
+    };
+    format!("\x1b[{code}m{text}\x1b[0m")
 }
 
 /// `x (mm)` becomes `x_mm`.
@@ -137,6 +152,14 @@ mod tests {
     #[test]
     fn csv_quotes_what_needs_it() {
         assert_eq!(csv(&sample(), None), "name,x_mm\nてすと,1.000\n\"a,\"\"b\"\"\u{1b}[31m\",-20.500\n");
+    }
+
+    #[test]
+    fn lines_are_coloured_one_by_one() {
+        let lines = || vec![Cell::from("-a\u{1b}[0m").tone(Tone::Bad), Cell::from(" b")];
+        let view = View::default().and(Section::Lines(lines()));
+        assert_eq!(text(&view, 80, false), "-a\\x1b[0m\n b\n");
+        assert_eq!(text(&view, 80, true), "\x1b[31m-a\\x1b[0m\x1b[0m\n b\n");
     }
 
     #[test]

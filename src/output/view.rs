@@ -118,8 +118,10 @@ pub enum Section {
     Fields(Vec<(&'static str, Cell)>),
     /// Rows and columns.
     Table(Table),
-    /// Text of several lines, such as a diff.
+    /// Text of several lines.
     Text(String),
+    /// Lines that are coloured one by one, such as a diff.
+    Lines(Vec<Cell>),
 }
 
 /// A whole report, for a person.

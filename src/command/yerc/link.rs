@@ -252,7 +252,7 @@ impl Link {
         match ended {
             Ended::Answered(reply) => Ok(reply),
             Ended::NoAnswer(counters) => Err(self.silence(counters)),
-            Ended::OutcomeUnknown(counters) => Err(self.unknown(counters)),
+            Ended::OutcomeUnknown(counters) => Err(self.unknown(self.policy.deadline, counters)),
         }
     }
 
@@ -282,6 +282,10 @@ impl Link {
         self.heard(session.counters());
         self.finished = matches!(end, DownloadEnd::Complete { .. }).then_some(session);
         match end {
+            // Only the batch backup changes something, and it is the one with a long first wait.
+            DownloadEnd::NoAnswer { bytes: 0, counters } if request.risk() > Risk::Read => {
+                Err(self.unknown(first_wait.unwrap_or(self.policy.deadline), counters))
+            }
             DownloadEnd::NoAnswer { bytes: 0, counters } => Err(self.silence(counters)),
             DownloadEnd::NoAnswer { bytes, .. } => {
                 Err(Failure::new(Kind::NoAnswer, format!("{}: the transfer broke off after {bytes} bytes", self.label))
@@ -298,9 +302,8 @@ impl Link {
         mut give: impl FnMut() -> Result<Vec<u8>, Failure>,
     ) -> Result<UploadEnd, Failure> {
         if let Transport::Notes(_) = self.transport {
-            let id = self.note(request);
-            self.note_blocks(id, &mut give)?;
-            std::future::pending::<Infallible>().await;
+            self.foresee_upload(request, give)?;
+            return std::future::pending().await;
         }
         self.admit(request).await?;
         // A controller that checks no ids could take a late block of the last upload into this one; a new port ends that.
@@ -363,6 +366,21 @@ impl Link {
         if let Transport::Notes(frames) = &mut self.transport {
             frames.push(json!({ "hex": hex(&request.frame(id)), "about": about }));
         }
+    }
+
+    /// Notes in a dry run a request that follows whatever the answers before it are.
+    pub fn foresee_next(&mut self, request: &Request) {
+        self.note(request);
+    }
+
+    /// Notes in a dry run what [`Link::upload`] would send.
+    pub fn foresee_upload(
+        &mut self,
+        request: &Request,
+        mut give: impl FnMut() -> Result<Vec<u8>, Failure>,
+    ) -> Result<(), Failure> {
+        let id = self.note(request);
+        self.note_blocks(id, &mut give)
     }
 
     /// The last check before anything leaves, and the end of a dry run.
@@ -488,8 +506,7 @@ impl Link {
     }
 
     /// Nobody confirmed something that may have been done.
-    fn unknown(&self, counters: Counters) -> Failure {
-        let waited = self.policy.deadline;
+    fn unknown(&self, waited: Duration, counters: Counters) -> Failure {
         let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
         Failure::new(
             Kind::OutcomeUnknown,

@@ -2,6 +2,7 @@
 
 mod alarm;
 mod axes;
+mod file;
 mod hours;
 mod info;
 mod io;
@@ -36,6 +37,8 @@ commands! {
         Alarm(Verbs<alarm::Alarm>),
         /// Jobs: show, select, start
         Job(Verbs<job::Job>),
+        /// Files: list, get, put, delete, diff, backup, restore, cmos
+        File(Verbs<file::File>),
         /// Where a control group stands: pulses, base coordinates, form
         Position(position::Position),
         /// The axes of each control group

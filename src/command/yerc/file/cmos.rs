@@ -1,0 +1,171 @@
+//! `yerc file cmos` (FS and DX 3.4.5): the batch backup.
+//!
+//! One and the same request makes the backup and fetches it, and no manual says how a controller tells the two apart. So
+//! the first answer decides: without data the backup has been made, and the request goes out once more; with data it is
+//! the file already. The request is never repeated by itself, for a second one might start a second backup.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::local::{Target, folder_of, make_folder, own_folder};
+use super::transfer;
+use crate::command::yerc::Family;
+use crate::command::yerc::link::Link;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::yerc::files;
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::output::progress::Progress;
+use crate::output::view::View;
+use crate::settings::duration;
+
+/// Makes and fetches the batch backup.
+#[derive(Debug, Args)]
+pub struct Cmos {
+    /// Local file for the backup
+    #[arg(required_unless_present = "start_only")]
+    file: Option<PathBuf>,
+    /// Fetch the backup that the controller has made before
+    #[arg(long, conflicts_with = "start_only")]
+    download_only: bool,
+    /// Have it made and leave it on the controller
+    #[arg(long)]
+    start_only: bool,
+    /// Longest wait for the first answer
+    #[arg(long, value_name = "TIME", value_parser = duration::parse, default_value = "15m")]
+    wait: Duration,
+    /// Replace the local file if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+impl Command for Cmos {
+    type Family = Family;
+    type Report = BatchBackup;
+    const ID: &'static str = "yerc.file.cmos";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<BatchBackup, Failure> {
+        let Context { link, screen, robot, several } = context;
+        let Some(file) = self.file.as_deref().filter(|_| !self.start_only) else {
+            return self.start(link, screen).await;
+        };
+        let name = file
+            .file_name()
+            .ok_or_else(|| Failure::usage(format!("{} names no file", file.display())).hint("as in cmos.bin"))?;
+        let folder = own_folder(&folder_of(file), &robot.name, several);
+        let path = if several { folder.join(name) } else { file.to_owned() };
+        let target = Target::new(path, self.force)?;
+        if link.is_dry() {
+            link.foresee_next(&files::batch_backup());
+            if !self.download_only {
+                link.foresee(&files::batch_backup(), "once the backup has been made");
+            }
+            return Ok(BatchBackup { path: None, bytes: None });
+        }
+        if several {
+            make_folder(&folder)?;
+        }
+        self.make_and_fetch(link, screen, &target).await
+    }
+}
+
+impl Cmos {
+    async fn start(&self, link: &mut Link, screen: &Screen) -> Result<BatchBackup, Failure> {
+        let mut waiting = Waiting::new(screen);
+        let came = self.ask(link, |block| {
+            waiting.advance(block);
+            Ok(())
+        });
+        match came.await? {
+            None => Ok(BatchBackup { path: None, bytes: None }),
+            Some(bytes) => Err(Failure::new(
+                Kind::Malformed,
+                format!("the controller did not make a backup but sent one that it had, {bytes} bytes"),
+            )
+            .hint("fetch it with --download-only")),
+        }
+    }
+
+    async fn make_and_fetch(&self, link: &mut Link, screen: &Screen, target: &Target) -> Result<BatchBackup, Failure> {
+        let mut draft = target.begin()?;
+        let requests = if self.download_only { 1 } else { 2 };
+        for _ in 0..requests {
+            let mut waiting = Waiting::new(screen);
+            let came = self.ask(link, |block| {
+                waiting.advance(block);
+                draft.write(block)
+            });
+            if let Some(bytes) = came.await? {
+                draft.commit()?;
+                return Ok(BatchBackup { path: Some(target.path().display().to_string()), bytes: Some(bytes) });
+            }
+        }
+        Err(Failure::new(Kind::Malformed, "the controller says that the backup is made, but does not send it")
+            .hint("fetch it with --download-only, or take it from the pendant; record it with --trace and report it"))
+    }
+
+    async fn ask(
+        &self,
+        link: &mut Link,
+        take: impl FnMut(&[u8]) -> Result<(), Failure>,
+    ) -> Result<Option<u64>, Failure> {
+        transfer::fetch_backup(link, self.wait, take).await.map_err(|failure| match failure.kind {
+            Kind::OutcomeUnknown => failure.hint(
+                "the controller may still be at work: wait, then fetch it with --download-only; --wait is longer",
+            ),
+            _ => failure,
+        })
+    }
+}
+
+/// Shows that the controller takes its time, then what comes.
+struct Waiting<'a> {
+    screen: &'a Screen,
+    progress: Progress,
+    has_begun: bool,
+}
+
+impl<'a> Waiting<'a> {
+    fn new(screen: &'a Screen) -> Self {
+        let what = "the controller makes its backup, which takes about ten minutes";
+        if !screen.can_redraw() {
+            screen.note(what);
+        }
+        Self { screen, progress: screen.spinner(what), has_begun: false }
+    }
+
+    fn advance(&mut self, block: &[u8]) {
+        if !self.has_begun {
+            self.has_begun = true;
+            self.progress = self.screen.bytes_progress("CMOSBK.BIN", None);
+        }
+        self.progress.advance(block.len() as u64);
+    }
+}
+
+/// What became of the batch backup.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct BatchBackup {
+    /// The local file; null if the backup was left on the controller.
+    path: Option<String>,
+    /// Its size.
+    bytes: Option<u64>,
+}
+
+impl Report for BatchBackup {
+    fn view(&self) -> View {
+        match (&self.path, self.bytes) {
+            (Some(path), Some(bytes)) => View::text(format!("the batch backup is in {path}, {bytes} bytes")),
+            _ => View::text("the controller has made its batch backup; --download-only fetches it"),
+        }
+    }
+}

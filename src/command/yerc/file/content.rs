@@ -1,0 +1,313 @@
+//! The content of local files on its way to a controller: read in pieces, checked if it is a job, line endings made
+//! right on request.
+
+use std::fs::File;
+use std::io::{Read as _, Seek as _};
+use std::path::{Path, PathBuf};
+
+use crate::controller::yerc::files::FileType;
+use crate::failure::Failure;
+
+/// A few blocks at a time.
+const PIECE: usize = 1 << 13;
+
+/// A local file to send.
+#[derive(Debug)]
+pub struct Content {
+    file: File,
+    path: PathBuf,
+    /// Bytes as they will be sent.
+    len: u64,
+    fixes: bool,
+}
+
+/// What [`Content::check_job`] does about a job that the controller would not take.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct JobRules {
+    /// Send CR LF where a line ends in a bare LF.
+    pub fix_line_endings: bool,
+    /// Send it although it does not look like a job.
+    pub force: bool,
+}
+
+impl Content {
+    /// Opens a file that can be sent: one that has content.
+    pub fn open(path: &Path) -> Result<Self, Failure> {
+        let content = Self::open_any(path)?;
+        if content.len == 0 {
+            return Err(Failure::usage(format!("{} is empty", path.display()))
+                .hint("the protocol has no transfer without content"));
+        }
+        Ok(content)
+    }
+
+    /// Opens a file that is only looked at.
+    pub fn open_any(path: &Path) -> Result<Self, Failure> {
+        let failed = |error: &std::io::Error| Failure::io(path.display(), error);
+        let found = path.metadata().map_err(|error| failed(&error))?;
+        if !found.is_file() {
+            return Err(Failure::usage(format!("{} is no file", path.display())).hint("name the files one by one"));
+        }
+        let file = File::open(path).map_err(|error| failed(&error))?;
+        Ok(Self { file, path: path.to_owned(), len: found.len(), fixes: false })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Bytes as they will be sent.
+    pub fn size(&self) -> u64 {
+        self.len
+    }
+
+    /// Whether line endings are changed on the way.
+    pub fn fixes_line_endings(&self) -> bool {
+        self.fixes
+    }
+
+    /// Checks a job before anything is sent; other types pass.
+    pub fn check_job(&mut self, kind: FileType, rules: JobRules) -> Result<(), Failure> {
+        if kind != FileType::Jbi {
+            return Ok(());
+        }
+        let mut scan = JobScan::default();
+        let mut pieces = self.pieces()?;
+        loop {
+            let piece = pieces.next_piece()?;
+            if piece.is_empty() {
+                break;
+            }
+            scan.take(&piece);
+        }
+        scan.finish();
+        let path = self.path.display();
+        if let Some(line) = scan.first_bare.filter(|_| !rules.fix_line_endings) {
+            let message = format!("{path}: line {line} ends in a bare LF, {} in all; jobs need CR LF", scan.bare);
+            return Err(Failure::usage(message)
+                .hint(format!("--fix-line-endings sends CR LF there, and leaves {path} as it is")));
+        }
+        if let Some(missing) = scan.missing().filter(|_| !rules.force) {
+            return Err(Failure::usage(format!("{path} does not look like a job: {missing}"))
+                .hint("the controller would refuse it or raise an alarm; --force sends it all the same"));
+        }
+        self.fixes = scan.bare > 0;
+        self.len = self.len.saturating_add(scan.bare);
+        Ok(())
+    }
+
+    /// Its bytes from the beginning.
+    pub fn pieces(&mut self) -> Result<Pieces<'_>, Failure> {
+        self.file.rewind().map_err(|error| Failure::io(self.path.display(), &error))?;
+        Ok(Pieces { file: &self.file, path: &self.path, fixer: self.fixes.then(Fixer::default) })
+    }
+}
+
+/// The bytes of a [`Content`], piece by piece.
+#[derive(Debug)]
+pub struct Pieces<'a> {
+    file: &'a File,
+    path: &'a Path,
+    fixer: Option<Fixer>,
+}
+
+impl Pieces<'_> {
+    /// The next bytes; none at the end.
+    pub fn next_piece(&mut self) -> Result<Vec<u8>, Failure> {
+        let mut piece = Vec::with_capacity(PIECE);
+        let read = self.file.take(PIECE as u64).read_to_end(&mut piece);
+        read.map_err(|error| Failure::io(self.path.display(), &error))?;
+        Ok(match &mut self.fixer {
+            Some(fixer) => fixer.fixed(&piece),
+            None => piece,
+        })
+    }
+}
+
+/// Puts a CR before every LF that has none.
+#[derive(Debug, Default)]
+struct Fixer {
+    previous: u8,
+}
+
+impl Fixer {
+    fn fixed(&mut self, piece: &[u8]) -> Vec<u8> {
+        let mut fixed = Vec::with_capacity(piece.len() + piece.len() / 16);
+        for &byte in piece {
+            if byte == b'\n' && self.previous != b'\r' {
+                fixed.push(b'\r');
+            }
+            fixed.push(byte);
+            self.previous = byte;
+        }
+        fixed
+    }
+}
+
+/// Bytes of a line that are looked at: the words that matter are short.
+const HEAD: usize = 16;
+
+/// What makes a job a job (JBI): `/JOB` first, `NOP` and `END` among its lines, CR LF at their ends. CR and LF are
+/// never a part of a wider character in any encoding of a pendant.
+#[derive(Debug, Default)]
+struct JobScan {
+    head: Vec<u8>,
+    line_len: usize,
+    line: u64,
+    previous: u8,
+    bare: u64,
+    first_bare: Option<u64>,
+    has_header: bool,
+    has_nop: bool,
+    has_end: bool,
+}
+
+impl JobScan {
+    fn take(&mut self, piece: &[u8]) {
+        for &byte in piece {
+            if byte == b'\n' {
+                if self.previous != b'\r' {
+                    self.bare = self.bare.saturating_add(1);
+                    self.first_bare = self.first_bare.or(Some(self.line + 1));
+                }
+                self.end_line();
+            } else {
+                self.line_len = self.line_len.saturating_add(1);
+                if self.head.len() < HEAD {
+                    self.head.push(byte);
+                }
+            }
+            self.previous = byte;
+        }
+    }
+
+    fn finish(&mut self) {
+        if self.line_len > 0 {
+            self.end_line();
+        }
+    }
+
+    fn end_line(&mut self) {
+        if self.line_len <= HEAD {
+            let word = self.head.trim_ascii();
+            self.has_header |= self.line == 0 && word == b"/JOB";
+            self.has_nop |= word == b"NOP";
+            self.has_end |= word == b"END";
+        }
+        self.line = self.line.saturating_add(1);
+        self.line_len = 0;
+        self.head.clear();
+    }
+
+    fn missing(&self) -> Option<&'static str> {
+        match (self.has_header, self.has_nop, self.has_end) {
+            (false, ..) => Some("its first line is not /JOB"),
+            (_, false, _) => Some("it has no line NOP"),
+            (.., false) => Some("it has no line END"),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn content(bytes: &[u8]) -> (tempfile::NamedTempFile, Content) {
+        let mut file = tempfile::NamedTempFile::new().unwrap();
+        file.write_all(bytes).unwrap();
+        let content = Content::open(file.path()).unwrap();
+        (file, content)
+    }
+
+    fn read(content: &mut Content) -> Vec<u8> {
+        let mut pieces = content.pieces().unwrap();
+        std::iter::from_fn(|| Some(pieces.next_piece().unwrap()).filter(|piece| !piece.is_empty())).flatten().collect()
+    }
+
+    fn check(bytes: &[u8], rules: JobRules) -> Result<Vec<u8>, Failure> {
+        let (_file, mut content) = content(bytes);
+        content.check_job(FileType::Jbi, rules)?;
+        let sent = read(&mut content);
+        assert_eq!(sent.len() as u64, content.size());
+        Ok(sent)
+    }
+
+    const JOB: &[u8] = b"/JOB\r\n//NAME A\r\nNOP\r\n'\x83\x5c\0\r\n   END\r\n";
+    const FIX: JobRules = JobRules { fix_line_endings: true, force: false };
+
+    #[test]
+    fn a_job_goes_as_it_is() {
+        assert_eq!(check(JOB, JobRules::default()).unwrap(), JOB);
+        assert_eq!(check(JOB, FIX).unwrap(), JOB);
+        assert_eq!(check(b"/JOB\r\nNOP\r\nEND", JobRules::default()).unwrap(), b"/JOB\r\nNOP\r\nEND");
+    }
+
+    #[test]
+    fn a_bare_line_feed_is_refused_or_fixed() {
+        let job = b"/JOB\r\nNOP\n\r\nEND\n";
+        let failure = check(job, JobRules { force: true, ..JobRules::default() }).unwrap_err();
+        assert_eq!(failure.kind.exit(), 2);
+        assert!(failure.message.ends_with("line 2 ends in a bare LF, 2 in all; jobs need CR LF"), "{failure}");
+        assert!(failure.hint.unwrap().starts_with("--fix-line-endings"));
+        assert_eq!(check(job, FIX).unwrap(), b"/JOB\r\nNOP\r\n\r\nEND\r\n");
+    }
+
+    #[test]
+    fn what_is_no_job_is_named() {
+        for (bytes, missing) in [
+            (&b"NOP\r\nEND\r\n"[..], "/JOB"),
+            (b"\xef\xbb\xbf/JOB\r\nNOP\r\nEND\r\n", "/JOB"),
+            (b"/JOB\r\nEND\r\n", "NOP"),
+            (b"/JOB\r\nNOPE\r\nNOP\r\nENDE\r\n", "END"),
+            (b"/JOB\rNOP\rEND\r", "/JOB"),
+        ] {
+            let failure = check(bytes, JobRules::default()).unwrap_err();
+            assert!(failure.message.contains(missing), "{failure}");
+            assert_eq!(check(bytes, JobRules { force: true, ..JobRules::default() }).unwrap(), bytes);
+        }
+    }
+
+    #[test]
+    fn other_types_are_any_bytes() {
+        let (_file, mut content) = content(b"\0\n\x80");
+        content.check_job(FileType::Dat, FIX).unwrap();
+        assert_eq!(read(&mut content), b"\0\n\x80");
+    }
+
+    #[test]
+    fn nothing_and_no_file_are_no_content() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        assert_eq!(Content::open(file.path()).unwrap_err().kind.exit(), 2);
+        assert_eq!(Content::open(Path::new(".")).unwrap_err().kind.exit(), 2);
+        assert_eq!(Content::open(Path::new("/nowhere/a.jbi")).unwrap_err().kind.exit(), 1);
+    }
+
+    proptest! {
+        #[test]
+        fn fixing_adds_only_what_was_missing(bytes in prop::collection::vec(
+            prop::sample::select(b"\r\n\nA\0\x83".to_vec()), 0..60), cut in 0usize..60)
+        {
+            let (head, tail) = bytes.split_at(cut.min(bytes.len()));
+            let mut fixer = Fixer::default();
+            let fixed = [fixer.fixed(head), fixer.fixed(tail)].concat();
+            let mut scan = JobScan::default();
+            scan.take(&fixed);
+            prop_assert_eq!(scan.bare, 0);
+            prop_assert_eq!(&Fixer::default().fixed(&fixed), &fixed);
+            let mut scan = JobScan::default();
+            scan.take(&bytes);
+            prop_assert_eq!(fixed.len() as u64, bytes.len() as u64 + scan.bare);
+            // Without its CRs before LFs, each is the same text.
+            let plain = |text: &[u8]| text.iter().enumerate()
+                .filter(|(at, byte)| !(**byte == b'\r' && text.get(at + 1) == Some(&b'\n')))
+                .map(|(_, byte)| *byte).collect::<Vec<_>>();
+            prop_assert_eq!(plain(&fixed), plain(&bytes));
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! A local file to the controller, with all that may be wanted around it: reading it back, and replacing a job that is
+//! already there without ever leaving it nowhere.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::compare::{Comparer, Comparison};
+use super::content::Content;
+use super::local::{Target, folder_of, local_name};
+use super::results::FileResult;
+use super::transfer;
+use crate::command::yerc::link::Link;
+use crate::controller::yerc::files::FileName;
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+
+/// A file to send.
+#[derive(Debug)]
+pub struct Delivery {
+    /// Its name on the controller.
+    pub file: FileName,
+    /// Its content.
+    pub content: Content,
+}
+
+/// What is wanted beyond sending.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Manner {
+    /// Read it back and compare.
+    pub verify: bool,
+    /// Delete a job of that name that the controller does not overwrite by itself.
+    pub replace: bool,
+}
+
+/// Sends a file and notes in `result` what was done.
+pub async fn deliver(
+    link: &mut Link,
+    screen: &Screen,
+    delivery: &mut Delivery,
+    manner: Manner,
+    result: &mut FileResult,
+) -> Result<Option<u64>, Failure> {
+    let bytes = match send(link, screen, delivery).await {
+        Err(failure) if transfer::is_job_exists(&failure) => {
+            if !manner.replace {
+                return Err(failure.hint(
+                    "--replace deletes that job and sends this one, and puts the old one back if that fails; --as sends it \
+                     under another name",
+                ));
+            }
+            let bytes = replace(link, screen, delivery).await?;
+            result.notes.push("replaced");
+            bytes
+        }
+        sent => sent?,
+    };
+    if delivery.content.fixes_line_endings() {
+        result.notes.push("line_endings_fixed");
+    }
+    if manner.verify {
+        verify(link, screen, delivery).await?;
+        result.notes.push("verified");
+    }
+    Ok(Some(bytes))
+}
+
+async fn send(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<u64, Failure> {
+    let name = link.encoding.decode(delivery.file.as_bytes());
+    let mut progress = screen.bytes_progress(&name, Some(delivery.content.size()));
+    transfer::send(link, &delivery.file, &mut delivery.content, &mut progress).await
+}
+
+/// Reads the file back and compares it byte for byte.
+async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<(), Failure> {
+    let name = link.encoding.decode(delivery.file.as_bytes());
+    let mut progress = screen.bytes_progress(&format!("{name} (reading back)"), Some(delivery.content.size()));
+    let path = delivery.content.path().display().to_string();
+    let mut comparer = Comparer::new(delivery.content.pieces()?);
+    transfer::fetch(link, &delivery.file, |block| {
+        progress.advance(block.len() as u64);
+        comparer.take(block)
+    })
+    .await
+    .map_err(|failure| Failure { message: format!("sent, but not read back: {}", failure.message), ..failure })?;
+    match comparer.finish()? {
+        Comparison { first_difference: None, .. } => Ok(()),
+        Comparison { controller_bytes, local_bytes, first_difference: Some(at) } => Err(Failure::new(
+            Kind::Malformed,
+            format!(
+                "{name}: the controller gives back other bytes than were sent: {controller_bytes} against \
+                 {local_bytes}, the first difference at byte {at}"
+            ),
+        )
+        .hint(format!("`yerc file diff {name} {path}` shows them; a controller may rewrite the header of a job"))),
+    }
+}
+
+/// Sends a file in the place of the job that is there. A copy of that job lies on the disk from before it is deleted
+/// until the new one is there.
+async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<u64, Failure> {
+    let mut old = OldCopy::fetch(link, screen, delivery).await?;
+    old.is_needed = true;
+    if let Err(failure) = transfer::remove(link, &delivery.file).await {
+        old.is_needed = failure.kind == Kind::OutcomeUnknown;
+        return Err(old.told(failure));
+    }
+    let failure = match send(link, screen, delivery).await {
+        Ok(bytes) => {
+            old.is_needed = false;
+            return Ok(bytes);
+        }
+        Err(failure) => failure,
+    };
+    if failure.kind != Kind::Refused {
+        return Err(old.told(failure));
+    }
+    let mut back = Delivery { file: delivery.file.clone(), content: Content::open(&old.path)? };
+    match send(link, screen, &mut back).await {
+        Ok(_) => {
+            old.is_needed = false;
+            Err(Failure { message: format!("{} The old job was put back", failure.message), ..failure })
+        }
+        Err(second) => {
+            let message = format!("{} The old job could not be put back: {}", failure.message, second.message);
+            Err(old.told(Failure { message, ..failure }))
+        }
+    }
+}
+
+/// The copy of a job that is about to be deleted. It is removed again unless it is all that is left of the job.
+#[derive(Debug)]
+struct OldCopy {
+    path: PathBuf,
+    screen: Screen,
+    is_needed: bool,
+    is_told: bool,
+}
+
+impl OldCopy {
+    async fn fetch(link: &mut Link, screen: &Screen, delivery: &Delivery) -> Result<Self, Failure> {
+        let name = link.encoding.decode(delivery.file.as_bytes());
+        let mut progress = screen.bytes_progress(&format!("{name} (copy of the old one)"), None);
+        let local = local_name(link.encoding, delivery.file.as_bytes());
+        let target = Self::place(&folder_of(delivery.content.path()), &local)?;
+        let path = target.path().to_owned();
+        let mut draft = target.begin()?;
+        transfer::fetch(link, &delivery.file, |block| {
+            progress.advance(block.len() as u64);
+            draft.write(block)
+        })
+        .await?;
+        draft.commit()?;
+        Ok(Self { path, screen: *screen, is_needed: false, is_told: false })
+    }
+
+    /// The first name that is free: `A.JBI.replaced`, `A.JBI.replaced-2`.
+    fn place(folder: &Path, local: &str) -> Result<Target, Failure> {
+        let free = |path: &PathBuf| path.symlink_metadata().is_err();
+        let numbered = (2..1000).map(|number| folder.join(format!("{local}.replaced-{number}")));
+        let path = std::iter::once(folder.join(format!("{local}.replaced"))).chain(numbered).find(free);
+        let path = path.ok_or_else(|| {
+            Failure::local(format!("{}: too many copies of replaced jobs", folder.display())).hint("move them away")
+        })?;
+        Target::new(path, false)
+    }
+
+    /// A failure that says where the copy is.
+    fn told(&mut self, failure: Failure) -> Failure {
+        if !self.is_needed {
+            return failure;
+        }
+        self.is_told = true;
+        Failure { message: format!("{}. The old job is kept in {}", failure.message, self.path.display()), ..failure }
+    }
+}
+
+impl Drop for OldCopy {
+    fn drop(&mut self) {
+        if self.is_needed {
+            if !self.is_told {
+                self.screen.note(&format!("the old job is kept in {}", self.path.display()));
+            }
+        } else if let Err(error) = fs::remove_file(&self.path) {
+            self.screen.note(&format!("{} is left: {error}", self.path.display()));
+        }
+    }
+}

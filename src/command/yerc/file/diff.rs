@@ -1,0 +1,361 @@
+//! `yerc file diff`: what sending the local file would change.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use similar::{Algorithm, ChangeTag, capture_diff_slices_deadline, group_diff_ops};
+
+use super::compare::{Comparer, Comparison};
+use super::content::Content;
+use super::local::{local_name, own_folder};
+use super::name::{self, Shown};
+use super::transfer;
+use crate::command::yerc::Family;
+use crate::command::{Command, Context, Report};
+use crate::controller::text::Encoding;
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Section, Tone, View};
+
+/// Compares a file on the controller with a local one.
+#[derive(Debug, Args)]
+pub struct Diff {
+    /// Name on the controller
+    name: String,
+    /// Local file; without it, the one of that name in this folder
+    #[arg(value_name = "FILE")]
+    local: Option<PathBuf>,
+}
+
+/// Larger files are compared byte by byte only.
+const MOST_TEXT: usize = 4 << 20;
+/// Unchanged lines around a change.
+const AROUND: usize = 3;
+/// After this, a correct but longer diff does.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+impl Command for Diff {
+    type Family = Family;
+    type Report = Difference;
+    const ID: &'static str = "yerc.file.diff";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Difference, Failure> {
+        let Context { link, screen, robot, several } = context;
+        let file = name::typed(link.encoding, &self.name)?;
+        let local = self.local.clone().unwrap_or_else(|| {
+            own_folder("".as_ref(), &robot.name, several).join(local_name(link.encoding, file.as_bytes()))
+        });
+        let mut source = Content::open_any(&local)?;
+        let shown = Shown::new(link.encoding, file.as_bytes());
+        let mut theirs = Vec::new();
+        let mut progress = screen.bytes_progress(&shown.name, None);
+        let mut comparer = Comparer::new(source.pieces()?);
+        transfer::fetch(link, &file, |block| {
+            progress.advance(block.len() as u64);
+            // One byte more than can be shown tells that there is more.
+            let room = (MOST_TEXT + 1).saturating_sub(theirs.len());
+            theirs.extend_from_slice(block.get(..room).unwrap_or(block));
+            comparer.take(block)
+        })
+        .await?;
+        let comparison = comparer.finish()?;
+        drop(progress);
+        let text = if comparison.first_difference.is_some() && comparison.local_bytes <= MOST_TEXT as u64 {
+            let mut ours = Vec::new();
+            let mut pieces = source.pieces()?;
+            while ours.len() <= MOST_TEXT {
+                let piece = pieces.next_piece()?;
+                if piece.is_empty() {
+                    break;
+                }
+                ours.extend(piece);
+            }
+            TextDifference::of(link.encoding, &theirs, &ours)
+        } else {
+            None
+        };
+        Ok(Difference::new(shown, local.display().to_string(), comparison, text))
+    }
+}
+
+/// How a file on the controller and a local one differ.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Difference {
+    #[serde(flatten)]
+    name: Shown,
+    /// The local file.
+    path: String,
+    /// Byte for byte.
+    equal: bool,
+    controller_bytes: u64,
+    local_bytes: u64,
+    /// Where the first difference is, counted from 0.
+    first_difference_offset: Option<u64>,
+    /// Whether only ends of lines differ; null if a file is no text.
+    only_line_endings: Option<bool>,
+    /// Changes from the controller's file to the local one; null if a file is no text or too large.
+    hunks: Option<Vec<Hunk>>,
+}
+
+/// A stretch of changes.
+#[derive(Debug, PartialEq, Eq, Serialize, JsonSchema)]
+struct Hunk {
+    /// First line in the controller's file, from 1; 0 if there is none.
+    controller_start: usize,
+    controller_lines: usize,
+    /// First line in the local file, from 1; 0 if there is none.
+    local_start: usize,
+    local_lines: usize,
+    lines: Vec<Line>,
+}
+
+/// A line of either file.
+#[derive(Debug, PartialEq, Eq, Serialize, JsonSchema)]
+struct Line {
+    change: Change,
+    text: String,
+    ending: Ending,
+}
+
+/// Which file has a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum Change {
+    /// Both.
+    Same,
+    /// The controller's alone.
+    Removed,
+    /// The local one alone.
+    Added,
+}
+
+/// How a line ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum Ending {
+    CrLf,
+    Lf,
+    /// The file ends without one.
+    None,
+}
+
+/// A difference in lines.
+#[derive(Debug)]
+struct TextDifference {
+    hunks: Vec<Hunk>,
+    only_line_endings: bool,
+}
+
+impl TextDifference {
+    /// `None` if one of the two is no text.
+    fn of(encoding: Encoding, theirs: &[u8], ours: &[u8]) -> Option<Self> {
+        let is_text = |bytes: &[u8]| bytes.len() <= MOST_TEXT && !bytes.contains(&0);
+        if !is_text(theirs) || !is_text(ours) {
+            return None;
+        }
+        let (old, new) = (lines(theirs), lines(ours));
+        let only_line_endings = old.len() == new.len() && old.iter().zip(&new).all(|(a, b)| ended(a).0 == ended(b).0);
+        let ops = capture_diff_slices_deadline(Algorithm::Myers, &old, &new, Instant::now().checked_add(PATIENCE));
+        let line = |change: &similar::Change<&[u8]>| {
+            let (text, ending) = ended(change.value());
+            let change = match change.tag() {
+                ChangeTag::Equal => Change::Same,
+                ChangeTag::Delete => Change::Removed,
+                ChangeTag::Insert => Change::Added,
+            };
+            Line { change, text: encoding.decode(text), ending }
+        };
+        let hunk = |group: Vec<similar::DiffOp>| {
+            let lines: Vec<Line> =
+                group.iter().flat_map(|op| op.iter_changes(&old, &new)).map(|change| line(&change)).collect();
+            let count = |without: Change| lines.iter().filter(|line| line.change != without).count();
+            let (controller_lines, local_lines) = (count(Change::Added), count(Change::Removed));
+            let start = |range: Option<std::ops::Range<usize>>, lines: usize| {
+                range.map_or(0, |range| range.start + usize::from(lines > 0))
+            };
+            Hunk {
+                controller_start: start(group.first().map(similar::DiffOp::old_range), controller_lines),
+                controller_lines,
+                local_start: start(group.first().map(similar::DiffOp::new_range), local_lines),
+                local_lines,
+                lines,
+            }
+        };
+        Some(Self { hunks: group_diff_ops(ops, AROUND).into_iter().map(hunk).collect(), only_line_endings })
+    }
+}
+
+impl Difference {
+    fn new(name: Shown, path: String, comparison: Comparison, text: Option<TextDifference>) -> Self {
+        let Comparison { controller_bytes, local_bytes, first_difference } = comparison;
+        let equal = first_difference.is_none();
+        let (hunks, only_line_endings) = match text {
+            _ if equal => (Some(Vec::new()), Some(false)),
+            Some(text) => (Some(text.hunks), Some(text.only_line_endings)),
+            None => (None, None),
+        };
+        Self {
+            name,
+            path,
+            equal,
+            controller_bytes,
+            local_bytes,
+            first_difference_offset: first_difference,
+            only_line_endings,
+            hunks,
+        }
+    }
+
+    fn summary(&self) -> String {
+        let Self { name: Shown { name, .. }, path, controller_bytes, local_bytes, .. } = self;
+        match (self.first_difference_offset, self.only_line_endings) {
+            (None, _) => format!("{name} and {path} are the same, {local_bytes} bytes"),
+            (Some(_), Some(true)) => format!("{name} and {path} differ in line endings only"),
+            (Some(at), None) => {
+                format!("{name} ({controller_bytes} bytes) and {path} ({local_bytes} bytes) differ from byte {at} on")
+            }
+            (Some(_), Some(false)) => format!("{name} and {path} differ"),
+        }
+    }
+
+    /// The unified form. A CR LF is what lines of a controller end in, so only other ends are shown, and a bare LF only
+    /// beside lines that have CR LF.
+    fn unified(&self, hunks: &[Hunk]) -> Vec<Cell> {
+        let mut shown = vec![
+            Cell::from(format!("--- {} (controller)", self.name.name)).tone(Tone::Bad),
+            Cell::from(format!("+++ {}", self.path)).tone(Tone::Good),
+        ];
+        let marks_lf = hunks.iter().flat_map(|hunk| &hunk.lines).any(|line| line.ending == Ending::CrLf);
+        for hunk in hunks {
+            let Hunk { controller_start, controller_lines, local_start, local_lines, lines } = hunk;
+            let head = format!("@@ -{controller_start},{controller_lines} +{local_start},{local_lines} @@");
+            shown.push(Cell::from(head).tone(Tone::Warning));
+            for Line { change, text, ending } in lines {
+                let (sign, tone) = match change {
+                    Change::Same => (' ', Tone::Plain),
+                    Change::Removed => ('-', Tone::Bad),
+                    Change::Added => ('+', Tone::Good),
+                };
+                let mark = if *ending == Ending::Lf && marks_lf { " [LF]" } else { "" };
+                shown.push(Cell::from(format!("{sign}{text}{mark}")).tone(tone));
+                if *ending == Ending::None {
+                    shown.push("\\ no line ending".into());
+                }
+            }
+        }
+        shown
+    }
+}
+
+impl Report for Difference {
+    fn view(&self) -> View {
+        match &self.hunks {
+            Some(hunks) if !self.equal && self.only_line_endings == Some(false) => {
+                View::default().and(Section::Lines(self.unified(hunks)))
+            }
+            Some(hunks) if !self.equal => {
+                let ends = |bare: Change| {
+                    let lines = hunks.iter().flat_map(|hunk| &hunk.lines).filter(|line| line.change == bare);
+                    let count = |ending| lines.clone().filter(|line| line.ending == ending).count();
+                    let named = [(Ending::CrLf, "CR LF"), (Ending::Lf, "LF"), (Ending::None, "no line ending")];
+                    let named = named.map(|(ending, name)| (count(ending), name));
+                    named.iter().filter(|(n, _)| *n > 0).map(|(n, name)| format!("{n} with {name}")).collect::<Vec<_>>()
+                };
+                View::text(format!(
+                    "only line endings differ: on the controller {} where {} has {}",
+                    ends(Change::Removed).join(", "),
+                    self.path,
+                    ends(Change::Added).join(", ")
+                ))
+            }
+            _ => View::text(self.summary()),
+        }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        (!self.equal).then(|| Failure::new(Kind::ConditionNotMet, self.summary()))
+    }
+}
+
+/// Lines with what ends them.
+fn lines(bytes: &[u8]) -> Vec<&[u8]> {
+    bytes.split_inclusive(|byte| *byte == b'\n').collect()
+}
+
+fn ended(line: &[u8]) -> (&[u8], Ending) {
+    match line.strip_suffix(b"\n") {
+        None => (line, Ending::None),
+        Some(text) => match text.strip_suffix(b"\r") {
+            Some(text) => (text, Ending::CrLf),
+            None => (text, Ending::Lf),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::render;
+
+    fn difference(theirs: &[u8], ours: &[u8]) -> Difference {
+        let first = theirs.iter().zip(ours).position(|(a, b)| a != b);
+        let first = first.or((theirs.len() != ours.len()).then_some(theirs.len().min(ours.len())));
+        let comparison = Comparison {
+            controller_bytes: theirs.len() as u64,
+            local_bytes: ours.len() as u64,
+            first_difference: first.map(|at| at as u64),
+        };
+        let text = TextDifference::of(Encoding::ShiftJis, theirs, ours);
+        Difference::new(Shown::new(Encoding::ShiftJis, b"A.JBI"), "a.jbi".to_owned(), comparison, text)
+    }
+
+    fn text(theirs: &[u8], ours: &[u8]) -> String {
+        render::text(&difference(theirs, ours).view(), 80, false)
+    }
+
+    #[test]
+    fn the_same_is_no_failure() {
+        assert!(difference(b"a\r\n", b"a\r\n").failure().is_none());
+        assert_eq!(text(b"a\0", b"a\0"), "A.JBI and a.jbi are the same, 2 bytes\n");
+    }
+
+    #[test]
+    fn changes_read_as_those_of_diff() {
+        let theirs = b"/JOB\r\n1\r\n2\r\n3\r\n4\r\n5\r\n6\r\n'\x83\x5c\x1b\r\nEND\r\n";
+        let ours = b"/JOB\r\n1\r\n2\r\n3\r\n4\r\n5\r\n6\r\nMOVJ\n\r\nEND";
+        let failure = difference(theirs, ours).failure().unwrap();
+        assert_eq!(failure.kind.exit(), 8);
+        assert_eq!(
+            text(theirs, ours),
+            "--- A.JBI (controller)\n+++ a.jbi\n@@ -5,5 +5,6 @@\n 4\n 5\n 6\n-'ソ\\x1b\n-END\n+MOVJ [LF]\n+\n+END\n\
+             \\ no line ending\n"
+        );
+        assert_eq!(text(b"", b"a\n"), "--- A.JBI (controller)\n+++ a.jbi\n@@ -0,0 +1,1 @@\n+a\n");
+    }
+
+    #[test]
+    fn line_endings_alone_are_said_in_a_line() {
+        let found = difference(b"a\r\nb\r\nc\r\n", b"a\nb\r\nc");
+        assert_eq!(found.only_line_endings, Some(true));
+        assert_eq!(found.hunks.as_ref().map(Vec::len), Some(1));
+        assert_eq!(
+            render::text(&found.view(), 80, false),
+            "only line endings differ: on the controller 2 with CR LF where a.jbi has 1 with LF, 1 with no line ending\n"
+        );
+    }
+
+    #[test]
+    fn bytes_that_are_no_text_differ_from_an_offset_on() {
+        assert_eq!(text(b"a\0bc", b"a\0bd!"), "A.JBI (4 bytes) and a.jbi (5 bytes) differ from byte 3 on\n");
+        assert!(difference(b"a\0bc", b"a\0bd!").hunks.is_none());
+    }
+
+    #[test]
+    fn bytes_that_look_alike_in_text_still_differ() {
+        // Both decode to the same character, but a controller may tell them apart.
+        let found = difference(b"\x81\xca\r\n", b"\xee\xf9\r\n");
+        assert_eq!(found.hunks.map(|hunks| hunks[0].lines.len()), Some(2));
+    }
+}

@@ -1,0 +1,188 @@
+//! `yerc file get` (FS and DX 3.4.3).
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::local::{LocalNames, Target, make_folder, own_folder};
+use super::name::{self, Shown};
+use super::results::{FileResult, Results, Shape};
+use super::transfer;
+use crate::command::yerc::Family;
+use crate::command::yerc::link::Link;
+use crate::command::{Command, Context, Report};
+use crate::controller::text::Encoding;
+use crate::controller::yerc::files::FileName;
+use crate::failure::Failure;
+use crate::output::view::View;
+use crate::output::{Screen, escape};
+
+/// Fetches files from the controller.
+#[derive(Debug, Args)]
+pub struct Get {
+    /// Names in full, such as TESTJOB.JBI
+    #[arg(required = true, value_name = "NAME")]
+    names: Vec<String>,
+    /// Folder to put them in; - writes one file to stdout
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    output: PathBuf,
+    /// Replace local files that exist
+    #[arg(long)]
+    force: bool,
+}
+
+const SHAPE: Shape = Shape { done: "saved", has_paths: true, has_bytes: true };
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Fetched;
+    const ID: &'static str = "yerc.file.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Fetched, Failure> {
+        let Context { link, screen, robot, several } = context;
+        let files = name::all_typed(link.encoding, &self.names)?;
+        let to_stdout = self.output == Path::new("-");
+        if to_stdout {
+            self.check_stdout(*screen, several)?;
+        }
+        let folder = own_folder(&self.output, &robot.name, several);
+        let targets = if to_stdout { Vec::new() } else { targets(link.encoding, &files, &folder, self.force)? };
+        if link.is_dry() {
+            transfer::foresee_all(link, files.iter().map(FileName::save));
+            return Ok(Fetched { results: None });
+        }
+        if let ([file], true) = (&files[..], to_stdout) {
+            print(link, screen, file).await?;
+            return Ok(Fetched { results: None });
+        }
+        if several {
+            make_folder(&folder)?;
+        }
+        let mut results = Vec::with_capacity(files.len());
+        for (file, target) in files.iter().zip(&targets) {
+            results.push(FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(target.path())));
+        }
+        for ((file, target), result) in files.iter().zip(&targets).zip(&mut results) {
+            let outcome = save(link, screen, file, target).await;
+            if !result.settle(outcome.map(Some)) {
+                break;
+            }
+        }
+        Ok(Fetched { results: Some(Results::new(results, SHAPE).report()?) })
+    }
+}
+
+impl Get {
+    fn check_stdout(&self, screen: Screen, several: bool) -> Result<(), Failure> {
+        if self.names.len() > 1 || several {
+            return Err(Failure::usage("--output - writes one file of one robot").hint("name a folder for several"));
+        }
+        if screen.is_json() {
+            return Err(Failure::usage("--output - writes the bytes of the file, which are no JSON")
+                .hint("leave out --json, --jq and -o, or name a folder"));
+        }
+        Ok(())
+    }
+}
+
+/// What was fetched; nothing where stdout has the file itself.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Fetched {
+    #[serde(flatten)]
+    results: Option<Results>,
+}
+
+impl Report for Fetched {
+    fn view(&self) -> View {
+        self.results.as_ref().map(Report::view).unwrap_or_default()
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.results.as_ref().and_then(Report::failure)
+    }
+}
+
+/// Where each file shall be, all checked before the first is fetched.
+fn targets(encoding: Encoding, files: &[FileName], folder: &Path, force: bool) -> Result<Vec<Target>, Failure> {
+    let mut names = LocalNames::new(encoding);
+    let target = |file: &FileName| Target::new(folder.join(names.assign(file.as_bytes())?), force);
+    files.iter().map(target).collect()
+}
+
+async fn save(link: &mut Link, screen: &Screen, file: &FileName, target: &Target) -> Result<u64, Failure> {
+    let mut draft = target.begin()?;
+    let mut progress = screen.bytes_progress(&link.encoding.decode(file.as_bytes()), None);
+    let bytes = transfer::fetch(link, file, |block| {
+        progress.advance(block.len() as u64);
+        draft.write(block)
+    })
+    .await?;
+    draft.commit()?;
+    Ok(bytes)
+}
+
+async fn print(link: &mut Link, screen: &Screen, file: &FileName) -> Result<(), Failure> {
+    let mut out = Printer::new(screen, link.encoding);
+    transfer::fetch(link, file, |block| out.take(block)).await?;
+    out.flush()
+}
+
+/// A file on stdout: its bytes, or on a terminal its text, which then cannot steer the terminal.
+struct Printer<'a> {
+    screen: &'a Screen,
+    encoding: Encoding,
+    is_text: bool,
+    pending: Vec<u8>,
+}
+
+/// Bytes gathered before they are written.
+const BATCH: usize = 1 << 16;
+
+impl<'a> Printer<'a> {
+    fn new(screen: &'a Screen, encoding: Encoding) -> Self {
+        Self { screen, encoding, is_text: screen.is_stdout_terminal(), pending: Vec::new() }
+    }
+
+    fn take(&mut self, block: &[u8]) -> Result<(), Failure> {
+        self.pending.extend_from_slice(block);
+        if self.pending.len() < BATCH {
+            return Ok(());
+        }
+        let rest = match self.pending.iter().rposition(|byte| *byte == b'\n') {
+            // A line feed is never a part of a wider character, so text is cut there.
+            Some(end) if self.is_text => self.pending.split_off(end + 1),
+            _ => Vec::new(),
+        };
+        self.flush()?;
+        self.pending = rest;
+        Ok(())
+    }
+
+    fn flush(&mut self) -> Result<(), Failure> {
+        let bytes = std::mem::take(&mut self.pending);
+        if !self.is_text {
+            return self.screen.bytes(&bytes);
+        }
+        let text = self.encoding.decode(&bytes).replace("\r\n", "\n");
+        self.screen.data(&escape::lines(&text))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn existing_files_stop_the_command_before_anything_is_asked() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("B.JBI"), "x").unwrap();
+        let files = [FileName::new(*b"A.JBI").unwrap(), FileName::new(*b"B.JBI").unwrap()];
+        let failure = targets(Encoding::ShiftJis, &files, folder.path(), false).unwrap_err();
+        assert_eq!(failure.kind.exit(), 7);
+        assert!(failure.hint.unwrap().contains("--force"));
+        let targets = targets(Encoding::ShiftJis, &files, folder.path(), true).unwrap();
+        assert_eq!(targets[1].path(), folder.path().join("B.JBI"));
+    }
+}

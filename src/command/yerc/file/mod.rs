@@ -1,0 +1,43 @@
+//! `yerc file`: jobs and data files of the controller.
+
+mod backup;
+mod cmos;
+mod compare;
+mod content;
+mod delete;
+mod deliver;
+mod diff;
+mod get;
+mod list;
+mod local;
+mod manifest;
+mod name;
+mod put;
+mod restore;
+mod results;
+mod transfer;
+
+use super::Family;
+use crate::command::commands;
+
+commands! {
+    /// What can be done with files.
+    pub enum File of Family {
+        /// List the files on the controller
+        List(list::List),
+        /// Fetch files
+        Get(get::Get),
+        /// Send files
+        Put(put::Put),
+        /// Delete files on the controller
+        Delete(delete::Delete),
+        /// Compare a file on the controller with a local one
+        Diff(diff::Diff),
+        /// Fetch every file into a folder, with sizes and hashes
+        Backup(backup::Backup),
+        /// Send the files of a backup back
+        Restore(restore::Restore),
+        /// Have the controller make its batch backup (CMOSBK.BIN), and fetch it
+        Cmos(cmos::Cmos),
+    }
+}

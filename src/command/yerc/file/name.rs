@@ -1,0 +1,157 @@
+//! Names and types of files as the operator types them and as reports show them.
+
+use clap::ValueEnum;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::controller::text::Encoding;
+use crate::controller::yerc::files::{FileName, FileType};
+use crate::failure::Failure;
+
+/// A file's name in a report.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Shown {
+    /// Name on the controller.
+    pub name: String,
+    /// Its bytes, where the name in text does not lead back to them; as an argument, write `hex:` before them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name_hex: Option<String>,
+}
+
+impl Shown {
+    /// The name that bytes of a controller stand for.
+    pub fn new(encoding: Encoding, name: &[u8]) -> Self {
+        let name = encoding.name(name);
+        Self { name: name.text, name_hex: name.hex }
+    }
+}
+
+/// Types of files on the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TypeArg {
+    /// Jobs
+    Jbi,
+    /// Tools, variables, user coordinates
+    Dat,
+    /// Conditions
+    Cnd,
+    /// Parameters
+    Prm,
+    /// System data
+    Sys,
+    /// Ladder and other lists
+    Lst,
+    /// Every type
+    All,
+}
+
+impl TypeArg {
+    fn file_type(self) -> Option<FileType> {
+        Some(match self {
+            Self::Jbi => FileType::Jbi,
+            Self::Dat => FileType::Dat,
+            Self::Cnd => FileType::Cnd,
+            Self::Prm => FileType::Prm,
+            Self::Sys => FileType::Sys,
+            Self::Lst => FileType::Lst,
+            Self::All => return None,
+        })
+    }
+
+    /// The types that are meant, each once, in the order of the manual.
+    pub fn chosen(args: &[Self]) -> Vec<FileType> {
+        let has = |kind| args.iter().any(|arg| arg.file_type().is_none_or(|chosen| chosen == kind));
+        FileType::ALL.into_iter().filter(|kind| has(*kind)).collect()
+    }
+}
+
+/// A type in reports and manifests: `jbi`.
+pub fn type_word(kind: FileType) -> &'static str {
+    match kind {
+        FileType::Jbi => "jbi",
+        FileType::Dat => "dat",
+        FileType::Cnd => "cnd",
+        FileType::Prm => "prm",
+        FileType::Sys => "sys",
+        FileType::Lst => "lst",
+    }
+}
+
+/// The file that an argument names: text in the robot's encoding, or `hex:` and its bytes.
+pub fn typed(encoding: Encoding, text: &str) -> Result<FileName, Failure> {
+    let bytes = if let Some(digits) = text.strip_prefix("hex:") {
+        unhex(digits).ok_or_else(|| {
+            Failure::usage(format!("'{text}' has no whole number of hexadecimal bytes"))
+                .hint("as in hex:5445535430312e4a4249, the name_hex of `yerc file list --json`")
+        })?
+    } else {
+        encoding.encode_name(text).map_err(|error| {
+            Failure::usage(format!("'{text}': {error}")).hint("--encoding or the robot's entry sets the encoding")
+        })?
+    };
+    exact(bytes)
+}
+
+/// Several of them, each once.
+pub fn all_typed(encoding: Encoding, texts: &[String]) -> Result<Vec<FileName>, Failure> {
+    let mut files = Vec::with_capacity(texts.len());
+    for text in texts {
+        let file = typed(encoding, text)?;
+        if files.contains(&file) {
+            return Err(Failure::usage(format!("{text} is named twice")).hint("name every file once"));
+        }
+        files.push(file);
+    }
+    Ok(files)
+}
+
+/// The file of exactly this name. A controller might take `*` or `?` for any name, and delete more than was meant.
+pub fn exact(bytes: Vec<u8>) -> Result<FileName, Failure> {
+    if bytes.iter().any(|byte| matches!(byte, b'*' | b'?')) {
+        return Err(Failure::usage(format!("the file name '{}' has a * or ? in it", bytes.escape_ascii()))
+            .hint("name every file in full; `yerc file list` shows them, `yerc file backup` fetches all"));
+    }
+    FileName::new(bytes).map_err(|error| {
+        Failure::usage(error.to_string()).hint("jobs are named as in TESTJOB.JBI; `yerc file list` shows what there is")
+    })
+}
+
+/// Bytes from pairs of hexadecimal digits of either case.
+pub fn unhex(digits: &str) -> Option<Vec<u8>> {
+    let (pairs, []) = digits.as_bytes().as_chunks::<2>() else { return None };
+    let digit = |byte: u8| char::from(byte).to_digit(16).and_then(|digit| u8::try_from(digit).ok());
+    pairs.iter().map(|[high, low]| Some(digit(*high)? << 4 | digit(*low)?)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_typed_in_text_or_hex() {
+        let name = |text| typed(Encoding::ShiftJis, text).map(|file| file.as_bytes().to_vec());
+        assert_eq!(name("TESTJOB.JBI"), Ok(b"TESTJOB.JBI".to_vec()));
+        assert_eq!(name("てすと.JBI"), Ok(b"\x82\xC4\x82\xB7\x82\xC6.JBI".to_vec()));
+        assert_eq!(name("A\\xff.JBI"), Ok(b"A\xff.JBI".to_vec()));
+        assert_eq!(name("hex:41FF2e4a4249"), Ok(b"A\xff.JBI".to_vec()));
+        for wrong in
+            ["hex:4", "hex:4g", "", "A", "A.TXT", "*.JBI", "?.JBI", "../A.JBI", "용접.JBI", "/SPDRV/CMOSBK.BIN"]
+        {
+            let failure = name(wrong).unwrap_err();
+            assert_eq!(failure.kind.exit(), 2, "{wrong}");
+            assert!(failure.hint.is_some(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_file_is_named_once() {
+        let texts = ["A.JBI".to_owned(), "hex:412e4a4249".to_owned()];
+        assert!(all_typed(Encoding::ShiftJis, &texts).is_err());
+    }
+
+    #[test]
+    fn types_come_in_the_order_of_the_manual() {
+        assert_eq!(TypeArg::chosen(&[TypeArg::All]), FileType::ALL);
+        assert_eq!(TypeArg::chosen(&[TypeArg::Cnd, TypeArg::Jbi, TypeArg::Cnd]), [FileType::Jbi, FileType::Cnd]);
+    }
+}

@@ -1,0 +1,160 @@
+//! `yerc file put` (FS and DX 3.4.2).
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::content::{Content, JobRules};
+use super::deliver::{Delivery, Manner, deliver};
+use super::local::controller_name;
+use super::name::{self, Shown};
+use super::results::{FileResult, Results, Shape};
+use super::transfer;
+use crate::command::yerc::Family;
+use crate::command::{Command, Context};
+use crate::controller::Risk;
+use crate::controller::text::Encoding;
+use crate::controller::yerc::files::FileName;
+use crate::failure::Failure;
+
+/// Sends files to the controller.
+#[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
+pub struct Put {
+    /// Local files
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// Name on the controller, instead of the local one
+    #[arg(long = "as", value_name = "NAME")]
+    name: Option<String>,
+    /// Send CR LF where a line of a job ends in a bare LF
+    #[arg(long)]
+    fix_line_endings: bool,
+    /// Read every file back and compare
+    #[arg(long)]
+    verify: bool,
+    /// Replace a job that the controller does not overwrite by itself
+    #[arg(long)]
+    replace: bool,
+    /// Send a job although /JOB, NOP or END is missing
+    #[arg(long)]
+    force: bool,
+}
+
+const SHAPE: Shape = Shape { done: "sent", has_paths: true, has_bytes: true };
+
+impl Command for Put {
+    type Family = Family;
+    type Report = Results;
+    const ID: &'static str = "yerc.file.put";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Results, Failure> {
+        let Context { link, screen, .. } = context;
+        let mut deliveries = self.deliveries(link.encoding)?;
+        let mut results: Vec<FileResult> = Vec::with_capacity(deliveries.len());
+        for Delivery { file, content } in &deliveries {
+            results.push(FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(content.path())));
+        }
+        if link.is_dry() {
+            for Delivery { file, content } in &mut deliveries {
+                transfer::foresee_send(link, file, content)?;
+            }
+            return Ok(Results::new(results, SHAPE));
+        }
+        let manner = Manner { verify: self.verify, replace: self.replace };
+        for (delivery, result) in deliveries.iter_mut().zip(&mut results) {
+            let outcome = deliver(link, screen, delivery, manner, result).await;
+            if !result.settle(outcome) {
+                break;
+            }
+        }
+        Results::new(results, SHAPE).report()
+    }
+}
+
+impl Put {
+    /// Every file, checked before the first one is sent.
+    fn deliveries(&self, encoding: Encoding) -> Result<Vec<Delivery>, Failure> {
+        if self.name.is_some() && self.files.len() > 1 {
+            return Err(Failure::usage("--as names one file, but there are several").hint("send them one by one"));
+        }
+        let rules = JobRules { fix_line_endings: self.fix_line_endings, force: self.force };
+        let mut deliveries: Vec<Delivery> = Vec::with_capacity(self.files.len());
+        for path in &self.files {
+            let file = match &self.name {
+                Some(name) => name::typed(encoding, name)?,
+                None => named_after(encoding, path)?,
+            };
+            if deliveries.iter().any(|other| other.file == file) {
+                return Err(Failure::usage(format!("{}: another file has the same name", path.display()))
+                    .hint("--as gives one of them another name; send it on its own"));
+            }
+            let mut content = Content::open(path)?;
+            content.check_job(file.file_type(), rules)?;
+            deliveries.push(Delivery { file, content });
+        }
+        Ok(deliveries)
+    }
+}
+
+/// The file on the controller that a local one is for.
+fn named_after(encoding: Encoding, path: &Path) -> Result<FileName, Failure> {
+    let wrong = |why: String| {
+        Failure::usage(format!("{}: {why}", path.display())).hint("--as gives the name on the controller")
+    };
+    let local = path.file_name().and_then(|name| name.to_str());
+    let local = local.ok_or_else(|| wrong("its name cannot be sent".to_owned()))?;
+    let bytes = controller_name(encoding, local).map_err(|error| wrong(error.to_string()))?;
+    name::exact(bytes).map_err(|failure| wrong(failure.message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn put(files: &[&Path]) -> Put {
+        Put {
+            files: files.iter().map(|path| (*path).to_owned()).collect(),
+            name: None,
+            fix_line_endings: false,
+            verify: false,
+            replace: false,
+            force: false,
+        }
+    }
+
+    #[test]
+    fn everything_is_checked_before_anything_is_sent() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, bytes: &[u8]| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, bytes).unwrap();
+            path
+        };
+        let good = write("A.JBI", b"/JOB\r\nNOP\r\nEND\r\n");
+        let bare = write("B.JBI", b"/JOB\nNOP\nEND\n");
+        let long = write(&format!("{}.JBI", "A".repeat(33)), b"/JOB\r\nNOP\r\nEND\r\n");
+        let text = write("A.TXT", b"x");
+        let refused = |put: &Put| put.deliveries(Encoding::ShiftJis).unwrap_err().kind.exit();
+        assert_eq!(put(&[&good]).deliveries(Encoding::ShiftJis).unwrap()[0].file.as_bytes(), b"A.JBI");
+        for wrong in [vec![&good, &bare], vec![&long], vec![&text], vec![&good, &good]] {
+            let paths: Vec<&Path> = wrong.iter().map(|path| path.as_path()).collect();
+            assert_eq!(refused(&put(&paths)), 2, "{paths:?}");
+        }
+        assert_eq!(refused(&put(&[&folder.path().join("C.JBI")])), 1);
+        let renamed = Put { name: Some("てすと.JBI".to_owned()), ..put(&[&good]) };
+        let deliveries = renamed.deliveries(Encoding::ShiftJis).unwrap();
+        assert_eq!(deliveries[0].file.as_bytes(), b"\x82\xC4\x82\xB7\x82\xC6.JBI");
+        assert_eq!(refused(&Put { name: Some("B.JBI".to_owned()), ..put(&[&good, &bare]) }), 2);
+    }
+
+    #[test]
+    fn escaped_local_names_become_what_they_were() {
+        let file = named_after(Encoding::ShiftJis, Path::new("x/%43ON.JBI")).unwrap();
+        assert_eq!(file.as_bytes(), b"CON.JBI");
+    }
+}

@@ -1,0 +1,139 @@
+//! `yerc file restore`: the files of a backup back to the controller.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::content::Content;
+use super::deliver::{Delivery, Manner, deliver};
+use super::local::own_folder;
+use super::manifest::{Entry, MANIFEST, Manifest};
+use super::name::{self, Shown, TypeArg};
+use super::results::{FileResult, Results, Shape};
+use super::transfer;
+use crate::command::yerc::Family;
+use crate::command::yerc::link::Link;
+use crate::command::{Command, Context};
+use crate::controller::Risk;
+use crate::controller::yerc::files::{FileName, FileType};
+use crate::failure::{Failure, Kind};
+
+/// Sends the files of a backup back.
+#[derive(Debug, Args)]
+pub struct Restore {
+    /// Folder of the backup
+    folder: PathBuf,
+    /// These files only
+    #[arg(long, value_name = "NAME", num_args = 1..)]
+    only: Vec<String>,
+    /// Which types, such as jbi,dat; parameters and system data only when named
+    #[arg(long = "type", value_name = "TYPE", value_delimiter = ',', ignore_case = true)]
+    types: Vec<TypeArg>,
+    /// Read every file back and compare
+    #[arg(long)]
+    verify: bool,
+    /// Replace jobs that the controller does not overwrite by itself
+    #[arg(long)]
+    replace: bool,
+    /// Send the backup of one model to another
+    #[arg(long)]
+    force: bool,
+}
+
+const SHAPE: Shape = Shape { done: "sent", has_paths: true, has_bytes: true };
+
+/// What goes first: jobs need the data and conditions they name, and after parameters a controller may want a restart.
+const ORDER: [FileType; 6] = [FileType::Dat, FileType::Cnd, FileType::Jbi, FileType::Lst, FileType::Sys, FileType::Prm];
+/// What goes if nobody says which types. Parameters and system data change the controller itself.
+const USUAL: [FileType; 3] = [FileType::Dat, FileType::Cnd, FileType::Jbi];
+
+impl Command for Restore {
+    type Family = Family;
+    type Report = Results;
+    const ID: &'static str = "yerc.file.restore";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Results, Failure> {
+        let Context { link, screen, robot, several } = context;
+        let folder = own_folder(&self.folder, &robot.name, several);
+        let manifest = Manifest::read(&folder)?.ok_or_else(|| {
+            Failure::local(format!("{} holds no {MANIFEST}", folder.display()))
+                .hint("name the folder of a `yerc file backup`; single files go with `yerc file put`")
+        })?;
+        if manifest.model != link.model.to_string() && !self.force {
+            let message = format!("the backup is of a {}, {} is a {}", manifest.model, robot.label(), link.model);
+            return Err(Failure::new(Kind::RefusedHere, message)
+                .hint("check the model (?model=…); --force sends the files all the same"));
+        }
+        let chosen = self.chosen(link, &manifest)?;
+        let mut deliveries = Vec::with_capacity(chosen.len());
+        for (file, entry) in chosen {
+            let Some(copy) = &entry.copy else { continue };
+            copy.check(&folder)?;
+            if copy.bytes > 0 {
+                deliveries.push(Delivery { file, content: Content::open(&folder.join(&copy.file))? });
+            } else {
+                screen.note(&format!("{} is empty and cannot be sent", entry.name));
+            }
+        }
+        let mut results = Vec::with_capacity(deliveries.len());
+        for Delivery { file, content } in &deliveries {
+            results.push(FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(content.path())));
+        }
+        if link.is_dry() {
+            for Delivery { file, content } in &mut deliveries {
+                transfer::foresee_send(link, file, content)?;
+            }
+            return Ok(Results::new(results, SHAPE));
+        }
+        let manner = Manner { verify: self.verify, replace: self.replace };
+        let total = deliveries.len();
+        for (number, (delivery, result)) in deliveries.iter_mut().zip(&mut results).enumerate() {
+            if !screen.can_redraw() {
+                screen.note(&format!("{}/{total} {}", number + 1, result.name.name));
+            }
+            let outcome = deliver(link, screen, delivery, manner, result).await;
+            if !result.settle(outcome) {
+                break;
+            }
+        }
+        Ok(Results::new(results, SHAPE))
+    }
+}
+
+impl Restore {
+    /// The files to send, in the order of sending.
+    fn chosen<'a>(&self, link: &Link, manifest: &'a Manifest) -> Result<Vec<(FileName, &'a Entry)>, Failure> {
+        let only = name::all_typed(link.encoding, &self.only)?;
+        let types = match &self.types[..] {
+            // A file that is named is meant, whatever its type; parameters and system data need their type as well.
+            [] if only.is_empty() => USUAL.to_vec(),
+            [] => [&USUAL[..], &[FileType::Lst]].concat(),
+            types => TypeArg::chosen(types),
+        };
+        for file in &only {
+            let shown = link.encoding.decode(file.as_bytes());
+            if manifest.entry(file.as_bytes()).and_then(|entry| entry.copy.as_ref()).is_none() {
+                return Err(Failure::usage(format!("the backup has no {shown}")).hint(format!("{MANIFEST} lists it")));
+            }
+            if !types.contains(&file.file_type()) {
+                let kind = name::type_word(file.file_type());
+                return Err(Failure::usage(format!("{shown} is of type {kind}, which is not asked for"))
+                    .hint(format!("add --type {kind}; parameters and system data change the controller itself")));
+            }
+        }
+        let mut chosen = Vec::new();
+        for entry in manifest.files.iter().filter(|entry| entry.copy.is_some()) {
+            let file = entry.controller_file()?;
+            if types.contains(&file.file_type()) && (only.is_empty() || only.contains(&file)) {
+                chosen.push((file, entry));
+            }
+        }
+        let place = |file: &FileName| ORDER.iter().position(|kind| *kind == file.file_type());
+        chosen.sort_by_key(|(file, _)| place(file));
+        Ok(chosen)
+    }
+}

@@ -1,0 +1,237 @@
+//! What became of each of several files.
+//!
+//! One file that fails is a failed command. Of several, each has its result, the others go on after a refusal, and the
+//! exit code is that of the gravest failure.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::name::Shown;
+use crate::command::Report;
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Table, Tone, View};
+
+/// How far one file got.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum State {
+    /// It was done now.
+    Done,
+    /// It had been done before.
+    Kept,
+    /// It failed, see `error`.
+    Failed,
+    /// An earlier failure ended the work.
+    NotTried,
+}
+
+/// One file.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct FileResult {
+    /// Its name on the controller.
+    #[serde(flatten)]
+    pub name: Shown,
+    /// How far it got.
+    pub state: State,
+    /// The local file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path: Option<String>,
+    /// Size of the whole.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bytes: Option<u64>,
+    /// What was done beyond the plain transfer: `replaced`, `verified`, `line_endings_fixed`, `empty`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<&'static str>,
+    /// Why it failed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<Failure>,
+}
+
+impl FileResult {
+    /// A file that nothing was done with yet.
+    pub fn pending(name: Shown, path: Option<&std::path::Path>) -> Self {
+        let path = path.map(|path| path.display().to_string());
+        Self { name, state: State::NotTried, path, bytes: None, notes: Vec::new(), error: None }
+    }
+
+    /// Done, in so many bytes, or failed. Says whether the next file can be tried: after a "no" to this one it can, on a
+    /// broken line or a full disk it cannot.
+    pub fn settle(&mut self, outcome: Result<Option<u64>, Failure>) -> bool {
+        match outcome {
+            Ok(bytes) => {
+                self.state = State::Done;
+                self.bytes = bytes;
+                true
+            }
+            Err(failure) => {
+                let goes_on = matches!(failure.kind, Kind::Refused | Kind::Malformed | Kind::Usage | Kind::RefusedHere);
+                self.state = State::Failed;
+                self.error = Some(failure);
+                goes_on
+            }
+        }
+    }
+}
+
+/// Every file of a command.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Results {
+    /// Each in the order of working.
+    pub files: Vec<FileResult>,
+    /// Files that are done, now or before.
+    pub done: usize,
+    /// Files that failed.
+    pub failed: usize,
+    /// Files that were not tried.
+    pub not_tried: usize,
+    #[serde(skip)]
+    shape: Shape,
+}
+
+/// How results are shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shape {
+    /// What was done with a file, such as `deleted`.
+    pub done: &'static str,
+    /// Whether there are local files.
+    pub has_paths: bool,
+    /// Whether there are sizes.
+    pub has_bytes: bool,
+}
+
+impl Results {
+    /// Counts.
+    pub fn new(files: Vec<FileResult>, shape: Shape) -> Self {
+        let count = |states: &[State]| files.iter().filter(|file| states.contains(&file.state)).count();
+        let (done, failed) = (count(&[State::Done, State::Kept]), count(&[State::Failed]));
+        let not_tried = count(&[State::NotTried]);
+        Self { files, done, failed, not_tried, shape }
+    }
+
+    /// The report; of a single file that failed, the failure.
+    pub fn report(mut self) -> Result<Self, Failure> {
+        match &mut self.files[..] {
+            [only] => match only.error.take() {
+                Some(failure) => Err(failure),
+                None => Ok(self),
+            },
+            _ => Ok(self),
+        }
+    }
+
+    /// The table alone.
+    pub fn table(&self) -> Table {
+        let Shape { done, has_paths, has_bytes } = self.shape;
+        let mut table = Table::new(&[], "no files");
+        let all = [("name", true), ("bytes", has_bytes), ("file", has_paths), ("result", true)];
+        let shown =
+            |cells: [Cell; 4]| all.into_iter().zip(cells).filter(|((_, shown), _)| *shown).map(|(_, cell)| cell);
+        table.columns = all.into_iter().filter(|(_, shown)| *shown).map(|(name, _)| name).collect();
+        for file in &self.files {
+            let result = match (file.state, &file.error) {
+                (State::Done, _) => Cell::from(done).tone(Tone::Good),
+                (State::Kept, _) => Cell::from("kept"),
+                (State::Failed, Some(error)) => Cell::from(coded(error)).tone(Tone::Bad),
+                (State::Failed, None) => Cell::from("failed").tone(Tone::Bad),
+                (State::NotTried, _) => Cell::from("not tried").tone(Tone::Warning),
+            };
+            let text = notes(file).fold(result.text, |text, note| text + ", " + note);
+            let result = Cell { text, ..result };
+            let name = file.name.name.as_str().into();
+            table.rows.push(
+                shown([
+                    name,
+                    file.bytes.map_or_else(|| Cell::number("-"), Cell::from),
+                    Cell::maybe(file.path.as_deref()),
+                    result,
+                ])
+                .collect(),
+            );
+        }
+        table
+    }
+}
+
+impl Report for Results {
+    fn view(&self) -> View {
+        View::table(self.table())
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let gravest =
+            self.files.iter().filter_map(|file| file.error.as_ref()).max_by_key(|failure| gravity(failure.kind))?;
+        let total = self.files.len();
+        let failed = match self.not_tried {
+            0 => format!("{} of {total} files failed", self.failed),
+            left => format!("{} of {total} files failed, {left} were not tried", self.failed),
+        };
+        Some(Failure { message: format!("{failed}: {}", gravest.message), ..gravest.clone() })
+    }
+}
+
+fn notes(file: &FileResult) -> impl Iterator<Item = &'static str> {
+    file.notes.iter().map(|note| match *note {
+        "line_endings_fixed" => "line endings fixed",
+        note => note,
+    })
+}
+
+fn coded(failure: &Failure) -> String {
+    match &failure.code {
+        Some(code) => format!("{} [{code}]", failure.message),
+        None => failure.message.clone(),
+    }
+}
+
+/// What a person must know first: that something may have been done, then that the work ended early.
+fn gravity(kind: Kind) -> u8 {
+    match kind {
+        Kind::OutcomeUnknown => 4,
+        Kind::NoAnswer | Kind::Local => 3,
+        Kind::Malformed => 2,
+        Kind::Refused => 1,
+        _ => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::text::Encoding;
+    use crate::output::render;
+
+    const SHAPE: Shape = Shape { done: "saved", has_paths: false, has_bytes: true };
+
+    fn files() -> Vec<FileResult> {
+        let pending = |name: &[u8]| FileResult::pending(Shown::new(Encoding::ShiftJis, name), None);
+        let mut files = vec![pending(b"A.JBI"), pending(b"B.JBI"), pending(b"C.JBI"), pending(b"D.JBI")];
+        assert!(files[0].settle(Ok(Some(10))));
+        assert!(files[1].settle(Err(Failure::new(Kind::Refused, "no").code("0xE29C"))));
+        assert!(!files[2].settle(Err(Failure::new(Kind::NoAnswer, "silence").hint("cable"))));
+        files
+    }
+
+    #[test]
+    fn the_gravest_failure_decides() {
+        let results = Results::new(files(), SHAPE);
+        assert_eq!((results.done, results.failed, results.not_tried), (1, 2, 1));
+        let failure = results.failure().unwrap();
+        assert_eq!(failure.kind, Kind::NoAnswer);
+        assert_eq!(failure.message, "2 of 4 files failed, 1 were not tried: silence");
+        assert_eq!(failure.hint.as_deref(), Some("cable"));
+        let text = render::text(&results.view(), 80, false);
+        assert_eq!(
+            text,
+            "NAME   BYTES  RESULT\nA.JBI     10  saved\nB.JBI      -  no [0xE29C]\nC.JBI      -  silence\nD.JBI      \
+             -  not tried\n"
+        );
+    }
+
+    #[test]
+    fn one_file_fails_as_itself() {
+        let failed = Results::new(files().drain(1..2).collect(), SHAPE).report().unwrap_err();
+        assert_eq!((failed.kind, failed.message.as_str()), (Kind::Refused, "no"));
+        assert!(Results::new(files(), SHAPE).report().is_ok());
+        assert!(Results::new(files().drain(..1).collect(), SHAPE).report().unwrap().failure().is_none());
+    }
+}

@@ -1,0 +1,239 @@
+//! Files and lists over the link: how each way a transfer can end reads to the operator.
+
+use std::time::Duration;
+
+use super::content::Content;
+use crate::command::yerc::link::{Link, Refusal};
+use crate::controller::yerc::files::{self, FileName, FileType, split_list};
+use crate::controller::yerc::request::Request;
+use crate::controller::yerc::session::{DownloadEnd, UploadEnd};
+use crate::controller::yerc::wire::Status;
+use crate::failure::{Failure, Kind};
+use crate::output::progress::Progress;
+
+/// Largest file taken from a controller; theirs have some megabytes.
+const MAX_FILE: u64 = 1 << 30;
+/// Largest list: some hundred thousand names.
+const MAX_LIST: u64 = 4 << 20;
+
+/// No file of the type asked for (DX 3.1).
+const NOTHING_LISTED: u32 = 0xE2A7;
+/// No such file, or one without content (DX 3.1).
+const NO_FILE_OR_EMPTY: u32 = 0xE29C;
+/// A job of this name exists.
+const JOB_EXISTS: &str = "0x4030";
+
+/// The names of one type, in the order of the controller.
+pub async fn list(link: &mut Link, kind: FileType) -> Result<Vec<Vec<u8>>, Failure> {
+    let mut data = Vec::new();
+    let end = link
+        .download(&files::list(kind), MAX_LIST, None, |piece| {
+            data.extend_from_slice(piece);
+            Ok(())
+        })
+        .await?;
+    match end {
+        DownloadEnd::Finished => Ok(Vec::new()),
+        DownloadEnd::Nothing(status) | DownloadEnd::Refused { status, bytes: 0 } if status.added == NOTHING_LISTED => {
+            Ok(Vec::new())
+        }
+        end => {
+            taken(&end).map_err(|failure| about(&kind.filter(), failure))?;
+            Ok(split_list(&data).into_iter().map(<[u8]>::to_vec).collect())
+        }
+    }
+}
+
+/// Fetches a file; every block goes to `take`.
+pub async fn fetch(
+    link: &mut Link,
+    file: &FileName,
+    take: impl FnMut(&[u8]) -> Result<(), Failure>,
+) -> Result<u64, Failure> {
+    let end = link.download(&file.save(), MAX_FILE, None, take).await;
+    end.and_then(|end| taken(&end)).map_err(|failure| about(&link.encoding.decode(file.as_bytes()), failure))
+}
+
+/// As [`fetch`] for a file that was just listed: one that has no content then is empty, not missing.
+pub async fn fetch_listed(
+    link: &mut Link,
+    file: &FileName,
+    take: impl FnMut(&[u8]) -> Result<(), Failure>,
+) -> Result<u64, Failure> {
+    let end = link.download(&file.save(), MAX_FILE, None, take).await;
+    let end = match end {
+        Ok(DownloadEnd::Nothing(Status { added: NO_FILE_OR_EMPTY, .. })) => return Ok(0),
+        end => end,
+    };
+    end.and_then(|end| taken(&end)).map_err(|failure| about(&link.encoding.decode(file.as_bytes()), failure))
+}
+
+/// The batch backup: `None` if the controller has made it, its size if it came.
+pub async fn fetch_backup(
+    link: &mut Link,
+    wait: Duration,
+    take: impl FnMut(&[u8]) -> Result<(), Failure>,
+) -> Result<Option<u64>, Failure> {
+    match link.download(&files::batch_backup(), MAX_FILE, Some(wait), take).await? {
+        DownloadEnd::Finished => Ok(None),
+        end => taken(&end).map(Some).map_err(|failure| about("CMOSBK.BIN", failure)),
+    }
+}
+
+/// Deletes a file.
+pub async fn remove(link: &mut Link, file: &FileName) -> Result<(), Failure> {
+    let reply = link.reply(&file.delete()).await;
+    let name = link.encoding.decode(file.as_bytes());
+    let outcome = reply.and_then(|reply| match reply.status {
+        // "Done" with an added status beside it tells of a file that is not there (DX 3.1).
+        status if status.is_ok() && status.added == 0 => Ok(()),
+        status => Err(Refusal(status).into()),
+    });
+    outcome.map_err(|failure: Failure| match failure.kind {
+        Kind::OutcomeUnknown => about(&name, failure).hint("`yerc file list` tells whether it is still there"),
+        _ => about(&name, failure),
+    })
+}
+
+/// Sends a file.
+pub async fn send(
+    link: &mut Link,
+    file: &FileName,
+    content: &mut Content,
+    progress: &mut Progress,
+) -> Result<u64, Failure> {
+    let total = content.size();
+    let path = content.path().display().to_string();
+    let mut pieces = content.pieces()?;
+    let end = link
+        .upload(&file.load(), || {
+            let piece = pieces.next_piece()?;
+            progress.advance(piece.len() as u64);
+            Ok(piece)
+        })
+        .await;
+    let name = link.encoding.decode(file.as_bytes());
+    end.and_then(|end| given(&end, total, &name, &path)).map_err(|failure| about(&name, failure))
+}
+
+/// What a dry run would send for [`send`].
+pub fn foresee_send(link: &mut Link, file: &FileName, content: &mut Content) -> Result<(), Failure> {
+    let mut pieces = content.pieces()?;
+    link.foresee_upload(&file.load(), || pieces.next_piece())
+}
+
+/// Notes in a dry run what would be sent, one request after the other.
+pub fn foresee_all(link: &mut Link, requests: impl IntoIterator<Item = Request>) {
+    for request in requests {
+        link.foresee_next(&request);
+    }
+}
+
+/// Whether a controller refused a file because it has a job of that name.
+pub fn is_job_exists(failure: &Failure) -> bool {
+    failure.kind == Kind::Refused && failure.code.as_deref() == Some(JOB_EXISTS)
+}
+
+/// A failure that begins with the file it is about.
+pub fn about(name: &str, failure: Failure) -> Failure {
+    Failure { message: format!("{name}: {}", failure.message), ..failure }
+}
+
+fn taken(end: &DownloadEnd) -> Result<u64, Failure> {
+    match *end {
+        DownloadEnd::Complete { bytes, .. } => Ok(bytes),
+        DownloadEnd::Nothing(status) | DownloadEnd::Refused { status, bytes: 0 } => Err(Refusal(status).into()),
+        DownloadEnd::Refused { status, bytes } => {
+            Err(about(&format!("broken off after {bytes} bytes"), Refusal(status).into()))
+        }
+        DownloadEnd::Finished => Err(Failure::new(Kind::Malformed, "the controller says done, but sent nothing")
+            .hint("`yerc file list` tells whether the file is there; it may be empty")),
+        DownloadEnd::Violated { violation, bytes } => {
+            Err(Failure::new(Kind::Malformed, format!("the transfer went wrong after {bytes} bytes: {violation}"))
+                .hint("nothing was kept of it; repeat it, and record it with --trace if it comes again"))
+        }
+        DownloadEnd::TooLarge { limit, .. } => {
+            Err(Failure::new(Kind::Malformed, format!("the controller sends more than {limit} bytes"))
+                .hint("no controller has files of this size; record it with --trace and report it"))
+        }
+        DownloadEnd::NoAnswer { bytes, counters } => {
+            Err(Failure::new(Kind::NoAnswer, format!("silence after {bytes} bytes ({counters})")))
+        }
+    }
+}
+
+fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Failure> {
+    let unknown = |message: String| {
+        Err(Failure::new(Kind::OutcomeUnknown, message)
+            .hint(format!("`yerc file diff {name} {path}` tells what the controller has now")))
+    };
+    match *end {
+        UploadEnd::Complete { bytes, .. } => Ok(bytes),
+        UploadEnd::Empty => Err(Failure::usage("an empty file cannot be sent")),
+        UploadEnd::TooLong { .. } => Err(Failure::usage("the file is too long for a transfer")),
+        UploadEnd::Refused { status, sent, repeated: true, .. } if sent >= total => {
+            let Failure { message, .. } = Refusal(status).into();
+            unknown(format!("the last block was sent again and then refused: {message} The file may be there"))
+        }
+        UploadEnd::Refused { status, sent: 0, .. } => Err(Refusal(status).into()),
+        UploadEnd::Refused { status, taken, .. } => {
+            Err(about(&format!("after {taken} of {total} bytes"), Refusal(status).into()))
+        }
+        UploadEnd::OutcomeUnknown { sent, .. } if sent >= total => {
+            unknown("all was sent, but the last acknowledgement did not come: the file may be there".to_owned())
+        }
+        UploadEnd::OutcomeUnknown { taken, .. } => {
+            unknown(format!("no acknowledgement after {taken} of {total} bytes: a part may be there"))
+        }
+        UploadEnd::NoAnswer(counters) => Err(Failure::new(Kind::NoAnswer, format!("no answer ({counters})"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::yerc::session::Counters;
+
+    #[test]
+    fn a_refusal_of_a_repeated_last_block_leaves_the_outcome_open() {
+        let status = Status::refused(0xE4A1);
+        let end = |sent, repeated| {
+            given(&UploadEnd::Refused { status, sent, taken: 0, repeated }, 9, "A.JBI", "a.jbi").unwrap_err()
+        };
+        assert_eq!(end(9, true).kind, Kind::OutcomeUnknown);
+        assert_eq!(
+            end(9, true).hint.as_deref(),
+            Some("`yerc file diff A.JBI a.jbi` tells what the controller has now")
+        );
+        assert_eq!(end(9, false).kind, Kind::Refused);
+        assert_eq!(end(0, true).kind, Kind::Refused);
+        let counters = Counters::default();
+        let lost = given(&UploadEnd::OutcomeUnknown { sent: 9, taken: 0, counters }, 9, "A.JBI", "a.jbi");
+        assert_eq!(lost.unwrap_err().kind.exit(), 6);
+    }
+
+    #[test]
+    fn a_missing_file_is_a_refusal_with_a_hint() {
+        for status in
+            [Status { code: 0, added_size: 1, added: 0xE29C }, Status::refused(0x4040), Status::refused(0xE2B3)]
+        {
+            let end =
+                if status.is_ok() { DownloadEnd::Nothing(status) } else { DownloadEnd::Refused { status, bytes: 0 } };
+            let failure = taken(&end).unwrap_err();
+            assert_eq!(failure.kind, Kind::Refused);
+            assert!(failure.hint.unwrap().contains("file list"));
+        }
+    }
+
+    #[test]
+    fn a_broken_transfer_is_never_a_file() {
+        let status = Status::refused(0xE28B);
+        for (end, kind) in [
+            (DownloadEnd::Refused { status, bytes: 479 }, Kind::Refused),
+            (DownloadEnd::Finished, Kind::Malformed),
+            (DownloadEnd::TooLarge { limit: 5, bytes: 4 }, Kind::Malformed),
+        ] {
+            assert_eq!(taken(&end).unwrap_err().kind, kind);
+        }
+    }
+}
