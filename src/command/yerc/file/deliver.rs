@@ -87,8 +87,8 @@ async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Re
         Comparison { controller_bytes, local_bytes, first_difference: Some(at) } => Err(Failure::new(
             Kind::Malformed,
             format!(
-                "{name}: the controller gives back other bytes than were sent: {controller_bytes} against \
-                 {local_bytes}, the first difference at byte {at}"
+                "the controller gives back other bytes than were sent: {controller_bytes} against {local_bytes}, the \
+                 first difference at byte {at}"
             ),
         )
         .hint(format!("`yerc file diff {name} {path}` shows them; a controller may rewrite the header of a job"))),

@@ -59,7 +59,8 @@ impl Command for Diff {
             theirs.extend_from_slice(block.get(..room).unwrap_or(block));
             comparer.take(block)
         })
-        .await?;
+        .await
+        .map_err(|failure| transfer::about(&shown.name, failure))?;
         let comparison = comparer.finish()?;
         drop(progress);
         let text = if comparison.first_difference.is_some() && comparison.local_bytes <= MOST_TEXT as u64 {

@@ -47,7 +47,9 @@ impl Command for Get {
         if to_stdout {
             self.check_stdout(*screen, several)?;
         }
-        let folder = own_folder(&self.output, &robot.name, several);
+        // Paths without a leading `./` are easier to read.
+        let output = if self.output == Path::new(".") { Path::new("") } else { &self.output };
+        let folder = own_folder(output, &robot.name, several);
         let targets = if to_stdout { Vec::new() } else { targets(link.encoding, &files, &folder, self.force)? };
         if link.is_dry() {
             transfer::foresee_all(link, files.iter().map(FileName::save));
@@ -125,8 +127,11 @@ async fn save(link: &mut Link, screen: &Screen, file: &FileName, target: &Target
 
 async fn print(link: &mut Link, screen: &Screen, file: &FileName) -> Result<(), Failure> {
     let mut out = Printer::new(screen, link.encoding);
-    transfer::fetch(link, file, |block| out.take(block)).await?;
-    out.flush()
+    let name = link.encoding.decode(file.as_bytes());
+    let came = transfer::fetch(link, file, |block| out.take(block)).await;
+    // What came is written even if the rest did not: the exit code tells.
+    out.flush()?;
+    came.map(|_| ()).map_err(|failure| transfer::about(&name, failure))
 }
 
 /// A file on stdout: its bytes, or on a terminal its text, which then cannot steer the terminal.

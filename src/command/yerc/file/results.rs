@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::name::Shown;
+use super::transfer::about;
 use crate::command::Report;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
@@ -112,7 +113,7 @@ impl Results {
     pub fn report(mut self) -> Result<Self, Failure> {
         match &mut self.files[..] {
             [only] => match only.error.take() {
-                Some(failure) => Err(failure),
+                Some(failure) => Err(about(&only.name.name, failure)),
                 None => Ok(self),
             },
             _ => Ok(self),
@@ -131,7 +132,7 @@ impl Results {
             let result = match (file.state, &file.error) {
                 (State::Done, _) => Cell::from(done).tone(Tone::Good),
                 (State::Kept, _) => Cell::from("kept"),
-                (State::Failed, Some(error)) => Cell::from(coded(error)).tone(Tone::Bad),
+                (State::Failed, Some(error)) => Cell::from(brief(error)).tone(Tone::Bad),
                 (State::Failed, None) => Cell::from("failed").tone(Tone::Bad),
                 (State::NotTried, _) => Cell::from("not tried").tone(Tone::Warning),
             };
@@ -158,14 +159,15 @@ impl Report for Results {
     }
 
     fn failure(&self) -> Option<Failure> {
-        let gravest =
-            self.files.iter().filter_map(|file| file.error.as_ref()).max_by_key(|failure| gravity(failure.kind))?;
+        let failures = self.files.iter().filter_map(|file| Some((&file.name.name, file.error.as_ref()?)));
+        // Of equally grave ones, the first.
+        let (name, gravest) = failures.rev().max_by_key(|(_, failure)| gravity(failure.kind))?;
         let total = self.files.len();
         let failed = match self.not_tried {
             0 => format!("{} of {total} files failed", self.failed),
-            left => format!("{} of {total} files failed, {left} were not tried", self.failed),
+            left => format!("{} of {total} files failed, {left} not tried", self.failed),
         };
-        Some(Failure { message: format!("{failed}: {}", gravest.message), ..gravest.clone() })
+        Some(Failure { message: format!("{failed}: {name}: {}", gravest.message), ..gravest.clone() })
     }
 }
 
@@ -176,10 +178,12 @@ fn notes(file: &FileResult) -> impl Iterator<Item = &'static str> {
     })
 }
 
-fn coded(failure: &Failure) -> String {
+/// What fits a column: the first sentence and the code.
+fn brief(failure: &Failure) -> String {
+    let sentence = failure.message.split(". ").next().unwrap_or_default();
     match &failure.code {
-        Some(code) => format!("{} [{code}]", failure.message),
-        None => failure.message.clone(),
+        Some(code) => format!("{sentence} [{code}]"),
+        None => sentence.to_owned(),
     }
 }
 
@@ -206,7 +210,7 @@ mod tests {
         let pending = |name: &[u8]| FileResult::pending(Shown::new(Encoding::ShiftJis, name), None);
         let mut files = vec![pending(b"A.JBI"), pending(b"B.JBI"), pending(b"C.JBI"), pending(b"D.JBI")];
         assert!(files[0].settle(Ok(Some(10))));
-        assert!(files[1].settle(Err(Failure::new(Kind::Refused, "no").code("0xE29C"))));
+        assert!(files[1].settle(Err(Failure::new(Kind::Refused, "no. Never").code("0xE29C"))));
         assert!(!files[2].settle(Err(Failure::new(Kind::NoAnswer, "silence").hint("cable"))));
         files
     }
@@ -217,7 +221,7 @@ mod tests {
         assert_eq!((results.done, results.failed, results.not_tried), (1, 2, 1));
         let failure = results.failure().unwrap();
         assert_eq!(failure.kind, Kind::NoAnswer);
-        assert_eq!(failure.message, "2 of 4 files failed, 1 were not tried: silence");
+        assert_eq!(failure.message, "2 of 4 files failed, 1 not tried: C.JBI: silence");
         assert_eq!(failure.hint.as_deref(), Some("cable"));
         let text = render::text(&results.view(), 80, false);
         assert_eq!(
@@ -230,7 +234,7 @@ mod tests {
     #[test]
     fn one_file_fails_as_itself() {
         let failed = Results::new(files().drain(1..2).collect(), SHAPE).report().unwrap_err();
-        assert_eq!((failed.kind, failed.message.as_str()), (Kind::Refused, "no"));
+        assert_eq!((failed.kind, failed.message.as_str()), (Kind::Refused, "B.JBI: no. Never"));
         assert!(Results::new(files(), SHAPE).report().is_ok());
         assert!(Results::new(files().drain(..1).collect(), SHAPE).report().unwrap().failure().is_none());
     }

@@ -50,8 +50,7 @@ pub async fn fetch(
     file: &FileName,
     take: impl FnMut(&[u8]) -> Result<(), Failure>,
 ) -> Result<u64, Failure> {
-    let end = link.download(&file.save(), MAX_FILE, None, take).await;
-    end.and_then(|end| taken(&end)).map_err(|failure| about(&link.encoding.decode(file.as_bytes()), failure))
+    taken(&link.download(&file.save(), MAX_FILE, None, take).await?)
 }
 
 /// As [`fetch`] for a file that was just listed: one that has no content then is empty, not missing.
@@ -60,12 +59,10 @@ pub async fn fetch_listed(
     file: &FileName,
     take: impl FnMut(&[u8]) -> Result<(), Failure>,
 ) -> Result<u64, Failure> {
-    let end = link.download(&file.save(), MAX_FILE, None, take).await;
-    let end = match end {
-        Ok(DownloadEnd::Nothing(Status { added: NO_FILE_OR_EMPTY, .. })) => return Ok(0),
-        end => end,
-    };
-    end.and_then(|end| taken(&end)).map_err(|failure| about(&link.encoding.decode(file.as_bytes()), failure))
+    match link.download(&file.save(), MAX_FILE, None, take).await? {
+        DownloadEnd::Nothing(Status { added: NO_FILE_OR_EMPTY, .. }) => Ok(0),
+        end => taken(&end),
+    }
 }
 
 /// The batch backup: `None` if the controller has made it, its size if it came.
@@ -76,23 +73,21 @@ pub async fn fetch_backup(
 ) -> Result<Option<u64>, Failure> {
     match link.download(&files::batch_backup(), MAX_FILE, Some(wait), take).await? {
         DownloadEnd::Finished => Ok(None),
-        end => taken(&end).map(Some).map_err(|failure| about("CMOSBK.BIN", failure)),
+        end => taken(&end).map(Some),
     }
 }
 
 /// Deletes a file.
 pub async fn remove(link: &mut Link, file: &FileName) -> Result<(), Failure> {
-    let reply = link.reply(&file.delete()).await;
-    let name = link.encoding.decode(file.as_bytes());
-    let outcome = reply.and_then(|reply| match reply.status {
+    let reply = link.reply(&file.delete()).await.map_err(|failure| match failure.kind {
+        Kind::OutcomeUnknown => failure.hint("`yerc file list` tells whether it is still there"),
+        _ => failure,
+    })?;
+    match reply.status {
         // "Done" with an added status beside it tells of a file that is not there (DX 3.1).
         status if status.is_ok() && status.added == 0 => Ok(()),
         status => Err(Refusal(status).into()),
-    });
-    outcome.map_err(|failure: Failure| match failure.kind {
-        Kind::OutcomeUnknown => about(&name, failure).hint("`yerc file list` tells whether it is still there"),
-        _ => about(&name, failure),
-    })
+    }
 }
 
 /// Sends a file.
@@ -111,9 +106,8 @@ pub async fn send(
             progress.advance(piece.len() as u64);
             Ok(piece)
         })
-        .await;
-    let name = link.encoding.decode(file.as_bytes());
-    end.and_then(|end| given(&end, total, &name, &path)).map_err(|failure| about(&name, failure))
+        .await?;
+    given(&end, total, &link.encoding.decode(file.as_bytes()), &path)
 }
 
 /// What a dry run would send for [`send`].
