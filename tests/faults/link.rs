@@ -4,6 +4,8 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::time::Duration;
 
+use armctl::controller::yerc::request::Request;
+use armctl::controller::yerc::wire::Status;
 use armctl::controller::{Now, Session, Step};
 use armctl::transport::fault::{FaultSpec, Faults};
 
@@ -12,22 +14,58 @@ const SERVICE_TIME: Duration = Duration::from_millis(8);
 /// More steps than any session needs: one that takes more will never end.
 const MOST_STEPS: usize = 100_000;
 
+/// A class of commands: what a repeat would do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Class {
+    Read,
+    Write,
+    Start,
+    Move,
+}
+
+/// Where a transfer goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Way {
+    Save,
+    List,
+    Load,
+}
+
 /// A controller at the far end of a link, with what the tests want to know of it.
 pub(crate) trait Controller {
     /// The datagrams with which it answers one.
     fn receive(&mut self, now: Now, datagram: &[u8]) -> Vec<Vec<u8>>;
 
-    /// How often it carried out a request that changes state.
+    /// When it sends something by itself.
+    fn wake(&self) -> Option<Now> {
+        None
+    }
+
+    /// What it sends by itself.
+    fn transmit(&mut self, _now: Now) -> Vec<Vec<u8>> {
+        Vec::new()
+    }
+
+    /// A request of this class.
+    fn order(&mut self, class: Class) -> Request;
+
+    /// Whether it has answered a read with this.
+    fn has_answered(&self, data: &[u8]) -> bool;
+
+    /// Whether it has a reason to refuse like this, beside being busy.
+    fn may_refuse(&self, status: Status) -> bool;
+
+    /// How often it carried out a request that changes state, all told. Nothing may be under way to it.
     fn executed(&self) -> u32;
 
-    /// Puts a file there, which it also sends as its list.
-    fn offer(&mut self, content: &[u8]);
+    /// Has a file of this content, and tells what to name in the request and what a transfer in this direction brings.
+    fn offer(&mut self, way: Way, content: &[u8]) -> (&'static [u8], Vec<u8>);
 
-    /// Removes the file that was stored by an upload.
+    /// Removes the file that was stored by an upload, where that can be done.
     fn forget(&mut self);
 
     /// The file that was stored by an upload.
-    fn stored(&self) -> Option<&[u8]>;
+    fn stored(&self) -> Option<Vec<u8>>;
 
     /// Whether it may leave out blocks of a file when frames are lost.
     fn skips(&self) -> bool;
@@ -134,8 +172,14 @@ impl<C: Controller> Link<C> {
         }
     }
 
-    /// The next arrival, or `until` if there is none before.
+    /// The next arrival, what the controller does by itself, or `until` if neither is before.
     fn advance(&mut self, until: Now, handle: impl FnOnce(Now, &[u8])) {
+        let arrival = self.flights.peek().map_or(until, |Reverse((at, ..))| (*at).min(until));
+        if let Some(at) = self.controller.wake().filter(|at| *at < arrival) {
+            self.now = self.now.max(at);
+            let sent = self.controller.transmit(self.now);
+            return self.answer(sent);
+        }
         let arrives = self.flights.peek().is_some_and(|Reverse((at, ..))| *at <= until);
         let Some(Reverse((at, _, to, bytes))) = arrives.then(|| self.flights.pop()).flatten() else {
             self.now = until;
@@ -145,12 +189,17 @@ impl<C: Controller> Link<C> {
         match to {
             To::Client => handle(self.now, &bytes),
             To::Controller => {
-                for answer in self.controller.receive(self.now, &bytes) {
-                    self.busy += usize::from(is_busy_refusal(&answer));
-                    let copies = self.back.pass(self.now + SERVICE_TIME, &answer);
-                    self.launch(To::Client, copies);
-                }
+                let sent = self.controller.receive(self.now, &bytes);
+                self.answer(sent);
             }
+        }
+    }
+
+    fn answer(&mut self, sent: Vec<Vec<u8>>) {
+        for answer in sent {
+            self.busy += usize::from(is_busy_refusal(&answer));
+            let copies = self.back.pass(self.now + SERVICE_TIME, &answer);
+            self.launch(To::Client, copies);
         }
     }
 

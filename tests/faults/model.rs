@@ -1,15 +1,17 @@
 //! A controller in a few lines, with byte handling of its own: it shares nothing with the code under test.
 
 use armctl::controller::Now;
+use armctl::controller::yerc::request::Request;
+use armctl::controller::yerc::wire::Status;
 
-use crate::link::Controller;
+use crate::link::{Class, Controller, Way};
 
 /// What every read answers.
-pub(crate) const STATE: [u8; 8] = [0x42, 0, 0, 0, 0x40, 0, 0, 0];
+const STATE: [u8; 8] = [0x42, 0, 0, 0, 0x40, 0, 0, 0];
 /// The refusal of a block that is not due (DX chapter 4).
-pub(crate) const WRONG_BLOCK: u32 = 0xE4A1;
+const WRONG_BLOCK: u32 = 0xE4A1;
 /// The refusal of an ACK without a transfer (DX chapter 4).
-pub(crate) const NO_SUCH_ACK: u32 = 0xE4A2;
+const NO_SUCH_ACK: u32 = 0xE4A2;
 
 const LAST: u32 = 0x8000_0000;
 const BLOCK: usize = 479;
@@ -239,21 +241,40 @@ impl Controller for Model {
         answer.into_iter().collect()
     }
 
+    fn order(&mut self, class: Class) -> Request {
+        let (command, service, data) = match class {
+            Class::Read => (0x72, 0x01, Vec::new()),
+            Class::Write => (0x7C, 0x10, vec![1, 2, 3, 4]),
+            Class::Start => (0x86, 0x10, vec![1, 0, 0, 0]),
+            Class::Move => (0x8A, 0x02, vec![0; 104]),
+        };
+        Request { command, instance: 1, attribute: 0, service, data }
+    }
+
+    fn has_answered(&self, data: &[u8]) -> bool {
+        data == STATE
+    }
+
+    fn may_refuse(&self, status: Status) -> bool {
+        [WRONG_BLOCK, NO_SUCH_ACK].contains(&status.added)
+    }
+
     fn executed(&self) -> u32 {
         self.executed
     }
 
-    fn offer(&mut self, content: &[u8]) {
+    fn offer(&mut self, _: Way, content: &[u8]) -> (&'static [u8], Vec<u8>) {
         self.file = content.to_vec();
         self.transfer = Transfer::None;
+        (b"TESTJOB.JBI", content.to_vec())
     }
 
     fn forget(&mut self) {
         self.stored = None;
     }
 
-    fn stored(&self) -> Option<&[u8]> {
-        self.stored.as_deref()
+    fn stored(&self) -> Option<Vec<u8>> {
+        self.stored.clone()
     }
 
     fn skips(&self) -> bool {

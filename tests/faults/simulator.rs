@@ -1,0 +1,363 @@
+//! The simulator of this project behind the same bad links: what a bad line does to a controller with a life.
+
+use std::cell::OnceCell;
+use std::collections::BTreeSet;
+use std::time::Duration;
+
+use armctl::controller::Now;
+use armctl::controller::yerc::Model::{self, Dx200, Fs100};
+use armctl::controller::yerc::group::Group;
+use armctl::controller::yerc::payload::{CartesianMove, ExtendedForm, Form, MoveLayout, PositionKind, SpeedClass};
+use armctl::controller::yerc::query::{
+    Coordinates, MoveCartesian, MoveKind, Query, ReadPosition, ReadStatus, ReadVariable, StartJob, WriteVariable,
+};
+use armctl::controller::yerc::request::Request;
+use armctl::controller::yerc::session::{Download, DownloadEnd, Ids, Policy};
+use armctl::controller::yerc::simulator::{Simulator, Start};
+use armctl::controller::yerc::variables::{Value, VariableKind};
+use armctl::controller::yerc::wire::{AnswerFrame, Division, Status};
+use armctl::transport::fault::FaultSpec;
+
+use super::{
+    End, FAULTS, SIZES, WAYS, answered_well, check_exchanges, content, exchange, exchanges, file_request, spec,
+    successes, transfer,
+};
+use crate::link::{Class, Controller, Link, Way};
+
+const MODELS: [Model; 2] = [Dx200, Fs100];
+const EXCHANGE_SEEDS: u64 = 150;
+const TRANSFER_SEEDS: u64 = 25;
+
+/// The client under test, and one that looks on.
+const CLIENT: u64 = 1;
+const ONLOOKER: u64 = 2;
+/// Longer than anything that a controller has begun goes on, the wait for a lost client included.
+const REST: Duration = Duration::from_secs(30);
+/// The first of the D variables that are written, each once.
+const FIRST_WRITTEN: u16 = 10;
+/// How far each move goes along X, in micrometres.
+const STEP: i32 = 1000;
+/// The content of a file of this many bytes, which the client saves.
+const SEED: u64 = 0;
+/// Refusals of what arrives damaged, out of turn, or while something moves (DX chapter 4).
+const REFUSALS: [u32; 9] = [0x2010, 0xE28B, 0xE49E, 0xE4A1, 0xE4A2, 0xE4A3, 0xE4A5, 0xE4A6, 0xE4A7];
+/// No such file, which an FS100 says of an empty one too.
+const NO_SUCH_FILE: u32 = 0xE2B3;
+
+/// The simulator, and what it was asked and has answered.
+#[derive(Clone)]
+struct Simulated {
+    simulator: Simulator,
+    model: Model,
+    now: Now,
+    written: u16,
+    read: BTreeSet<Vec<u8>>,
+}
+
+fn start(model: Model) -> Start {
+    let file = |size| format!("[[file]]\nname = '{}'\npath = '{size}'\n", String::from_utf8_lossy(name(size)));
+    let files: String = SIZES.map(file).concat();
+    let text = format!(
+        "model = '{model}'\nstock = false\njob = 'TICK'\n[[file]]\nname = 'TICK.JBI'\ntext = '''\n/JOB\n//NAME TICK\n\
+         //INST\nNOP\nINC D000\nEND\n'''\n{files}"
+    );
+    Start::parse(&text, |size| Ok(content(size.parse().expect("a size"), SEED))).expect("a good start state")
+}
+
+/// The file of this size that is there from the start.
+fn name(size: usize) -> &'static [u8] {
+    match size {
+        0 => b"EMPTY.DAT",
+        1 => b"ONE.DAT",
+        478 => b"ALMOST.DAT",
+        479 => b"BLOCK.DAT",
+        480 => b"MORE.DAT",
+        958 => b"BLOCKS.DAT",
+        _ => b"LONG.DAT",
+    }
+}
+
+impl Simulated {
+    fn new(start: &Start, faults: &FaultSpec) -> Self {
+        let busy = f64::from(faults.busy.per_10_000()) / 10_000.0;
+        let start = start.clone().with_seed(faults.seed).with_busy(busy);
+        let model = start.model();
+        Self { simulator: Simulator::new(start), model, now: Now::ZERO, written: 0, read: BTreeSet::new() }
+    }
+
+    /// The same controller when all is at rest and never busy, to be looked at.
+    fn rested(&self) -> Self {
+        let mut copy = self.clone();
+        copy.now += REST;
+        copy.transmit(copy.now);
+        copy
+    }
+
+    /// What the onlooker is answered, after as many attempts as a busy controller wants.
+    fn look<Q: Query>(&mut self, query: &Q) -> Q::Answer {
+        loop {
+            self.simulator.receive(self.now, Division::Robot, ONLOOKER, &query.request().frame(1));
+            let answer = self.simulator.transmit(self.now).expect("an answer").bytes;
+            let answer = AnswerFrame::parse(&answer).expect("a frame");
+            if answer.status.is_ok() {
+                return query.decode(answer.data).expect("good data");
+            }
+        }
+    }
+
+    fn double(&mut self, number: u16) -> i32 {
+        match self.look(&ReadVariable::new(VariableKind::D, number)) {
+            Value::Double(value) => value,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// A file as the onlooker fetches it.
+    fn file(&mut self, name: &[u8]) -> Option<Vec<u8>> {
+        let mut session = Download::new(&file_request(0x16, name), 1 << 20, Policy::default(), &Ids::default());
+        let mut link = Link::new(Onlooker(self), FaultSpec::default());
+        let run = link.run(&mut session, |_| unreachable!("a download asks for no content"));
+        match run.outcome {
+            DownloadEnd::Complete { .. } => Some(run.data),
+            DownloadEnd::Nothing(_) => None,
+            DownloadEnd::Refused { status, .. } if status.added == NO_SUCH_FILE => None,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn exchange(&mut self, peer: u64, now: Now, datagram: &[u8]) -> Vec<Vec<u8>> {
+        self.now = self.now.max(now);
+        // Sockets are bound to one port, so what arrives damaged arrives at the right one.
+        let division = if datagram.get(9) == Some(&2) { Division::File } else { Division::Robot };
+        self.simulator.receive(self.now, division, peer, datagram);
+        self.transmit(now)
+    }
+}
+
+impl Controller for Simulated {
+    fn receive(&mut self, now: Now, datagram: &[u8]) -> Vec<Vec<u8>> {
+        let sent = self.exchange(CLIENT, now, datagram);
+        let answers = sent.iter().filter_map(|bytes| AnswerFrame::parse(bytes).ok());
+        self.read.extend(answers.filter(|answer| answer.service == 0x81).map(|answer| answer.data.to_vec()));
+        sent
+    }
+
+    fn wake(&self) -> Option<Now> {
+        self.simulator.wake()
+    }
+
+    fn transmit(&mut self, now: Now) -> Vec<Vec<u8>> {
+        self.now = self.now.max(now);
+        std::iter::from_fn(|| self.simulator.transmit(self.now)).map(|outgoing| outgoing.bytes).collect()
+    }
+
+    fn order(&mut self, class: Class) -> Request {
+        match class {
+            Class::Read => ReadStatus.request(),
+            Class::Write => {
+                let number = FIRST_WRITTEN + self.written;
+                self.written += 1;
+                WriteVariable::new(number, Value::Double(number.into())).expect("a variable there is").request()
+            }
+            Class::Start => StartJob.request(),
+            Class::Move => {
+                let target = CartesianMove {
+                    layout: MoveLayout::Words26,
+                    robot: 1,
+                    station: 0,
+                    class: SpeedClass::Linear,
+                    speed: 15_000,
+                    coordinate: PositionKind::Base,
+                    target: [STEP, 0, 0, 0, 0, 0],
+                    reserved: [0; 2],
+                    form: Form(0),
+                    extended: ExtendedForm(0),
+                    tool: 0,
+                    user: 0,
+                    base: [0; 3],
+                    station_axes: [0; 6],
+                };
+                MoveCartesian::new(self.model, MoveKind::Incremental, target).expect("a good move").request()
+            }
+        }
+    }
+
+    fn has_answered(&self, data: &[u8]) -> bool {
+        self.read.contains(data)
+    }
+
+    fn may_refuse(&self, status: Status) -> bool {
+        REFUSALS.contains(&status.added) || self.model == Fs100 && status.added == NO_SUCH_FILE
+    }
+
+    fn executed(&self) -> u32 {
+        let mut rested = self.rested();
+        let position = ReadPosition::new(self.model, Group::R1, Coordinates::Base).expect("a robot");
+        let x = |simulated: &mut Self| simulated.look(&position).axes.as_slice()[0];
+        let travelled = x(&mut rested) - x(&mut Self::new(&start_of(self.model), &FaultSpec::default()));
+        assert_eq!(travelled % STEP, 0, "a move was cut short or changed");
+        let mut writes = 0;
+        for number in FIRST_WRITTEN..FIRST_WRITTEN + self.written {
+            let value = rested.double(number);
+            assert!([0, number.into()].contains(&value), "D{number} is {value}");
+            writes += u32::from(value != 0);
+        }
+        (travelled / STEP + rested.double(0)).unsigned_abs() + writes
+    }
+
+    fn offer(&mut self, way: Way, bytes: &[u8]) -> (&'static [u8], Vec<u8>) {
+        match way {
+            Way::Load => (b"NEW.DAT", Vec::new()),
+            Way::Save => (name(bytes.len()), content(bytes.len(), SEED)),
+            Way::List => {
+                let mut names = SIZES.map(name).to_vec();
+                names.extend(self.stored().map(|_| &b"NEW.DAT"[..]));
+                names.sort_unstable();
+                (b"*.DAT", names.into_iter().flat_map(|name| [name, b"\r\n"].concat()).collect())
+            }
+        }
+    }
+
+    fn forget(&mut self) {}
+
+    fn stored(&self) -> Option<Vec<u8>> {
+        self.rested().file(b"NEW.DAT")
+    }
+
+    fn skips(&self) -> bool {
+        false
+    }
+}
+
+/// The other client, on a line without faults.
+struct Onlooker<'a>(&'a mut Simulated);
+
+impl Controller for Onlooker<'_> {
+    fn receive(&mut self, now: Now, datagram: &[u8]) -> Vec<Vec<u8>> {
+        self.0.exchange(ONLOOKER, now, datagram)
+    }
+
+    fn order(&mut self, class: Class) -> Request {
+        self.0.order(class)
+    }
+
+    fn has_answered(&self, data: &[u8]) -> bool {
+        self.0.has_answered(data)
+    }
+
+    fn may_refuse(&self, status: Status) -> bool {
+        self.0.may_refuse(status)
+    }
+
+    fn executed(&self) -> u32 {
+        self.0.executed()
+    }
+
+    fn offer(&mut self, way: Way, content: &[u8]) -> (&'static [u8], Vec<u8>) {
+        self.0.offer(way, content)
+    }
+
+    fn forget(&mut self) {}
+
+    fn stored(&self) -> Option<Vec<u8>> {
+        self.0.stored()
+    }
+
+    fn skips(&self) -> bool {
+        false
+    }
+}
+
+thread_local! {
+    static STARTS: [OnceCell<Start>; 2] = const { [OnceCell::new(), OnceCell::new()] };
+}
+
+/// The start state of a model, which takes longer to read than to copy.
+fn start_of(model: Model) -> Start {
+    STARTS.with(|starts| starts[usize::from(model == Fs100)].get_or_init(|| start(model)).clone())
+}
+
+fn link_to(model: Model, faults: FaultSpec) -> Link<Simulated> {
+    Link::new(Simulated::new(&start_of(model), &faults), faults)
+}
+
+#[test]
+fn exchanges_keep_their_promises_under_every_fault() {
+    for model in MODELS {
+        for text in FAULTS {
+            for seed in 0..EXCHANGE_SEEDS {
+                let faults = spec(text, seed);
+                check_exchanges(&faults, link_to(model, faults.clone()));
+            }
+        }
+    }
+}
+
+#[test]
+fn without_faults_everything_is_done_once() {
+    for model in MODELS {
+        for text in ["seed=0", "delay=0..50ms"] {
+            let (all, executed) = exchanges(link_to(model, spec(text, 3)));
+            assert!(all.iter().all(answered_well), "{text}");
+            assert_eq!((all.len(), executed), (12, 9), "{text}");
+        }
+    }
+}
+
+/// Transfers of every kind and size under one kind of fault.
+fn transfers(model: Model, text: &str, seeds: u64) -> Vec<End> {
+    let mut ends = Vec::new();
+    for way in WAYS {
+        for size in SIZES {
+            for seed in 0..seeds {
+                let mut link = link_to(model, spec(text, seed));
+                ends.push(transfer(&mut link, way, &content(size, seed + 1), &Ids::default()));
+            }
+        }
+    }
+    ends
+}
+
+#[test]
+fn transfers_keep_their_promises_under_every_fault() {
+    let mut seen = BTreeSet::new();
+    for model in MODELS {
+        for text in FAULTS {
+            seen.extend(transfers(model, text, TRANSFER_SEEDS));
+        }
+    }
+    // Or the checks have not been put to the test.
+    assert!(seen.into_iter().eq([End::Success, End::Refused, End::NoAnswer, End::Unknown]));
+}
+
+#[test]
+fn without_loss_every_transfer_succeeds() {
+    for text in ["seed=0", "delay=0..50ms", "dup=20%", "dup=100%", "reorder=15%"] {
+        let ends = transfers(Dx200, text, 10);
+        assert_eq!(successes(&ends), ends.len(), "{text}");
+    }
+}
+
+#[test]
+fn moderate_loss_hardly_stops_a_transfer() {
+    let ends = transfers(Dx200, "drop=5%,dup=2%,delay=0..50ms,reorder=3%", TRANSFER_SEEDS);
+    let good = successes(&ends);
+    assert!(good * 1000 >= ends.len() * 995, "{good} of {} transfers", ends.len());
+}
+
+/// Transfers that follow each other over one link: what comes late from one meets the next.
+#[test]
+fn transfers_in_a_row_do_not_mix() {
+    for text in FAULTS {
+        for seed in 0..TRANSFER_SEEDS {
+            let mut link = link_to(Dx200, spec(text, seed));
+            let ids = Ids::starting_at(250);
+            for round in 0..4 {
+                for way in WAYS {
+                    transfer(&mut link, way, &content(958, seed << 8 | round | 128), &ids);
+                }
+                exchange(&mut link, Class::Move, &ids);
+            }
+        }
+    }
+}
