@@ -1,0 +1,298 @@
+//! Anything at all is sent to the simulator and to the sessions: nobody panics, nothing grows, nobody waits for ever.
+//!
+//! The datagrams are noise, or frames that are nearly right: the harder ones to get wrong with.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+use std::time::Duration;
+
+use armctl::controller::yerc::Model;
+use armctl::controller::yerc::files;
+use armctl::controller::yerc::query::{Query, ReadStatus};
+use armctl::controller::yerc::session::{Download, Exchange, Ids, Policy, Upload};
+use armctl::controller::yerc::simulator::{Outgoing, Simulator, Start};
+use armctl::controller::yerc::table::{BATCH_BACKUP_PATH, ROWS, service};
+use armctl::controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
+use armctl::controller::{Now, Session, Step};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::{Index, select};
+
+/// A header and as much data as a frame holds.
+const LARGEST: usize = 32 + MAX_DATA;
+/// Longest wait between two datagrams: more than the simulator keeps an idle transfer, and a session waits.
+const LONGEST: u64 = 6000;
+
+/// What is done to a frame on its way.
+#[derive(Debug, Clone)]
+enum Damage {
+    None,
+    Bytes(Vec<(Index, u8)>),
+    Cut(Index),
+    Longer(Vec<u8>),
+    Replaced(Vec<u8>),
+}
+
+impl Damage {
+    fn of(&self, frame: &[u8]) -> Vec<u8> {
+        let mut frame = frame.to_vec();
+        match self {
+            Self::None => {}
+            Self::Bytes(changes) => {
+                for (at, byte) in changes {
+                    let at = at.index(frame.len());
+                    frame[at] = *byte;
+                }
+            }
+            Self::Cut(at) => frame.truncate(at.index(frame.len())),
+            Self::Longer(tail) => frame.extend(tail),
+            Self::Replaced(noise) => frame.clone_from(noise),
+        }
+        frame
+    }
+}
+
+fn damage() -> impl Strategy<Value = Damage> {
+    prop_oneof![
+        6 => Just(Damage::None),
+        2 => vec((any::<Index>(), any::<u8>()), 1..6).prop_map(Damage::Bytes),
+        1 => any::<Index>().prop_map(Damage::Cut),
+        1 => noise(1..=40).prop_map(Damage::Longer),
+        1 => noise(0..=600).prop_map(Damage::Replaced),
+    ]
+}
+
+/// Noise of a length; quicker to make than a choice for every byte.
+fn noise(len: std::ops::RangeInclusive<usize>) -> impl Strategy<Value = Vec<u8>> {
+    (len, any::<u64>()).prop_map(|(len, seed)| {
+        let mut bytes = vec![0; len];
+        fastrand::Rng::with_seed(seed).fill(&mut bytes);
+        bytes
+    })
+}
+
+/// Numbers around every edge that block numbers have.
+fn block() -> impl Strategy<Value = u32> {
+    prop_oneof![0_u32..5, (0_u32..5).prop_map(|block| block | LAST_BLOCK), any::<u32>()]
+}
+
+/// A frame of a client, mostly as the table has it.
+fn request() -> impl Strategy<Value = Vec<u8>> {
+    let instance = prop_oneof![4 => 0_u16..40, 1 => any::<u16>()];
+    let data = prop_oneof![
+        Just(Vec::new()),
+        vec(0_u8..4, 4),
+        noise(0..=MAX_DATA),
+        select(vec![36, 52, 88, 100, 104]).prop_flat_map(|size: usize| vec(0_u8..2, size)),
+    ];
+    let robot = (select(ROWS), instance, 0_u8..15, any::<Index>(), data, any::<u8>()).prop_map(
+        |(row, instance, attribute, service, data, id)| {
+            let service = service.get(row.services).number;
+            frame(Division::Robot, false, id, 0, [row.number, instance], attribute, service, &data)
+        },
+    );
+    let names = select(vec![&b"TESTJOB.JBI"[..], b"NEW.DAT", b"*.JBI", b"", BATCH_BACKUP_PATH]);
+    let data = prop_oneof![3 => names.prop_map(<[u8]>::to_vec), 1 => noise(0..=MAX_DATA)];
+    let services = select(vec![service::DELETE, service::LOAD, service::SAVE, service::LIST]);
+    let file = (any::<bool>(), 0_u8..3, block(), services, data).prop_map(|(ack, id, block, service, data)| {
+        let block = if ack { block } else { 0 };
+        frame(Division::File, ack, id, block, [0, 0], 0, service, &data)
+    });
+    prop_oneof![robot, file]
+}
+
+#[expect(clippy::too_many_arguments, reason = "a frame has as many fields")]
+fn frame(
+    division: Division,
+    ack: bool,
+    id: u8,
+    block: u32,
+    [command, instance]: [u16; 2],
+    attribute: u8,
+    service: u8,
+    data: &[u8],
+) -> Vec<u8> {
+    RequestFrame { division, ack, id, block, command, instance, attribute, service, data }.emit()
+}
+
+/// One datagram for the simulator: after how many milliseconds, on which port, by whom, what.
+type Sent = (u64, bool, u64, Vec<u8>);
+
+fn sent() -> impl Strategy<Value = Sent> {
+    let wait = prop_oneof![Just(0_u64), 0_u64..50, 0_u64..=LONGEST];
+    // One in ten goes to the wrong port.
+    (wait, 0_u8..10, 0_u64..3, request(), damage()).prop_map(|(wait, port, peer, frame, damage)| {
+        let is_file = frame[9] == 2;
+        (wait, is_file != (port == 0), peer, damage.of(&frame))
+    })
+}
+
+/// Everything that the simulator sends at `now`.
+fn drain(simulator: &mut Simulator, now: Now) -> Vec<Outgoing> {
+    std::iter::from_fn(|| simulator.transmit(now)).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn the_simulator_survives_any_datagrams(script in vec(sent(), 0..60), fs100: bool, busy in 0_u8..4) {
+        let model = if fs100 { Model::Fs100 } else { Model::Dx200 };
+        let mut simulator = Simulator::new(Start::for_model(model).with_busy(f64::from(busy) / 20.0));
+        let (mut now, mut answers, mut received) = (Now::ZERO, Vec::new(), 0);
+        for (wait, file, peer, bytes) in script {
+            now += Duration::from_millis(wait);
+            let division = if file { Division::File } else { Division::Robot };
+            simulator.receive(now, division, peer, &bytes);
+            received += 1;
+            answers.append(&mut drain(&mut simulator, now));
+            // Nobody can be made to flood somebody else: a batch backup answers later, but once.
+            prop_assert!(answers.len() <= received, "{} answers to {received} datagrams", answers.len());
+            if let Some(wake) = simulator.wake() {
+                prop_assert!(wake > now, "due at {wake:?}, and it is {now:?}");
+            }
+        }
+        for outgoing in answers {
+            prop_assert!(outgoing.bytes.len() <= LARGEST && outgoing.peer < 3);
+            let answer = AnswerFrame::parse(&outgoing.bytes).unwrap();
+            prop_assert_eq!(answer.division, outgoing.division);
+        }
+        // And it still works.
+        now += Duration::from_secs(60);
+        drain(&mut simulator, now);
+        let status = (0..100).find_map(|_| {
+            simulator.receive(now, Division::Robot, 9, &ReadStatus.request().frame(1));
+            let outgoing = drain(&mut simulator, now).pop().unwrap();
+            let answer = AnswerFrame::parse(&outgoing.bytes).unwrap();
+            answer.status.is_ok().then(|| ReadStatus.decode(answer.data).unwrap())
+        });
+        prop_assert!(status.is_some());
+    }
+}
+
+/// Answers that are not fetched are not kept without end.
+#[test]
+fn the_simulator_keeps_a_bounded_number_of_answers() {
+    let mut simulator = Simulator::new(Start::default());
+    for _ in 0..6000 {
+        simulator.receive(Now::ZERO, Division::Robot, 0, &ReadStatus.request().frame(1));
+    }
+    assert_eq!(drain(&mut simulator, Now::ZERO).len(), 4096);
+}
+
+/// An answer to a session: its id and service from what the session sent last, the rest as it comes.
+type Answer = (u64, Option<u8>, u32, Status, Vec<u8>, Damage);
+
+fn answer() -> impl Strategy<Value = Answer> {
+    let status = prop_oneof![
+        6 => Just(Status::OK),
+        1 => select(vec![0xD8FA, 0xFFF6, 0xE444, 0xE29C, 0xE4A1, 0x2010]).prop_map(Status::refused),
+        1 => (any::<u8>(), 0_u8..3, any::<u32>()).prop_map(|(code, size, added)| {
+            // What an answer of that size has room for.
+            let added = if size == 0 { 0 } else if size == 1 { added & 0xFFFF } else { added };
+            Status { code, added_size: size, added }
+        }),
+    ];
+    let wait = prop_oneof![Just(0_u64), 0_u64..50, 0_u64..=LONGEST];
+    let id = prop_oneof![8 => Just(None), 1 => any::<u8>().prop_map(Some)];
+    let data = prop_oneof![Just(Vec::new()), noise(0..=MAX_DATA), noise(MAX_DATA..=MAX_DATA)];
+    (wait, id, block(), status, data, damage())
+}
+
+/// Runs a session that is answered by a script, and then by silence, to its end.
+fn run<S: Session>(session: &mut S, script: Vec<Answer>, feed: impl Fn(&mut S)) -> Result<(), TestCaseError> {
+    let deadline = Policy::default().deadline;
+    let (mut now, mut last, mut script) = (Now::ZERO, Vec::<u8>::new(), script.into_iter());
+    let (mut sends, mut answers, mut calls) = (0_usize, 0, 0);
+    for _ in 0..10_000 {
+        match session.poll(now) {
+            Step::Send(bytes) => {
+                prop_assert!(bytes.len() <= LARGEST);
+                RequestFrame::parse(&bytes).unwrap();
+                last = bytes;
+                sends += 1;
+            }
+            Step::Data(piece) => prop_assert!((1..=MAX_DATA).contains(&piece.len())),
+            Step::Feed => {
+                feed(session);
+                calls += 1;
+                prop_assert!(calls <= sends + 2, "asked for more than was taken");
+            }
+            Step::Wait(until) => {
+                prop_assert!(until > now && until <= now + deadline, "{until:?} at {now:?}");
+                let Some((wait, id, block, status, data, damage)) = script.next() else {
+                    now = until;
+                    continue;
+                };
+                now = until.min(now + Duration::from_millis(wait));
+                let frame = AnswerFrame {
+                    division: if last[9] == 2 { Division::File } else { Division::Robot },
+                    ack: true,
+                    id: id.unwrap_or(last[11]),
+                    block,
+                    service: last[29] | ANSWER_BIT,
+                    status,
+                    data: &data,
+                };
+                session.handle(now, &damage.of(&frame.emit()));
+                answers += 1;
+            }
+            Step::Done(_) => {
+                // At most one frame for each answer, and the repeats of the last one.
+                let most = answers + 2 + usize::try_from(Policy::default().retries).unwrap() * (answers + 1);
+                prop_assert!(sends <= most, "{sends} frames for {answers} answers");
+                prop_assert!(matches!(session.poll(now + deadline), Step::Done(_)), "the end does not last");
+                return Ok(());
+            }
+        }
+    }
+    Err(TestCaseError::fail("no end"))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    #[test]
+    fn an_exchange_ends_whatever_is_answered(script in vec(answer(), 0..40), repeatable: bool) {
+        let frame = ReadStatus.request().frame(0);
+        let request = RequestFrame::parse(&frame).unwrap();
+        let mut session = Exchange::new(&request, repeatable, Policy::default(), &Ids::default());
+        run(&mut session, script, |_| ())?;
+    }
+
+    #[test]
+    fn a_download_ends_whatever_is_answered(script in vec(answer(), 0..40), limit in 0_u64..3000) {
+        let frame = files::FileName::new("A.JBI").unwrap().save().frame(0);
+        let request = RequestFrame::parse(&frame).unwrap();
+        let mut session = Download::new(&request, limit, Policy::default(), &Ids::default());
+        run(&mut session, script.clone(), |_| ())?;
+        prop_assert!(session.bytes() <= limit);
+        for (_, _, block, status, data, damage) in script {
+            let frame = AnswerFrame {
+                division: Division::File, ack: true, id: 1, block, service: 0x96, status, data: &data,
+            };
+            if let Some(ack) = session.linger(&damage.of(&frame.emit())) {
+                RequestFrame::parse(&ack).unwrap();
+            }
+        }
+    }
+
+    #[test]
+    fn an_upload_ends_whatever_is_answered(script in vec(answer(), 0..40), piece in MAX_DATA + 1..2000) {
+        let frame = files::FileName::new("A.JBI").unwrap().load().frame(0);
+        let request = RequestFrame::parse(&frame).unwrap();
+        let mut session = Upload::new(&request, Policy::default(), &Ids::default());
+        let content = vec![7; piece];
+        run(&mut session, script, |session| session.feed(&content, false))?;
+    }
+
+    #[test]
+    fn an_upload_of_a_known_end_ends_whatever_is_answered(script in vec(answer(), 0..40), size in 0_usize..2000) {
+        let frame = files::FileName::new("A.JBI").unwrap().load().frame(0);
+        let request = RequestFrame::parse(&frame).unwrap();
+        let mut session = Upload::new(&request, Policy::default(), &Ids::default());
+        let content = vec![7; size];
+        run(&mut session, script, |session| session.feed(&content, true))?;
+        prop_assert!(session.taken() <= size as u64);
+    }
+}
