@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use armctl::controller::Now;
 use armctl::controller::yerc::Model::{self, Dx200, Fs100};
+use armctl::controller::yerc::files::batch_backup;
 use armctl::controller::yerc::group::Group;
 use armctl::controller::yerc::payload::{CartesianMove, ExtendedForm, Form, MoveLayout, PositionKind, SpeedClass};
 use armctl::controller::yerc::query::{
@@ -33,6 +34,8 @@ const CLIENT: u64 = 1;
 const ONLOOKER: u64 = 2;
 /// Longer than anything that a controller has begun goes on, the wait for a lost client included.
 const REST: Duration = Duration::from_secs(30);
+/// Longer than the simulator takes for a backup.
+const LONG: Duration = Duration::from_secs(600);
 /// The first of the D variables that are written, each once.
 const FIRST_WRITTEN: u16 = 10;
 /// How far each move goes along X, in micrometres.
@@ -58,7 +61,7 @@ fn start(model: Model) -> Start {
     let file = |size| format!("[[file]]\nname = '{}'\npath = '{size}'\n", String::from_utf8_lossy(name(size)));
     let files: String = SIZES.map(file).concat();
     let text = format!(
-        "model = '{model}'\nstock = false\njob = 'TICK'\n[[file]]\nname = 'TICK.JBI'\ntext = '''\n/JOB\n//NAME TICK\n\
+        "model = '{model}'\nstock = false\njob = 'TICK'\nbackup_size = 5000\n[[file]]\nname = 'TICK.JBI'\ntext = '''\n/JOB\n//NAME TICK\n\
          //INST\nNOP\nINC D000\nEND\n'''\n{files}"
     );
     Start::parse(&text, |size| Ok(content(size.parse().expect("a size"), SEED))).expect("a good start state")
@@ -112,14 +115,15 @@ impl Simulated {
         }
     }
 
-    /// A file as the onlooker fetches it.
+    /// A file as the onlooker fetches it, who can wait.
     fn file(&mut self, name: &[u8]) -> Option<Vec<u8>> {
-        let mut session = Download::new(&file_request(0x16, name), 1 << 20, Policy::default(), &Ids::default());
+        let session = Download::new(&file_request(0x16, name), 1 << 20, Policy::default(), &Ids::default());
+        let mut session = session.with_first_wait(LONG);
         let mut link = Link::new(Onlooker(self), FaultSpec::default());
         let run = link.run(&mut session, |_| unreachable!("a download asks for no content"));
         match run.outcome {
             DownloadEnd::Complete { .. } => Some(run.data),
-            DownloadEnd::Nothing(_) => None,
+            DownloadEnd::Nothing(_) | DownloadEnd::Finished => None,
             DownloadEnd::Refused { status, .. } if status.added == NO_SUCH_FILE => None,
             other => panic!("{other:?}"),
         }
@@ -235,6 +239,14 @@ struct Onlooker<'a>(&'a mut Simulated);
 impl Controller for Onlooker<'_> {
     fn receive(&mut self, now: Now, datagram: &[u8]) -> Vec<Vec<u8>> {
         self.0.exchange(ONLOOKER, now, datagram)
+    }
+
+    fn wake(&self) -> Option<Now> {
+        self.0.wake()
+    }
+
+    fn transmit(&mut self, now: Now) -> Vec<Vec<u8>> {
+        self.0.transmit(now)
     }
 
     fn order(&mut self, class: Class) -> Request {
@@ -359,5 +371,50 @@ fn transfers_in_a_row_do_not_mix() {
                 exchange(&mut link, Class::Move, &ids);
             }
         }
+    }
+}
+
+/// The first request makes the backup and is answered long after; the second fetches it.
+#[test]
+fn a_batch_backup_is_whole_or_fails() {
+    let mut seen = BTreeSet::new();
+    for model in MODELS {
+        for text in FAULTS {
+            for seed in 0..TRANSFER_SEEDS {
+                let mut link = link_to(model, spec(text, seed));
+                let ids = Ids::default();
+                seen.insert((backup(&mut link, &ids, Some(LONG)), backup(&mut link, &ids, None)));
+            }
+        }
+    }
+    let both = |first, second| seen.contains(&(first, second));
+    assert!(both(End::Success, End::Success) && both(End::NoAnswer, End::Success), "{seen:?}");
+    assert!(seen.iter().all(|(_, second)| *second != End::Unknown));
+}
+
+/// One of the two requests of a batch backup; `first_wait` tells them apart.
+fn backup(link: &mut Link<Simulated>, ids: &Ids, first_wait: Option<Duration>) -> End {
+    let order = batch_backup();
+    let request = file_request(order.service, &order.data);
+    let mut session = Download::new(&request, 1 << 20, Policy::default(), ids);
+    if let Some(wait) = first_wait {
+        session = session.with_first_wait(wait);
+    }
+    let expected = link.controller.rested().file(&order.data);
+    let run = link.run(&mut session, |_| unreachable!("a download asks for no content"));
+    let what = format!("{:?} idle for {:?}, {:?}", run.outcome, run.idle, session.counters());
+    assert!(run.idle <= first_wait.unwrap_or(Policy::default().deadline), "{what}");
+    match run.outcome {
+        DownloadEnd::Finished => End::Success,
+        DownloadEnd::Complete { bytes, .. } => {
+            assert_eq!((Some(&run.data), bytes), (expected.as_ref(), 5000), "{what}");
+            End::Success
+        }
+        DownloadEnd::Refused { status, .. } => {
+            assert!(link.controller.may_refuse(status), "{what}");
+            End::Refused
+        }
+        DownloadEnd::NoAnswer { .. } => End::NoAnswer,
+        _ => panic!("{what}"),
     }
 }
