@@ -123,6 +123,13 @@ impl Screen {
         }
     }
 
+    /// Says how far long work is where no bar does: off a terminal, unless stderr is for a program.
+    pub fn step(&self, text: &str) {
+        if !self.can_redraw() && !self.is_json() {
+            self.note(text);
+        }
+    }
+
     /// Says something on stderr from `-v` times `level` on.
     pub fn detail(&self, level: u8, text: &str) {
         if self.verbosity >= level {

@@ -45,7 +45,7 @@ impl Screen {
             bar.enable_steady_tick(Duration::from_millis(100));
             bar
         });
-        Progress { bar, lines: !self.quiet, what, done: 0, next_line: LINE_EVERY }
+        Progress { bar, lines: !self.quiet && !self.is_json(), what, done: 0, next_line: LINE_EVERY }
     }
 }
 

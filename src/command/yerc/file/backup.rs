@@ -151,9 +151,7 @@ async fn fetch(
     // A name that a controller lists and that must not be sent is the controller's fault, not the operator's.
     let file = name::exact(name.to_vec()).map_err(|failure| Failure { kind: Kind::Malformed, ..failure })?;
     let mut draft = Target::new(folder.join(&local), true)?.begin()?;
-    if !screen.can_redraw() {
-        screen.note(label);
-    }
+    screen.step(label);
     let mut progress = screen.bytes_progress(label, None);
     let mut hash = Hash::default();
     transfer::fetch_listed(link, &file, |block| {

@@ -19,6 +19,7 @@ pub struct Content {
     /// Bytes as they will be sent.
     len: u64,
     fixes: bool,
+    job_name: Option<Vec<u8>>,
 }
 
 /// What [`Content::check_job`] does about a job that the controller would not take.
@@ -49,7 +50,7 @@ impl Content {
             return Err(Failure::usage(format!("{} is no file", path.display())).hint("name the files one by one"));
         }
         let file = File::open(path).map_err(|error| failed(&error))?;
-        Ok(Self { file, path: path.to_owned(), len: found.len(), fixes: false })
+        Ok(Self { file, path: path.to_owned(), len: found.len(), fixes: false, job_name: None })
     }
 
     /// Where it is.
@@ -60,6 +61,11 @@ impl Content {
     /// Bytes as they will be sent.
     pub fn size(&self) -> u64 {
         self.len
+    }
+
+    /// What a checked job calls itself in its line `//NAME`.
+    pub fn job_name(&self) -> Option<&[u8]> {
+        self.job_name.as_deref()
     }
 
     /// Whether line endings are changed on the way.
@@ -92,6 +98,7 @@ impl Content {
             return Err(Failure::usage(format!("{path} does not look like a job: {missing}"))
                 .hint("the controller would refuse it or raise an alarm; --force sends it all the same"));
         }
+        self.job_name = scan.name;
         self.fixes = scan.bare > 0;
         self.len = self.len.saturating_add(scan.bare);
         Ok(())
@@ -145,8 +152,8 @@ impl Fixer {
     }
 }
 
-/// Bytes of a line that are looked at: the words that matter are short.
-const HEAD: usize = 16;
+/// Bytes of a line that are looked at: the longest is that of a name.
+const HEAD: usize = 48;
 
 /// What makes a job a job (JBI): `/JOB` first, `NOP` and `END` among its lines, CR LF at their ends. CR and LF are
 /// never a part of a wider character in any encoding of a pendant.
@@ -161,6 +168,7 @@ struct JobScan {
     has_header: bool,
     has_nop: bool,
     has_end: bool,
+    name: Option<Vec<u8>>,
 }
 
 impl JobScan {
@@ -194,6 +202,9 @@ impl JobScan {
             self.has_header |= self.line == 0 && word == b"/JOB";
             self.has_nop |= word == b"NOP";
             self.has_end |= word == b"END";
+            if let (None, Some(name)) = (&self.name, word.strip_prefix(b"//NAME ")) {
+                self.name = Some(name.trim_ascii().to_vec());
+            }
         }
         self.line = self.line.saturating_add(1);
         self.line_len = 0;
@@ -246,6 +257,13 @@ mod tests {
         assert_eq!(check(JOB, JobRules::default()).unwrap(), JOB);
         assert_eq!(check(JOB, FIX).unwrap(), JOB);
         assert_eq!(check(b"/JOB\r\nNOP\r\nEND", JobRules::default()).unwrap(), b"/JOB\r\nNOP\r\nEND");
+    }
+
+    #[test]
+    fn a_job_names_itself() {
+        let (_file, mut content) = content(b"/JOB\r\n//NAME A B\r\nNOP\r\nEND\r\n//NAME C\r\n");
+        content.check_job(FileType::Jbi, JobRules::default()).unwrap();
+        assert_eq!(content.job_name(), Some(&b"A B"[..]));
     }
 
     #[test]

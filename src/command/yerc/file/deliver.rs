@@ -44,14 +44,15 @@ pub async fn deliver(
         Err(failure) if transfer::is_job_exists(&failure) => {
             if !manner.replace {
                 return Err(failure.hint(
-                    "--replace deletes that job and sends this one, and puts the old one back if that fails; --as sends it \
-                     under another name",
+                    "--replace deletes that job and sends this one, and puts the old one back if that fails; `yerc file \
+                     diff` shows how they differ",
                 ));
             }
             let bytes = replace(link, screen, delivery).await?;
             result.notes.push("replaced");
             bytes
         }
+        Err(failure) if failure.kind == Kind::Refused => return Err(with_own_name(link, delivery, failure)),
         sent => sent?,
     };
     if delivery.content.fixes_line_endings() {
@@ -62,6 +63,19 @@ pub async fn deliver(
         result.notes.push("verified");
     }
     Ok(Some(bytes))
+}
+
+/// A job that calls itself otherwise than its file is a likely cause of a refusal.
+fn with_own_name(link: &Link, delivery: &Delivery, failure: Failure) -> Failure {
+    let file = delivery.file.as_bytes();
+    let stem = file.get(..file.len().saturating_sub(4)).unwrap_or(file);
+    match delivery.content.job_name() {
+        Some(own) if own != stem => {
+            let (own, stem) = (link.encoding.decode(own), link.encoding.decode(stem));
+            failure.hint(format!("the job says //NAME {own} but is sent as {stem}: make the two the same"))
+        }
+        _ => failure,
+    }
 }
 
 async fn send(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<u64, Failure> {

@@ -212,12 +212,14 @@ impl Difference {
     fn summary(&self) -> String {
         let Self { name: Shown { name, .. }, path, controller_bytes, local_bytes, .. } = self;
         match (self.first_difference_offset, self.only_line_endings) {
-            (None, _) => format!("{name} and {path} are the same, {local_bytes} bytes"),
-            (Some(_), Some(true)) => format!("{name} and {path} differ in line endings only"),
+            (None, _) => format!("{name} on the controller and {path} are the same, {local_bytes} bytes"),
+            (Some(_), Some(true)) => format!("{name} on the controller and {path} differ in line endings only"),
             (Some(at), None) => {
-                format!("{name} ({controller_bytes} bytes) and {path} ({local_bytes} bytes) differ from byte {at} on")
+                format!(
+                    "{name} on the controller ({controller_bytes} bytes) and {path} ({local_bytes} bytes) differ from byte {at} on"
+                )
             }
-            (Some(_), Some(false)) => format!("{name} and {path} differ"),
+            (Some(_), Some(false)) => format!("{name} on the controller and {path} differ"),
         }
     }
 
@@ -319,7 +321,7 @@ mod tests {
     #[test]
     fn the_same_is_no_failure() {
         assert!(difference(b"a\r\n", b"a\r\n").failure().is_none());
-        assert_eq!(text(b"a\0", b"a\0"), "A.JBI and a.jbi are the same, 2 bytes\n");
+        assert_eq!(text(b"a\0", b"a\0"), "A.JBI on the controller and a.jbi are the same, 2 bytes\n");
     }
 
     #[test]
@@ -349,7 +351,10 @@ mod tests {
 
     #[test]
     fn bytes_that_are_no_text_differ_from_an_offset_on() {
-        assert_eq!(text(b"a\0bc", b"a\0bd!"), "A.JBI (4 bytes) and a.jbi (5 bytes) differ from byte 3 on\n");
+        assert_eq!(
+            text(b"a\0bc", b"a\0bd!"),
+            "A.JBI on the controller (4 bytes) and a.jbi (5 bytes) differ from byte 3 on\n"
+        );
         assert!(difference(b"a\0bc", b"a\0bd!").hunks.is_none());
     }
 

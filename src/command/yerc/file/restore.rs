@@ -92,9 +92,7 @@ impl Command for Restore {
         let manner = Manner { verify: self.verify, replace: self.replace };
         let total = deliveries.len();
         for (number, (delivery, result)) in deliveries.iter_mut().zip(&mut results).enumerate() {
-            if !screen.can_redraw() {
-                screen.note(&format!("{}/{total} {}", number + 1, result.name.name));
-            }
+            screen.step(&format!("{}/{total} {}", number + 1, result.name.name));
             let outcome = deliver(link, screen, delivery, manner, result).await;
             if !result.settle(outcome) {
                 break;

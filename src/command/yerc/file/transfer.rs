@@ -169,7 +169,8 @@ fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Fai
             let Failure { message, .. } = Refusal(status).into();
             unknown(format!("the last block was sent again and then refused: {message} The file may be there"))
         }
-        UploadEnd::Refused { status, sent: 0, .. } => Err(Refusal(status).into()),
+        // At first, or as a whole at the end.
+        UploadEnd::Refused { status, sent, .. } if sent == 0 || sent >= total => Err(Refusal(status).into()),
         UploadEnd::Refused { status, taken, .. } => {
             Err(about(&format!("after {taken} of {total} bytes"), Refusal(status).into()))
         }
