@@ -332,8 +332,10 @@ impl Report for PastAlarms {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
-    use crate::command::yerc::rehearse::{frames, golden, objection};
+    use crate::command::yerc::rehearse::{frames, golden, objection, reports};
     use crate::controller::yerc::payload::{AlarmKind, AlarmTexts, Text};
     use crate::output::render;
 
@@ -420,5 +422,31 @@ mod tests {
     fn nothing_is_said_as_such() {
         let none = ActiveAlarms { alarms: Vec::new(), with_texts: true };
         assert_eq!(render::text(&none.view(), 80, false), "no alarm\n");
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn older_software_is_asked_without_texts() {
+        let alarm = "alarm = [{ code = 4315, data = 3, type = 1 }]\n";
+        let lines = ["alarm list", "alarm list --no-texts", "alarm history --limit 2"];
+        let [with, without, history] = reports(alarm, &lines).await.try_into().unwrap();
+        let (with, without, history) = (with.unwrap(), without.unwrap(), history.unwrap());
+        assert_eq!((&with["with_texts"], &with["alarms"][0]["board"]), (&json!(true), &json!("[SV#1]")));
+        assert_eq!(without["alarms"][0]["board"], json!(null));
+        let per_class =
+            |class| history["alarms"].as_array().unwrap().iter().filter(|alarm| alarm["class"] == class).count();
+        assert!(per_class("monitor") == 2 && per_class("major") == 1, "at most two, and no empty ones: {history}");
+
+        let older = format!("model = \"fs100\"\nsoftware = \"FS1.03.00A(JP/US)-00\"\n{alarm}");
+        let [old] = reports(&older, &["alarm list"]).await.try_into().unwrap();
+        let old = old.unwrap();
+        assert_eq!((&old["with_texts"], &old["alarms"][0]["code"]), (&json!(false), &json!(4315)));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_reset_clears_the_list() {
+        let lines = ["alarm reset", "alarm list", "alarm cancel"];
+        let [_, list, cancel] = reports("alarm = [{ code = 4315 }]", &lines).await.try_into().unwrap();
+        assert_eq!(list.unwrap()["alarms"], json!([]));
+        assert!(cancel.is_ok());
     }
 }

@@ -226,8 +226,10 @@ by_axis! {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
-    use crate::command::yerc::rehearse::{frames, frames_on, golden};
+    use crate::command::yerc::rehearse::{frames, frames_on, golden, reports};
     use crate::controller::yerc::payload::{Axes, Text};
     use crate::controller::yerc::wire::Status;
     use crate::failure::Kind;
@@ -272,5 +274,15 @@ mod tests {
         let report = Torques { group: "R1".into(), torque_raw: ByAxis::new(axes, true) };
         assert_eq!(render::csv(&report.view(), None), "axis,torque_raw\nS,-3\nL,7\n");
         assert_eq!(serde_json::to_string(&report).unwrap(), r#"{"group":"R1","torque_raw":{"s":-3,"l":7}}"#);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn the_controller_tells_which_groups_it_has() {
+        let [axes] = reports("groups = [\"R1\", \"S1\"]", &["axes"]).await.try_into().unwrap();
+        let groups = axes.unwrap();
+        assert_eq!(groups["groups"].as_array().map(Vec::len), Some(2), "{groups}");
+        assert_eq!(groups["groups"][0]["base"], json!(["X", "Y", "Z", "Rx", "Ry", "Rz"]));
+        assert_eq!(groups["groups"][1]["group"], "S1");
+        assert_eq!(groups["groups"][1]["base"], json!(null));
     }
 }

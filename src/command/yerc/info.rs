@@ -128,7 +128,7 @@ impl Report for Versions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::yerc::rehearse::{frames, frames_on, golden};
+    use crate::command::yerc::rehearse::{frames, frames_on, golden, reports};
     use crate::failure::Kind;
     use crate::output::render;
 
@@ -166,5 +166,15 @@ mod tests {
             render::csv(&versions.view(), None),
             "part,name,version\ncontroller,system software,DS2.07\nR1,ES0165D-A0*,12.34\nS1,-,-\napplication 1,ES0165D-A0*,-\n"
         );
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn only_what_exists_is_listed() {
+        let [all, one] = reports("groups = [\"R1\"]", &["info", "info --group R2"]).await.try_into().unwrap();
+        let all = all.unwrap();
+        assert_eq!(all["software_version"], "DS2.07.00A(JP/US)-00");
+        assert_eq!(all["parts"][0]["name"], "ES0165D-A0*");
+        assert_eq!(all["parts"].as_array().map(Vec::len), Some(2), "{all}");
+        assert!(!one.is_ok_and(|one| one["parts"][0]["name"].is_string()), "R2 has no name to tell");
     }
 }

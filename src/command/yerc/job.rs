@@ -375,7 +375,7 @@ impl Report for Started {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::yerc::rehearse::{frames, frames_on, golden, intent, objection};
+    use crate::command::yerc::rehearse::{frames, frames_on, golden, intent, objection, reports};
     use crate::controller::yerc::payload::{StatusBit, Text};
     use crate::controller::yerc::wire;
     use crate::output::render;
@@ -471,5 +471,35 @@ mod tests {
         assert_eq!(look(StatusBit::Alarm), Look::Stopped(Trouble::Alarm));
         assert!(matches!(look(StatusBit::HoldExternal), Look::Stopped(Trouble::Hold(_))));
         assert_eq!(look(StatusBit::Error), Look::Running);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_start_waits_for_the_end_if_it_is_asked_to() {
+        let lines = ["job select テスト", "job start --wait", "job select TESTJOB", "job start --wait 2s", "job show"];
+        let [selected, ended, _, late, shown] = reports("", &lines).await.try_into().unwrap();
+        assert_eq!(selected.unwrap()["job"], "テスト");
+        let elapsed = ended.unwrap()["elapsed_ms"].as_u64().unwrap();
+        assert!((1000..1200).contains(&elapsed), "the job's timer runs for a second, not {elapsed} ms");
+        let failure = late.unwrap_err();
+        assert_eq!((failure.kind, failure.message.as_str()), (Kind::ConditionNotMet, "the job still runs after 2s"));
+        assert_eq!(shown.unwrap()["tasks"][0]["job"], "TESTJOB");
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn what_stops_a_job_ends_the_waiting() {
+        let state = "job = \"TESTJOB\"\n[[event]]\nat_ms = 500\ndo = \"hold pendant on\"\n";
+        let [started] = reports(state, &["job start --wait"]).await.try_into().unwrap();
+        let failure = started.unwrap_err();
+        assert_eq!(failure.kind, Kind::ConditionNotMet);
+        assert_eq!(failure.message, "the job was started, but hold by pendant came on");
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn absent_tasks_are_listed_and_refused_one_by_one() {
+        let [all, one] = reports("", &["job show --task all", "job show --task 9"]).await.try_into().unwrap();
+        let all = all.unwrap();
+        assert_eq!(all["tasks"].as_array().map(Vec::len), Some(16));
+        assert_eq!(all["tasks"][9]["refusal"], "0xA001");
+        assert_eq!(one.unwrap_err().code.as_deref(), Some("0xA001"));
     }
 }

@@ -337,7 +337,9 @@ impl PulseTarget {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::yerc::rehearse::{frames, frames_on, golden, intent, objection};
+    use serde_json::json;
+
+    use crate::command::yerc::rehearse::{frames, frames_on, golden, intent, objection, reports};
     use crate::failure::Kind;
 
     /// Head of a frame, and the words of its data.
@@ -446,5 +448,57 @@ mod tests {
             "move R1 in a straight line by x=0.000 y=0.000 z=-5.000 mm, rx=0.0000 ry=0.0000 rz=0.0000 deg, base 1.000 mm \
              in base coordinates, tool 0 at 1.0 mm/s"
         );
+    }
+
+    const FAR: &str = "move linear --to 1300,0,1200,180,0,0 --speed 100mm/s";
+
+    #[tokio::test(start_paused = true)]
+    async fn the_end_of_a_motion_is_waited_for() {
+        let lines =
+            [FAR, FAR, "move relative --z -50 --speed 100mm/s --coordinate tool", "position --coordinates base"];
+        let [far, again, up, position] = reports("", &lines).await.try_into().unwrap();
+        let (far, again, up, position) = (far.unwrap(), again.unwrap(), up.unwrap(), position.unwrap());
+        assert_eq!((&far["at_target"], &far["reached"]["base"]["x_mm"]), (&json!(true), &json!(1300.0)));
+        let elapsed = far["elapsed_ms"].as_u64().unwrap();
+        assert!((3000..3500).contains(&elapsed), "300 mm at 100 mm/s take {elapsed} ms");
+        assert!(again["elapsed_ms"].as_u64().unwrap() < 200, "the robot is there already: {again}");
+        assert_eq!(up["at_target"], json!(null), "base coordinates do not tell");
+        assert_eq!(position["base"], up["reached"]["base"]);
+        assert_ne!(position["base"]["z_mm"], json!(1200.0));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn without_waiting_the_motion_goes_on() {
+        let [moved, status] = reports("", &[&format!("{FAR} --no-wait"), "status"]).await.try_into().unwrap();
+        assert_eq!(moved.unwrap()["elapsed_ms"], json!(null));
+        assert_eq!(status.unwrap()["running"], json!(true));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn an_alarm_or_hold_on_the_way_is_a_failure_that_tells_the_place() {
+        for (event, told) in [("alarm 4315 3 1", "alarm 4315 "), ("hold external on", "hold by external signal")] {
+            let state = format!("[[event]]\nat_ms = 1000\ndo = \"{event}\"\n");
+            let [moved, position] = reports(&state, &[FAR, "position"]).await.try_into().unwrap();
+            let failure = moved.unwrap_err();
+            assert_eq!(failure.kind, Kind::ConditionNotMet);
+            assert!(failure.message.contains(told), "{failure}");
+            let x_mm = position.unwrap()["base"]["x_mm"].as_f64().unwrap();
+            assert!((1001.0..1299.0).contains(&x_mm), "{x_mm}");
+            assert!(failure.message.contains(&format!("it stands at x={x_mm:.3} ")), "{failure}");
+        }
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn an_axis_without_a_target_does_not_move_to_zero() {
+        let state = "positions = { B1 = [5000], S1 = [0, 70] }";
+        let lines =
+            [FAR, "move joint --group S1 --station-axes 5 --speed 1%", "position --group B1", "position --group S1"];
+        let [far, station, base, still] = reports(state, &lines).await.try_into().unwrap();
+        let failure = far.unwrap_err();
+        assert_eq!(failure.kind, Kind::Usage);
+        assert_eq!(failure.message, "axis 1 of B1 stands at 5000 pulses and has no target: it would move to 0");
+        assert!(station.unwrap_err().message.starts_with("axis 2 of S1 stands at 70 pulses"));
+        assert_eq!(base.unwrap()["pulse"]["pulses"], json!({ "axis_1": 5000 }));
+        assert_eq!(still.unwrap()["pulse"]["pulses"], json!({ "axis_1": 0, "axis_2": 70 }));
     }
 }

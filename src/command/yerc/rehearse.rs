@@ -1,4 +1,4 @@
-//! For tests: what a command line would send.
+//! For tests: what a command line would send, and what becomes of it on a simulator.
 
 use clap::Parser as _;
 use futures_util::FutureExt as _;
@@ -7,10 +7,12 @@ use serde_json::Value;
 use super::Family as Yerc;
 use super::link::hex;
 use crate::cli::{Cli, Top};
-use crate::command::{Access, Context, Family as _, Noun as _};
+use crate::command::{Access, AnyCommand, Context, Family as _, Noun as _};
+use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::{ColorChoice, Format, Screen};
-use crate::settings::{Selection, Sources, target};
+use crate::settings::inventory::Options;
+use crate::settings::{Robot, Selection, Sources, target};
 
 /// The words of a command line after the program's name, for a robot that is never reached.
 fn parsed(target: &str, words: &str) -> Result<Cli, clap::Error> {
@@ -33,21 +35,53 @@ pub(super) fn intent(words: &str) -> String {
 
 /// The frames of a dry run, in hexadecimal, without the header: command, instance, attribute, service, padding, data.
 pub(super) fn frames_on(target: &str, words: &str) -> Result<Vec<String>, Failure> {
-    let cli = parsed(target, words).unwrap_or_else(|error| panic!("{words}: {error}"));
-    let selection = Selection { target: cli.globals.target, ..Selection::default() };
-    let flags = crate::settings::inventory::Options { encoding: cli.globals.encoding, ..Default::default() };
-    let sources = Sources { selection, flags, ..Sources::default() };
-    let robot = sources.robots(Some(target::Family::Yerc))?.remove(0);
-    let Top::Yerc(noun) = cli.command else { unreachable!("the words follow yerc") };
-    let command = noun.command();
-    let screen = Screen::new(Format::Json, ColorChoice::Never, true, 0);
+    let (robot, command) = resolved(target, words)?;
     let access = Access { granted: command.risk(), dry_run: true, trace: None };
-    let mut link = Yerc::connect(&robot, access, &screen).now_or_never().expect("a dry run opens nothing")?;
-    let context = Context { robot: &robot, link: &mut link, screen: &screen };
+    let mut link = Yerc::connect(&robot, access, &screen()).now_or_never().expect("a dry run opens nothing")?;
+    let context = Context { robot: &robot, link: &mut link, screen: &screen() };
     if let Some(Err(failure)) = command.run(context).now_or_never() {
         return Err(failure);
     }
     Ok(Yerc::rehearsed(&mut link).iter().map(of_frame).collect())
+}
+
+/// The data of the reports of command lines, one after the other on one simulator that starts in `state` (TOML).
+pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Failure>> {
+    let mut file = tempfile::NamedTempFile::new().unwrap();
+    std::io::Write::write_all(&mut file, state.as_bytes()).unwrap();
+    let target = format!("sim:?state={}", file.path().display());
+    let mut link = None;
+    let mut reports = Vec::new();
+    for words in lines {
+        let (robot, command) = resolved(&target, words).unwrap();
+        if link.is_none() {
+            let access = Access { granted: Risk::Motion, dry_run: false, trace: None };
+            link = Some(Yerc::connect(&robot, access, &screen()).await.unwrap());
+        }
+        let link = link.as_mut().expect("connected by the first line");
+        let context = Context { robot: &robot, link, screen: &screen() };
+        reports.push(match command.run(context).await {
+            Ok(report) => report.failure().map_or_else(|| report.data(), Err),
+            Err(failure) => Err(failure),
+        });
+    }
+    reports
+}
+
+/// Robot and command of a line.
+fn resolved(target: &str, words: &str) -> Result<(Robot, Box<dyn AnyCommand<Yerc>>), Failure> {
+    let cli = parsed(target, words).unwrap_or_else(|error| panic!("{words}: {error}"));
+    let selection = Selection { target: cli.globals.target, ..Selection::default() };
+    let flags = Options { encoding: cli.globals.encoding, ..Options::default() };
+    let sources = Sources { selection, flags, ..Sources::default() };
+    let robot = sources.robots(Some(target::Family::Yerc))?.remove(0);
+    let Top::Yerc(noun) = cli.command else { unreachable!("the words follow yerc") };
+    Ok((robot, noun.command()))
+}
+
+/// Where tests write: nowhere.
+fn screen() -> Screen {
+    Screen::new(Format::Json, ColorChoice::Never, true, 0)
 }
 
 /// [`frames_on`] a DX200.
