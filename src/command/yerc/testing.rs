@@ -1,4 +1,4 @@
-//! Command lines without a controller: what they would send.
+//! Command lines without a controller: what they would send, and what they do to a simulated one.
 
 use std::future::poll_fn;
 use std::task::Poll;
@@ -7,25 +7,21 @@ use clap::Parser as _;
 use serde_json::Value;
 
 use super::Family;
+use super::link::Link;
 use crate::cli::{Cli, Top};
-use crate::command::{Access, Context, Family as _, Noun as _};
+use crate::command::{Access, AnyCommand, Context, Family as _, Noun as _};
+use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::inventory::Options;
 use crate::settings::target::Family as Name;
-use crate::settings::{Selection, Sources};
+use crate::settings::{Robot, Selection, Sources};
 
 /// What `armctl yerc -t TARGET WORDS…` would send: the `data.frames` of a dry run. A command line that cannot be parsed
 /// fails with the parser's message.
 pub fn rehearse(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
-    let line = [&["armctl", "yerc", "-t", target], words].concat();
-    let cli = Cli::try_parse_from(line).map_err(|error| Failure::usage(error.to_string()))?;
-    let Top::Yerc(noun) = cli.command else { return Err(Failure::usage("not a yerc command")) };
-    let command = noun.command();
-    let selection = Selection { target: cli.globals.target, ..Selection::default() };
-    let flags = Options { encoding: cli.globals.encoding, ..Options::default() };
-    let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(Name::Yerc))?.remove(0);
-    let screen = Screen::new(Format::Json, ColorChoice::Never, true, 0);
+    let (command, robot) = parsed(target, words)?;
+    let screen = quiet();
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
     runtime.block_on(async {
         let access = Access { granted: command.risk(), dry_run: true, trace: None };
@@ -39,6 +35,57 @@ pub fn rehearse(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
         }
         Ok(Family::rehearsed(&mut link))
     })
+}
+
+fn parsed(target: &str, words: &[&str]) -> Result<(Box<dyn AnyCommand<Family>>, Robot), Failure> {
+    let line = [&["armctl", "yerc", "-t", target], words].concat();
+    let cli = Cli::try_parse_from(line).map_err(|error| Failure::usage(error.to_string()))?;
+    let Top::Yerc(noun) = cli.command else { return Err(Failure::usage("not a yerc command")) };
+    let selection = Selection { target: cli.globals.target, ..Selection::default() };
+    let flags = Options { encoding: cli.globals.encoding, ..Options::default() };
+    let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(Name::Yerc))?.remove(0);
+    Ok((noun.command(), robot))
+}
+
+fn quiet() -> Screen {
+    Screen::new(Format::Json, ColorChoice::Never, true, 0)
+}
+
+/// A simulated controller and a link to it that last for several command lines, in virtual time.
+pub struct Bench {
+    runtime: tokio::runtime::Runtime,
+    robot: Robot,
+    link: Link,
+}
+
+impl Bench {
+    /// A simulator by its URL.
+    pub fn new(target: &str) -> Self {
+        let runtime =
+            tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
+        let selection = Selection { target: Some(target.parse().expect("a target")), ..Selection::default() };
+        let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Yerc)).expect("a robot").remove(0);
+        let access = Access { granted: Risk::Motion, dry_run: false, trace: None };
+        let link = runtime.block_on(Family::connect(&robot, access, &quiet())).expect("a link");
+        Self { runtime, robot, link }
+    }
+
+    /// Runs `armctl yerc WORDS…`: the data of the report, and why it is not a success although there is one.
+    pub fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
+        let (command, _) = parsed("sim:", words)?;
+        let Self { runtime, robot, link } = self;
+        let report = runtime.block_on(command.run(Context { robot, link, screen: &quiet() }))?;
+        Ok((report.data()?, report.failure()))
+    }
+
+    /// The data of a command line that must succeed.
+    #[track_caller]
+    pub fn data(&mut self, words: &[&str]) -> Value {
+        match self.run(words) {
+            Ok((data, None)) => data,
+            other => panic!("{words:?}: {other:?}"),
+        }
+    }
 }
 
 /// The frames of [`rehearse`] in hexadecimal, with request ids counted from `id`, as the golden frames have them.
@@ -138,7 +185,7 @@ fn what_cannot_be_meant_is_not_sent() {
     assert!(failed(&["var", "set", "S0=123456789012345678901234567890123"]).contains("33 bytes"));
     assert!(failed(&["var", "set", "--s16", "S0=12345678901234567"]).contains("17 bytes"));
     assert!(failed(&["var", "set", "S0=한글"]).contains("shift_jis"));
-    assert!(failed(&["io", "get", "9"]).contains("there is no signal #00009"));
+    assert!(failed(&["io", "get", "9"]).contains("signal 9 does not exist"));
     assert!(failed(&["io", "get", "5200"]).contains("does not exist on a dx200"));
     assert!(failed(&["io", "set", "10010=on"]).contains("robot user output"));
     assert!(failed(&["register", "get", "1000"]).contains("0-559, 560-999"));
@@ -164,4 +211,128 @@ fn raw_sends_what_it_is_told() {
     ];
     same("R35", DX200, &words);
     same("M01", DX200, &["raw", "--command", "0x72", "--instance", "1", "--service", "0x01"]);
+}
+
+#[test]
+fn undefined_positions_in_a_range_are_reported_one_by_one() {
+    let mut bench = Bench::new("sim:");
+    bench.data(&["var", "set", "P20=pulse:s=1,l=2,u=3,r=4,b=5,t=6", "EX3=pulse:1=9"]);
+    let data = bench.data(&["var", "get", "P18..P22", "EX3", "P18", "B8"]);
+    let entries = data["variables"].as_array().unwrap();
+    let shown: Vec<(&str, &Value)> =
+        entries.iter().map(|entry| (entry["name"].as_str().unwrap(), &entry["value"]["text"])).collect();
+    let text = |text: &str| Value::from(text);
+    let (p20, ex3) = (text("pulse:s=1,l=2,u=3,r=4,b=5,t=6,tool=0,user=0"), text("pulse:1=9"));
+    let null = &Value::Null;
+    assert_eq!(
+        shown,
+        [("P18", null), ("P19", null), ("P20", &p20), ("P21", null), ("P22", null), ("EX3", &ex3), ("B8", null)]
+    );
+    assert_eq!(entries[0]["refused"]["undefined"], true);
+    assert_eq!(entries[6]["value"], 0);
+    let (_, failure) = bench.run(&["var", "get", "P18..P19"]).unwrap();
+    assert_eq!(failure.unwrap().kind.exit(), 3);
+}
+
+#[test]
+fn numbers_beyond_the_last_are_found_and_named() {
+    let data = Bench::new("sim:").data(&["var", "get", "B90..B110"]);
+    let values = data["variables"].as_array().unwrap();
+    assert_eq!(values.iter().filter(|entry| entry["value"] == 0).count(), 10);
+    assert!(values[10..].iter().all(|entry| entry["refused"]["undefined"] == false), "{data}");
+}
+
+#[test]
+fn a_dump_is_restored_to_the_last_byte() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (first, second) = (path("first.json"), path("second.json"));
+    let mut bench = Bench::new("sim:?model=dx200");
+    let values = [
+        "B0=255",
+        "I99=-32768",
+        "D5=-2147483648",
+        "R3=1.1",
+        "R4=-1e-40",
+        "S7=\u{30c6}\u{30b9}\u{30c8} \\x80",
+        "BP1=base:x=1.5,y=2,z=3",
+        "P5=user:x=-0.001,y=0,z=2147483.647,rx=0.0001,ry=-180,rz=0,re=1,tool=63,user=2,form=back+noflip,ext=w-ge180",
+    ];
+    bench.data(&[&["var", "set"], &values[..]].concat());
+    let summary = bench.data(&["var", "dump", &first]);
+    assert_eq!(summary["variables"], 500 + 3 * 128);
+    assert_eq!(bench.run(&["var", "dump", &first]).unwrap_err().kind.exit(), 1);
+    let mut other = Bench::new("sim:?model=dx200");
+    let restored = other.data(&["var", "restore", &first]);
+    assert_eq!(restored["written"].as_u64().unwrap() + restored["left_alone"].as_u64().unwrap(), 884);
+    other.data(&["var", "dump", &second]);
+    let variables = |path: &str| {
+        let text = std::fs::read_to_string(path).unwrap();
+        let lines = text.lines().filter(|line| line.contains("\"name\"")).map(ToOwned::to_owned);
+        lines.collect::<Vec<String>>()
+    };
+    let (before, after) = (variables(&first), variables(&second));
+    assert_eq!(before.len(), 884);
+    if let Some((before, after)) = before.iter().zip(&after).find(|(before, after)| before != after) {
+        panic!("{before} became {after}");
+    }
+    for name in ["P5", "R4", "S7", "BP1"] {
+        assert_eq!(bench.data(&["var", "get", name]), other.data(&["var", "get", name]));
+    }
+    let only = other.data(&["var", "restore", &first, "--only", "B,S"]);
+    assert_eq!(only["written_names"], "B0..B99, S0..S99");
+}
+
+#[test]
+fn a_file_of_var_get_sets_a_position() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let mut bench = Bench::new("sim:");
+    let shown = bench.data(&["var", "get", "P2"]);
+    std::fs::write(file.path(), serde_json::json!({ "ok": true, "data": shown }).to_string()).unwrap();
+    bench.data(&["var", "set", &format!("P9=@{}", file.path().display()), "P9.tool=7"]);
+    let (p2, p9) = (&shown["variables"][0]["value"], bench.data(&["var", "get", "P9"]));
+    let p9 = &p9["variables"][0]["value"];
+    assert_eq!((&p9["x_mm"], &p9["tool"]), (&p2["x_mm"], &Value::from(7)));
+    let failure = bench.run(&["var", "set", &format!("EX9=@{}", file.path().display())]).unwrap_err();
+    assert_eq!(failure.kind.exit(), 2);
+}
+
+#[test]
+fn one_signal_is_switched_and_the_others_stay() {
+    let mut bench = Bench::new("sim:?model=fs100");
+    bench.data(&["io", "set", "--group", "2501=0xF0"]);
+    let data = bench.data(&["io", "set", "25010=on", "25017=off", "25020=on"]);
+    assert_eq!((&data["groups"][0]["value"], &data["groups"][1]["value"]), (&Value::from(0x71), &Value::from(1)));
+    let data = bench.data(&["io", "get", "25010..25013", "25010", "--group", "2501..2502"]);
+    let on: Vec<bool> = data["signals"].as_array().unwrap().iter().map(|signal| signal["on"] == true).collect();
+    assert_eq!(on, [true, false, false, false]);
+    assert_eq!(data["groups"][0]["value_hex"], "0x71");
+}
+
+#[test]
+fn registers_by_the_dozen() {
+    let mut bench = Bench::new("sim:");
+    bench.data(&["register", "set", "5=0xFFFF", "6=1"]);
+    let data = bench.data(&["register", "get", "6", "5..6"]);
+    let numbers: Vec<&Value> = data["registers"].as_array().unwrap().iter().map(|word| &word["value"]).collect();
+    assert_eq!(numbers, [&Value::from(1), &Value::from(0xFFFF)]);
+}
+
+#[test]
+fn a_lost_write_is_accounted_for() {
+    let mut bench = Bench::new("sim:?fault=drop=100%25");
+    let failure = bench.run(&["var", "set", "B0=1", "I0=1"]).unwrap_err();
+    assert_eq!(failure.kind.exit(), 6);
+    assert!(failure.message.ends_with("done; written or not: B0; not written: I0"), "{failure}");
+}
+
+#[test]
+fn raw_prints_a_refusal_and_fails() {
+    let mut bench = Bench::new("sim:");
+    let words = ["raw", "--command", "0x7f", "--instance", "100", "--service", "1"];
+    let (data, failure) = bench.run(&words).unwrap();
+    assert_eq!((&data["status"], &data["added_status"]), (&Value::from("0x1f"), &Value::from("0xb005")));
+    assert_eq!(failure.unwrap().kind.exit(), 3);
+    let data = bench.data(&["raw", "--command", "0x72", "--instance", "1", "--service", "1"]);
+    assert_eq!((&data["data_bytes"], data["fields"].as_array().unwrap().len()), (&Value::from(8), 2));
 }

@@ -56,11 +56,10 @@ fn account<O: Order>(failure: Failure, orders: &[O], done: usize) -> Failure {
     let (unknown, rest) = rest.split_at(unknown);
     let names = |orders: &[O]| O::listed(orders.iter().flat_map(Order::items).collect());
     let mut parts = vec![failure.message.trim_end_matches('.').to_owned()];
-    match written {
-        [] => parts.push("nothing was written before".to_owned()),
-        written => parts.push(format!("written: {}", names(written))),
+    if written.is_empty() && unknown.is_empty() {
+        parts.push("nothing was written".to_owned());
     }
-    for (words, orders) in [("written or not", unknown), ("not written", rest)] {
+    for (words, orders) in [("written", written), ("written or not", unknown), ("not written", rest)] {
         if !orders.is_empty() {
             parts.push(format!("{words}: {}", names(orders)));
         }
@@ -104,7 +103,7 @@ mod tests {
         );
         assert_eq!(
             message(&refused, 0),
-            "the controller refused: no. Because; nothing was written before; not written: register 0..2, 10, 20..21"
+            "the controller refused: no. Because; nothing was written; not written: register 0..2, 10, 20..21"
         );
         let lost = Failure::new(Kind::OutcomeUnknown, "no answer");
         assert_eq!(

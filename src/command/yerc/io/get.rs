@@ -8,9 +8,10 @@ use serde::Serialize;
 
 use super::super::Family;
 use super::super::orders::usage;
-use super::signal::{self, Signal, Signals};
+use super::signal::{self, Signals};
 use super::{GroupState, SignalState, group_table, signal_table};
 use crate::command::{Command, Context, Report};
+use crate::controller::yerc::signal::Signal;
 use crate::controller::yerc::variables::{parse_numbers, plan_io_reads};
 use crate::failure::Failure;
 use crate::output::view::View;
@@ -49,14 +50,14 @@ impl Command for Get {
         let model = link.model;
         let signals: Vec<Signal> = once(self.signals.iter().flat_map(|signals| signals.0.iter().copied()));
         let groups: Vec<u16> = once(self.groups.iter().flat_map(|groups| groups.0.iter().copied()));
-        let wanted: Vec<u16> = signals.iter().map(|signal| signal.group).chain(groups.iter().copied()).collect();
+        let wanted: Vec<u16> = signals.iter().map(|signal| signal.group()).chain(groups.iter().copied()).collect();
         for &group in &wanted {
             signal::class(model, group)?;
         }
         let steps = plan_io_reads(model, &wanted).map_err(usage)?;
         let bytes: BTreeMap<u16, u8> = link.ask_all(&steps).await?.into_iter().flatten().collect();
         let signals = signals.into_iter().filter_map(|signal| {
-            let byte = *bytes.get(&signal.group)?;
+            let byte = *bytes.get(&signal.group())?;
             Some(SignalState::new(model, signal, signal.is_on(byte)))
         });
         let groups = groups.into_iter().filter_map(|group| Some(GroupState::new(model, group, *bytes.get(&group)?)));

@@ -10,9 +10,9 @@ use serde::Serialize;
 use super::Family;
 use crate::command::commands;
 use crate::controller::yerc::Model;
+use crate::controller::yerc::signal::Signal;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, Table};
-use signal::Signal;
 
 commands! {
     /// What can be done with signals.
@@ -40,9 +40,9 @@ struct SignalState {
 
 impl SignalState {
     fn new(model: Model, signal: Signal, on: bool) -> Result<Self, Failure> {
-        let class = signal::class(model, signal.group)?.meaning;
-        let Signal { group, bit } = signal;
-        Ok(Self { signal: signal.number(), name: signal.to_string(), class, on, group, bit })
+        let class = signal::class(model, signal.group())?.meaning;
+        let (number, group, bit) = (signal.number(), signal.group(), signal.bit());
+        Ok(Self { signal: number, name: signal.to_string(), class, on, group, bit })
     }
 }
 
@@ -66,8 +66,8 @@ impl GroupState {
     fn new(model: Model, group: u16, value: u8) -> Result<Self, Failure> {
         Ok(Self {
             group,
-            first: Signal { group, bit: 0 }.to_string(),
-            last: Signal { group, bit: 7 }.to_string(),
+            first: signal::name(group, 0),
+            last: signal::name(group, 7),
             class: signal::class(model, group)?.meaning,
             value,
             value_hex: format!("{value:#04x}"),

@@ -11,12 +11,13 @@ use super::super::Family;
 use super::super::orders::usage;
 use super::super::register::unsigned;
 use super::super::writes::{Order, runs, write_all};
-use super::signal::{self, Signal};
+use super::signal;
 use super::{GroupState, SignalState, group_table, signal_table};
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yerc::query::Query as _;
+use crate::controller::yerc::signal::{Signal, SignalError};
 use crate::controller::yerc::variables::{IoStep, WriteIoStep, plan_io_reads, plan_io_writes};
 use crate::failure::Failure;
 use crate::output::view::View;
@@ -54,7 +55,7 @@ impl FromStr for Switch {
             "off" | "0" => false,
             _ => return Err(format!("'{state}' is no state; there are on and off")),
         };
-        Ok(Self { signal: signal.parse()?, on })
+        Ok(Self { signal: signal.parse().map_err(|error: SignalError| error.to_string())?, on })
     }
 }
 
@@ -134,13 +135,13 @@ impl Set {
         let mut changes: BTreeMap<u16, Change> = BTreeMap::new();
         let wholes = self.groups.iter().map(|whole| (whole.group, Change { mask: u8::MAX, value: whole.value }));
         let switches = self.signals.iter().map(|Switch { signal, on }| {
-            (signal.group, Change { mask: 1 << signal.bit, value: u8::from(*on) << signal.bit })
+            (signal.group(), Change { mask: 1 << signal.bit(), value: u8::from(*on) << signal.bit() })
         });
         for (group, change) in wholes.chain(switches) {
             let known = changes.entry(group).or_default();
             if known.mask & change.mask != 0 {
                 let bit = u8::try_from((known.mask & change.mask).trailing_zeros()).unwrap_or_default();
-                return Err(Failure::usage(format!("{} is given twice", Signal { group, bit }))
+                return Err(Failure::usage(format!("{} is given twice", signal::name(group, bit)))
                     .hint("give each signal one state"));
             }
             *known = Change { mask: known.mask | change.mask, value: known.value | change.value };

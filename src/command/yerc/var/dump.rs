@@ -78,7 +78,7 @@ impl Command for Dump {
         }
         let variables: Vec<Entry> = references
             .iter()
-            .filter_map(|reference| Some(Entry::new(*reference, answers.get(reference)?, link.encoding)))
+            .filter_map(|reference| Some(Entry::new(*reference, answers.get(reference)?, link.encoding).bare()))
             .collect();
         let document = Document {
             format: FORMAT,
@@ -89,7 +89,7 @@ impl Command for Dump {
             simulated: robot.target.value.is_simulated(),
             model: link.model.name(),
             encoding: link.encoding.label(),
-            taken_at: Timestamp::now().to_string(),
+            taken_at: now(),
             variables,
         };
         let Some(place) = place else { return Ok(Dumped::Document(document)) };
@@ -156,6 +156,12 @@ impl Dump {
         }
         Ok(())
     }
+}
+
+/// To the second: what is read takes longer.
+fn now() -> String {
+    let now = Timestamp::now();
+    now.round(jiff::Unit::Second).unwrap_or(now).to_string()
 }
 
 fn exists(file: &Path) -> Failure {

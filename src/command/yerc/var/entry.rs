@@ -84,6 +84,12 @@ impl Entry {
         Self { name, kind, number, value, value_hex, refused }
     }
 
+    /// The same without what the controller said, for a file in which null says enough.
+    #[must_use]
+    pub fn bare(self) -> Self {
+        Self { refused: None, ..self }
+    }
+
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name

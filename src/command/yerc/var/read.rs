@@ -9,6 +9,9 @@ use crate::failure::Failure;
 /// What each variable answered.
 pub type Answers = HashMap<Reference, Result<Value, Refusal>>;
 
+/// More would be a slip of the finger: a refused range is searched for what exists, and that takes its time.
+const MOST: usize = 10_000;
+
 /// Reads each of `references` once. A run that the controller refuses is read again in parts, down to the variables
 /// that are refused: positions one by one, since each may be undefined; others by halves, since numbers end somewhere.
 /// `progress` is told what is asked for, and how many variables are known by then.
@@ -17,6 +20,13 @@ pub async fn read_all(
     references: &[Reference],
     mut progress: impl FnMut(&[Reference], usize),
 ) -> Result<Answers, Failure> {
+    if references.len() > MOST {
+        return Err(Failure::usage(format!(
+            "these are {} variables; at most {MOST} are read at a time",
+            references.len()
+        ))
+        .hint("a controller has 100 of a kind (128 positions) unless its parameters say more"));
+    }
     let mut steps: VecDeque<_> = plan_reads(references).into();
     if link.is_dry() {
         link.ask_all(steps.make_contiguous()).await?;
