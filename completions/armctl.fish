@@ -59,47 +59,62 @@ complete -c armctl -n "__fish_armctl_needs_command" -f -a "yerc" -d 'Yaskawa FS1
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "status" -d 'One line a robot: reachable, mode, servo, state, alarm, position'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "robots" -d 'The inventory: list, show, add, remove'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "sim" -d 'Serve the simulators on real sockets'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "decode" -d 'Explain bytes of the line'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "explain" -d 'What an error or alarm code means and what to do'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "completions" -d 'Print the completion script of a shell'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "man" -d 'Write the man pages'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "schema" -d 'Print the JSON Schema of a report'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "help" -d 'Explain a topic, or a command'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
 json\t'One envelope, or an array of them'
 jsonl\t'An envelope a line, with the time'
 csv\t'Comma-separated values'"
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l jq -d 'Print what a jq filter makes of the JSON' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
 always\t'Even into a file'
 never\t'Not at all'"
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
 leave\t'Disconnect only; the motion goes on'"
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l count -d 'Stop after so many reads' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l for -d 'How long --until waits before it gives up with exit code 8' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l sim -d 'Talk to the built-in simulator, in this process'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l all -d 'Talk to every robot of the inventory'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l json -d 'Print JSON (the same as -o json)'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s q -l quiet -d 'Only errors and questions on stderr'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s y -l yes -d 'Answer yes to the question before a motion'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -l dry-run -d 'Send nothing; print what would be sent'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -f -a "status" -d 'Mode, cycle, servo, hold, alarm: every status bit'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -f -a "servo" -d 'Switch servo power'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -f -a "hold" -d 'Hold the robot, or let it go on'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -f -a "hlock" -d 'Lock or unlock the pendant and the operation signals'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -f -a "cycle" -d 'Choose step, one cycle or continuous'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status servo hold hlock cycle say" -f -a "say" -d 'Show a message on the pendant'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "status" -d 'Mode, cycle, servo, hold, alarm: every status bit'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "alarm" -d 'Alarms: list, history, reset, cancel'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "job" -d 'Jobs: show, select, start'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "file" -d 'Files: list, get, put, delete, diff, backup, restore, cmos'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "position" -d 'Where a control group stands: pulses, base coordinates, form'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "axes" -d 'The axes of each control group'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "position-error" -d 'How far each axis is from where it should be'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "torque" -d 'The torque of each axis'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "var" -d 'Variables: get, set, dump, restore'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "io" -d 'Signals: get, set'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "register" -d 'Registers: get, set'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "servo" -d 'Switch servo power'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "hold" -d 'Hold the robot, or let it go on'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "hlock" -d 'Lock or unlock the pendant and the operation signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "cycle" -d 'Choose step, one cycle or continuous'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "say" -d 'Show a message on the pendant'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "move" -d 'Move a robot or station'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "hours" -d 'Running times: power, servo, playback, motion, applications'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "info" -d 'Software version, robot models, parameters'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "raw" -d 'Send any request and explain the answer'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
@@ -130,6 +145,336 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -f -a "list" -d 'The alarms that are present'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -f -a "history" -d 'The alarms of the past, the latest of each class first'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -f -a "reset" -d 'Reset the alarm'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -f -a "cancel" -d 'Cancel the error'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -f -a "show" -d 'What runs: job, line, step and speed override of a task'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -f -a "select" -d 'Choose the job that a start will run'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -f -a "start" -d 'Start the selected job'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -f -a "list" -d 'List the files on the controller'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -f -a "get" -d 'Fetch files'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -f -a "put" -d 'Send files'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -f -a "delete" -d 'Delete files on the controller'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -f -a "diff" -d 'Compare a file on the controller with a local one'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -f -a "backup" -d 'Fetch every file into a folder, with sizes and hashes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -f -a "restore" -d 'Send the files of a backup back'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -f -a "cmos" -d 'Have the controller make its batch backup (CMOSBK.BIN), and fetch it'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l group -d 'Control group: R1 …, B1 …, S1 …' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l coordinates -d 'In pulses, in base coordinates (robots only), or both [default: what the group has]' -r -f -a "pulse\t'Pulses of each axis'
+base\t'X Y Z Rx Ry Rz in base coordinates'
+both\t'Both'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l group -d 'Control group: R1 …, B1 …, S1 …, or all that exist' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l group -d 'Control group: R1 …, B1 …, S1 …' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l group -d 'Control group: R1 …, B1 …, S1 …' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -f -a "get" -d 'Read variables: B0 I1..I20 D5 R3 S2 P10 BP1 EX1'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -f -a "set" -d 'Write variables: B0=255 R3=1.5 S7=HELLO P1=base:x=…'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -f -a "dump" -d 'Save variables to a JSON file'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -f -a "restore" -d 'Write back what a dump holds'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -f -a "get" -d 'Read signals: 20010, #20010..#20017, or --group 2001'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -f -a "set" -d 'Switch network inputs: 27010=on, or --group 2701=0xA5'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -f -a "get" -d 'Read registers: 0 to 999'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -f -a "set" -d 'Write registers: 0 to 559'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
@@ -280,6 +625,141 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -f -a "joint" -d 'To a position, each axis on its own way'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -f -a "linear" -d 'To a position, in a straight line'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -f -a "relative" -d 'By a distance, in a straight line'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -f -a "pulse" -d 'To pulses: joint, linear'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l group -d 'Servo, playback and motion time of a robot or station; all: every counter that exists' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l application -d 'Operation time of an application' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l group -d 'A robot or station, or all that exist with their applications [default: all]' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l application -d 'An application' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l command -d 'Command number, such as 0x72' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l instance -d 'Instance: which of the things that the command addresses' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l attribute -d 'Attribute: which field; 0 for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l service -d 'Service: 0x01 or 0x0E read, 0x02 or 0x10 write, 0x33 and 0x34 read and write several' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l data -d 'Data of the request in hexadecimal; blanks, colons and 0x may stand between' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l file -d 'Ask the file server instead of the robot server'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l check -d 'Refuse here what the manuals do not list for this model'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand status" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand status" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand status" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
@@ -536,6 +1016,70 @@ complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subco
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -f -a "yerc" -d 'Frames of the high-speed Ethernet server, as from a packet capture'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l command -d 'Command whose answer it is, such as 0x75' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l instance -d 'Instance that was asked for' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l attribute -d 'Attribute that was asked for' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r

@@ -94,7 +94,7 @@ impl Yerc {
                     if let Ok(frame) = RequestFrame::parse(bytes)
                         && !frame.ack
                     {
-                        asked.push((frame.id, Request::of(&frame)));
+                        asked.push((frame.id, Request::from(frame)));
                     }
                     describe(bytes, sender, None)
                 }

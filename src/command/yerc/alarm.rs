@@ -13,7 +13,6 @@ use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::payload;
 use crate::controller::yerc::query::{self, Query, ReadAlarm, ReadAlarmHistory};
-use crate::controller::yerc::subcode;
 use crate::controller::yerc::wire::Status;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
@@ -263,7 +262,7 @@ struct SubCode {
 
 impl AlarmEntry {
     fn new(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> Self {
-        let rendered = subcode::render(alarm.kind.0, alarm.data, model);
+        let rendered = alarm.sub_code(model);
         let texts = alarm.texts.as_ref();
         Self {
             code: alarm.code,
@@ -300,7 +299,7 @@ impl AlarmEntry {
 
 /// One line for messages: `alarm 4315 COLLISION DETECT [3]`.
 pub(super) fn in_a_line(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> String {
-    let sub_code = subcode::render(alarm.kind.0, alarm.data, model).to_string();
+    let sub_code = alarm.sub_code(model).to_string();
     let words = [format!("alarm {}", alarm.code), encoding.decode(alarm.name.as_bytes()), sub_code];
     words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
 }

@@ -38,7 +38,7 @@ pub(super) fn frames_on(target: &str, words: &str) -> Result<Vec<String>, Failur
     let (robot, command) = resolved(target, words)?;
     let access = Access { granted: command.risk(), dry_run: true, trace: None };
     let mut link = Yerc::connect(&robot, access, &screen()).now_or_never().expect("a dry run opens nothing")?;
-    let context = Context { robot: &robot, link: &mut link, screen: &screen() };
+    let context = Context { robot: &robot, link: &mut link, screen: &screen(), several: false };
     if let Some(Err(failure)) = command.run(context).now_or_never() {
         return Err(failure);
     }
@@ -59,7 +59,7 @@ pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Fa
             link = Some(Yerc::connect(&robot, access, &screen()).await.unwrap());
         }
         let link = link.as_mut().expect("connected by the first line");
-        let context = Context { robot: &robot, link, screen: &screen() };
+        let context = Context { robot: &robot, link, screen: &screen(), several: false };
         reports.push(match command.run(context).await {
             Ok(report) => report.failure().map_or_else(|| report.data(), Err),
             Err(failure) => Err(failure),

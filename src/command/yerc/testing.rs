@@ -27,7 +27,7 @@ pub fn rehearse(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
         let access = Access { granted: command.risk(), dry_run: true, trace: None };
         let mut link = Family::connect(&robot, access, &screen).await?;
         {
-            let mut run = command.run(Context { robot: &robot, link: &mut link, screen: &screen });
+            let mut run = command.run(Context { robot: &robot, link: &mut link, screen: &screen, several: false });
             match poll_fn(|task| Poll::Ready(run.as_mut().poll(task))).await {
                 Poll::Ready(Err(failure)) => return Err(failure),
                 Poll::Ready(Ok(_)) | Poll::Pending => {}
@@ -74,7 +74,7 @@ impl Bench {
     pub fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let (command, _) = parsed("sim:", words)?;
         let Self { runtime, robot, link } = self;
-        let report = runtime.block_on(command.run(Context { robot, link, screen: &quiet() }))?;
+        let report = runtime.block_on(command.run(Context { robot, link, screen: &quiet(), several: false }))?;
         Ok((report.data()?, report.failure()))
     }
 

@@ -57,7 +57,7 @@ impl Command for Dump {
     const ID: &'static str = "yerc.var.dump";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Dumped, Failure> {
-        let Context { robot, link, screen } = context;
+        let Context { robot, link, screen, .. } = context;
         let references = once(self.references().map(|reference| in_form(reference, link.model, false)));
         let is_stdout = self.file == Path::new("-");
         let place = if is_stdout { None } else { self.place(&robot.name, link.is_dry())? };
