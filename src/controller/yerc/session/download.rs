@@ -8,6 +8,9 @@ use super::super::wire::{AnswerFrame, LAST_BLOCK, RequestFrame, Status};
 use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy};
 use crate::controller::{Now, Session, Step};
 
+/// Most times that a lost last ACK is made good.
+const MOST_LINGERS: u32 = 8;
+
 /// What a controller must not do in a transfer; going on would guess at the content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Violation {
@@ -94,6 +97,8 @@ pub struct Download {
     busy: Option<Status>,
     /// Whether the last frame sent was refused as busy and is due again later.
     pausing: bool,
+    /// ACKs sent once more after the end.
+    lingered: u32,
     ended: Option<DownloadEnd>,
 }
 
@@ -118,6 +123,7 @@ impl Download {
             bytes: 0,
             busy: None,
             pausing: false,
+            lingered: 0,
             ended: None,
         }
     }
@@ -141,12 +147,17 @@ impl Download {
     }
 
     /// After a complete download: the ACK to send once more if `bytes` is the last block once more, which means that
-    /// the first ACK got lost. Without it the controller would hold the transfer open until its timer ends it.
+    /// the first ACK got lost. Without it the controller would hold the transfer open until its timer ends it. A few
+    /// times at most: a server that answers an ACK with the block again would be at it for ever.
     pub fn linger(&mut self, bytes: &[u8]) -> Option<Vec<u8>> {
         let Some(DownloadEnd::Complete { .. }) = self.ended else { return None };
         let answer = self.inbox.current(bytes)?;
         count(&mut self.inbox.counters.duplicated);
-        (answer.status.is_ok() && answer.block == self.acknowledged).then(|| self.last_sent.clone())
+        if !answer.status.is_ok() || answer.block != self.acknowledged || self.lingered == MOST_LINGERS {
+            return None;
+        }
+        self.lingered += 1;
+        Some(self.last_sent.clone())
     }
 
     fn transferring(&self) -> bool {
@@ -459,6 +470,8 @@ mod tests {
         assert_eq!(session.linger(&first), None);
         assert_eq!(session.linger(&block(2, LAST_BLOCK | 2, &[2; 9])), None);
         assert_eq!(session.linger(b"?"), None);
+        let further = (0..100).filter_map(|_| session.linger(&last)).count();
+        assert_eq!(further, 6, "two before: nobody is answered for ever");
     }
 
     #[test]
