@@ -3,7 +3,6 @@
 //! The file is not part of the project; `ARMCTL_YERC_CAPTURES` names it. The controller is a YRC1000, whose requests for
 //! these commands are those of a DX200.
 
-#![expect(clippy::print_stdout, reason = "a skipped test says so")]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 #![expect(clippy::needless_pass_by_value, reason = "queries are built where they are sent")]
 

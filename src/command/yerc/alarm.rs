@@ -398,7 +398,7 @@ mod tests {
         assert_eq!(json["sub_code"]["raw"], 3);
         assert_eq!(json["sub_code"]["rendered"], "[SL]");
         assert_eq!(json["sub_code"]["trust"], "inferred");
-        assert_eq!(json["type_name"], "axes of the robot");
+        assert_eq!(json["type_name"], "user axes (SLURBT)");
         assert_eq!(json["name"], "衝突");
         assert_eq!(alarm.cells()[2].text, "[SL]? (3 = 0x3)");
     }
@@ -413,7 +413,7 @@ mod tests {
         assert_eq!(
             csv,
             "slot,code,name,sub_code,type,time,board\n\
-             1,4315,衝突,[R1: S],20 control group with its LOW and HIGH axes,2026/01/02 03:04,[SV#1]\n"
+             1,4315,衝突,[R1: S],20 group with low and high logical axes,2026/01/02 03:04,[SV#1]\n"
         );
     }
 
