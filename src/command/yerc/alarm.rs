@@ -334,7 +334,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::command::yerc::rehearse::{frames, golden, objection, reports};
+    use crate::command::yerc::testing::{frames, golden, objection, reports};
     use crate::controller::yerc::payload::{AlarmKind, AlarmTexts, Text};
     use crate::output::render;
 

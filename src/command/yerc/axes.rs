@@ -229,7 +229,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::command::yerc::rehearse::{frames, frames_on, golden, reports};
+    use crate::command::yerc::testing::{frames, frames_on, golden, reports};
     use crate::controller::yerc::payload::{Axes, Text};
     use crate::controller::yerc::wire::Status;
     use crate::failure::Kind;

@@ -143,7 +143,7 @@ impl Report for Times {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::yerc::rehearse::{frames, frames_on, golden, objection};
+    use crate::command::yerc::testing::{frames, frames_on, golden, objection};
     use crate::controller::yerc::payload::Text;
     use crate::failure::Kind;
     use crate::output::render;

@@ -128,7 +128,7 @@ impl Report for Versions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::yerc::rehearse::{frames, frames_on, golden, reports};
+    use crate::command::yerc::testing::{frames, frames_on, golden, reports};
     use crate::failure::Kind;
     use crate::output::render;
 

@@ -375,7 +375,7 @@ impl Report for Started {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::yerc::rehearse::{frames, frames_on, golden, intent, objection, reports};
+    use crate::command::yerc::testing::{frames, frames_on, golden, intent, objection, reports};
     use crate::controller::yerc::payload::{StatusBit, Text};
     use crate::controller::yerc::wire;
     use crate::output::render;

@@ -15,8 +15,6 @@ pub mod overview;
 mod position;
 mod raw;
 mod register;
-#[cfg(test)]
-mod rehearse;
 mod status;
 #[cfg(test)]
 mod testing;

@@ -339,7 +339,7 @@ impl PulseTarget {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yerc::rehearse::{frames, frames_on, golden, intent, objection, reports};
+    use crate::command::yerc::testing::{frames, frames_on, golden, intent, objection, reports};
     use crate::failure::Kind;
 
     /// Head of a frame, and the words of its data.

@@ -325,7 +325,7 @@ pub(super) fn in_a_line(kind: PositionKind, axes: &[i32], is_robot: bool) -> Str
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::yerc::rehearse::{frames, frames_on, golden, objection};
+    use crate::command::yerc::testing::{frames, frames_on, golden, objection};
     use crate::output::render;
 
     fn base(axes: &[i32]) -> payload::Position {

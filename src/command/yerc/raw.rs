@@ -235,7 +235,10 @@ impl Report for Answer {
 mod tests {
     use std::time::Duration;
 
+    use serde_json::Value;
+
     use super::*;
+    use crate::command::yerc::testing::{Bench, DX200, same};
     use crate::controller::yerc::wire::Status;
     use crate::failure::Kind;
 
@@ -259,5 +262,35 @@ mod tests {
         assert!(Report::failure(&value).is_none());
         let field = &value.fields[0];
         assert_eq!((field.offset, field.size, field.name.as_str(), field.meaning.as_str()), (32, 1, "value", "200"));
+    }
+
+    #[test]
+    fn raw_sends_what_it_is_told() {
+        let words = [
+            "raw",
+            "--command",
+            "0x80",
+            "--instance",
+            "5",
+            "--attribute",
+            "2",
+            "--service",
+            "0x10",
+            "--data",
+            "ff ff:ff,0xff",
+        ];
+        same("R35", DX200, &words);
+        same("M01", DX200, &["raw", "--command", "0x72", "--instance", "1", "--service", "0x01"]);
+    }
+
+    #[test]
+    fn raw_prints_a_refusal_and_fails() {
+        let mut bench = Bench::new("sim:");
+        let words = ["raw", "--command", "0x7f", "--instance", "100", "--service", "1"];
+        let (data, failure) = bench.run(&words).unwrap();
+        assert_eq!((&data["status"], &data["added_status"]), (&Value::from("0x1f"), &Value::from("0xb005")));
+        assert_eq!(failure.unwrap().kind.exit(), 3);
+        let data = bench.data(&["raw", "--command", "0x72", "--instance", "1", "--service", "1"]);
+        assert_eq!((&data["data_bytes"], data["fields"].as_array().unwrap().len()), (&Value::from(8), 2));
     }
 }

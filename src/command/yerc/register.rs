@@ -182,7 +182,10 @@ impl Report for WrittenRegisters {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::Value;
+
     use super::*;
+    use crate::command::yerc::testing::Bench;
 
     #[test]
     fn values_in_decimal_and_hexadecimal() {
@@ -191,5 +194,14 @@ mod tests {
         for wrong in ["5", "5=", "5=0x", "5=-1", "5=65536", "5=0x10000", "5=1_0", "5=+1", "-1=0", "1..2=0", "=1"] {
             assert!(wrong.parse::<Assignment>().is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn registers_by_the_dozen() {
+        let mut bench = Bench::new("sim:");
+        bench.data(&["register", "set", "5=0xFFFF", "6=1"]);
+        let data = bench.data(&["register", "get", "6", "5..6"]);
+        let numbers: Vec<&Value> = data["registers"].as_array().unwrap().iter().map(|word| &word["value"]).collect();
+        assert_eq!(numbers, [&Value::from(1), &Value::from(0xFFFF)]);
     }
 }

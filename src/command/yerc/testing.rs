@@ -1,13 +1,11 @@
-//! Command lines without a controller: what they would send, and what they do to a simulated one.
-
-use std::future::poll_fn;
-use std::task::Poll;
+//! For tests: what a command line would send, and what becomes of it on a simulator in virtual time.
 
 use clap::Parser as _;
+use futures_util::FutureExt as _;
 use serde_json::Value;
 
 use super::Family;
-use super::link::Link;
+use super::link::{Link, hex};
 use crate::cli::{Cli, Top};
 use crate::command::{Access, AnyCommand, Context, Family as _, Noun as _};
 use crate::controller::Risk;
@@ -17,42 +15,83 @@ use crate::settings::inventory::Options;
 use crate::settings::target::Family as Name;
 use crate::settings::{Robot, Selection, Sources};
 
+pub(super) const DX200: &str = "udp://127.0.0.1?model=dx200";
+pub(super) const FS100: &str = "udp://127.0.0.1?model=fs100";
+
+/// What the parser of the command line objects to.
+pub(super) fn objection(words: &str) -> String {
+    let words: Vec<&str> = words.split_ascii_whitespace().collect();
+    parsed(DX200, &words).expect_err("the parser objects").to_string()
+}
+
+/// The question before the command, without "This will".
+pub(super) fn intent(words: &str) -> String {
+    resolved(DX200, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap().1.intent()
+}
+
 /// What `armctl yerc -t TARGET WORDS…` would send: the `data.frames` of a dry run. A command line that cannot be parsed
 /// fails with the parser's message.
-pub fn rehearse(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
-    let (command, robot) = parsed(target, words)?;
-    let screen = quiet();
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
-    runtime.block_on(async {
-        let access = Access { granted: command.risk(), dry_run: true, trace: None };
-        let mut link = Family::connect(&robot, access, &screen).await?;
-        {
-            let mut run = command.run(Context { robot: &robot, link: &mut link, screen: &screen, several: false });
-            match poll_fn(|task| Poll::Ready(run.as_mut().poll(task))).await {
-                Poll::Ready(Err(failure)) => return Err(failure),
-                Poll::Ready(Ok(_)) | Poll::Pending => {}
-            }
+pub(super) fn rehearse(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
+    let (robot, command) = resolved(target, words)?;
+    let access = Access { granted: command.risk(), dry_run: true, trace: None };
+    let mut link = Family::connect(&robot, access, &quiet()).now_or_never().expect("a dry run opens nothing")?;
+    let context = Context { robot: &robot, link: &mut link, screen: &quiet(), several: false };
+    if let Some(Err(failure)) = command.run(context).now_or_never() {
+        return Err(failure);
+    }
+    Ok(Family::rehearsed(&mut link))
+}
+
+/// The frames of a dry run, in hexadecimal, without the header: command, instance, attribute, service, padding, data.
+pub(super) fn frames_on(target: &str, words: &str) -> Result<Vec<String>, Failure> {
+    let frames = rehearse(target, &words.split_ascii_whitespace().collect::<Vec<_>>())?;
+    Ok(frames.iter().map(without_header).collect())
+}
+
+/// [`frames_on`] a DX200.
+pub(super) fn frames(words: &str) -> Result<Vec<String>, Failure> {
+    frames_on(DX200, words)
+}
+
+/// A golden frame of the manuals, in the form of [`frames`].
+pub(super) fn golden(id: &str) -> String {
+    without_header(&golden_frame(id))
+}
+
+/// Demands that a command line sends one frame, and that this is the golden one; only the request id is taken over.
+#[track_caller]
+pub(super) fn same(id: &str, target: &str, words: &[&str]) {
+    let frames = rehearse(target, words).unwrap_or_else(|failure| panic!("{words:?}: {failure:?}"));
+    let (golden, sent) = (golden_frame(id), frames.iter().map(digits).collect::<Vec<_>>());
+    let golden = digits(&golden);
+    let sent = sent.iter().map(|frame| format!("{}{}{}", &frame[..22], &golden[22..24], &frame[24..]));
+    assert_eq!(sent.collect::<Vec<_>>(), [golden], "{id}: {words:?}");
+}
+
+/// The data of the reports of command lines, one after the other on one simulator that starts in `state` (TOML).
+pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Failure>> {
+    let mut file = tempfile::NamedTempFile::new().unwrap();
+    std::io::Write::write_all(&mut file, state.as_bytes()).unwrap();
+    let target = format!("sim:?state={}", file.path().display());
+    let mut link = None;
+    let mut reports = Vec::new();
+    for words in lines {
+        let (robot, command) = resolved(&target, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap();
+        if link.is_none() {
+            link = Some(Family::connect(&robot, EVERYTHING, &quiet()).await.unwrap());
         }
-        Ok(Family::rehearsed(&mut link))
-    })
-}
-
-fn parsed(target: &str, words: &[&str]) -> Result<(Box<dyn AnyCommand<Family>>, Robot), Failure> {
-    let line = [&["armctl", "yerc", "-t", target], words].concat();
-    let cli = Cli::try_parse_from(line).map_err(|error| Failure::usage(error.to_string()))?;
-    let Top::Yerc(noun) = cli.command else { return Err(Failure::usage("not a yerc command")) };
-    let selection = Selection { target: cli.globals.target, ..Selection::default() };
-    let flags = Options { encoding: cli.globals.encoding, ..Options::default() };
-    let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(Name::Yerc))?.remove(0);
-    Ok((noun.command(), robot))
-}
-
-fn quiet() -> Screen {
-    Screen::new(Format::Json, ColorChoice::Never, true, 0)
+        let link = link.as_mut().expect("connected by the first line");
+        let context = Context { robot: &robot, link, screen: &quiet(), several: false };
+        reports.push(match command.run(context).await {
+            Ok(report) => report.failure().map_or_else(|| report.data(), Err),
+            Err(failure) => Err(failure),
+        });
+    }
+    reports
 }
 
 /// A simulated controller and a link to it that last for several command lines, in virtual time.
-pub struct Bench {
+pub(super) struct Bench {
     runtime: tokio::runtime::Runtime,
     robot: Robot,
     link: Link,
@@ -60,19 +99,17 @@ pub struct Bench {
 
 impl Bench {
     /// A simulator by its URL.
-    pub fn new(target: &str) -> Self {
+    pub(super) fn new(target: &str) -> Self {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
-        let selection = Selection { target: Some(target.parse().expect("a target")), ..Selection::default() };
-        let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Yerc)).expect("a robot").remove(0);
-        let access = Access { granted: Risk::Motion, dry_run: false, trace: None };
-        let link = runtime.block_on(Family::connect(&robot, access, &quiet())).expect("a link");
+        let (robot, _) = resolved(target, &["status"]).expect("a robot");
+        let link = runtime.block_on(Family::connect(&robot, EVERYTHING, &quiet())).expect("a link");
         Self { runtime, robot, link }
     }
 
     /// Runs `armctl yerc WORDS…`: the data of the report, and why it is not a success although there is one.
-    pub fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
-        let (command, _) = parsed("sim:", words)?;
+    pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
+        let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link } = self;
         let report = runtime.block_on(command.run(Context { robot, link, screen: &quiet(), several: false }))?;
         Ok((report.data()?, report.failure()))
@@ -80,7 +117,7 @@ impl Bench {
 
     /// The data of a command line that must succeed.
     #[track_caller]
-    pub fn data(&mut self, words: &[&str]) -> Value {
+    pub(super) fn data(&mut self, words: &[&str]) -> Value {
         match self.run(words) {
             Ok((data, None)) => data,
             other => panic!("{words:?}: {other:?}"),
@@ -88,251 +125,39 @@ impl Bench {
     }
 }
 
-/// The frames of [`rehearse`] in hexadecimal, with request ids counted from `id`, as the golden frames have them.
-pub fn frames(target: &str, words: &[&str], id: u8) -> Vec<String> {
-    let frames = rehearse(target, words).unwrap_or_else(|failure| panic!("{words:?}: {failure:?}"));
-    let hex = frames.iter().map(|frame| frame["hex"].as_str().expect("frames have hex").to_owned());
-    hex.zip(id..).map(|(hex, id)| format!("{}{id:02x}{}", &hex[..22], &hex[24..])).collect()
+/// A link that may do anything.
+const EVERYTHING: Access = Access { granted: Risk::Motion, dry_run: false, trace: None };
+
+fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
+    Cli::try_parse_from([&["armctl", "-t", target, "yerc"], words].concat())
 }
 
-/// A golden frame by its id.
-pub fn golden(id: &str) -> String {
-    let all: Value = serde_json::from_str(include_str!("../../../tests/data/yerc-frames.json")).expect("golden frames");
-    let frame = all.as_array().and_then(|all| all.iter().find(|frame| frame["id"] == id));
-    frame.and_then(|frame| frame["hex"].as_str()).unwrap_or_else(|| panic!("no golden frame {id}")).to_owned()
+/// Robot and command of a line.
+fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Family>>), Failure> {
+    let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
+    let selection = Selection { target: cli.globals.target, ..Selection::default() };
+    let flags = Options { encoding: cli.globals.encoding, ..Options::default() };
+    let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(Name::Yerc))?.remove(0);
+    let Top::Yerc(noun) = cli.command else { unreachable!("the words follow yerc") };
+    Ok((robot, noun.command()))
 }
 
-const DX200: &str = "udp://127.0.0.1?model=dx200";
-const FS100: &str = "udp://127.0.0.1?model=fs100";
-
-/// Request id of a golden frame, its name, model, words.
-#[track_caller]
-fn same(id: &str, target: &str, words: &[&str]) {
-    let golden = golden(id);
-    let number = u8::from_str_radix(&golden[22..24], 16).expect("an id");
-    assert_eq!(frames(target, words, number), [golden], "{id}: {words:?}");
+/// Where tests write: nowhere.
+fn quiet() -> Screen {
+    Screen::new(Format::Json, ColorChoice::Never, true, 0)
 }
 
-/// Owned words as a command line.
-#[track_caller]
-fn same_many(id: &str, target: &str, first: &[&str], rest: &[String]) {
-    let words: Vec<&str> = first.iter().copied().chain(rest.iter().map(String::as_str)).collect();
-    same(id, target, &words);
+fn golden_frame(id: &str) -> Value {
+    let frames: Vec<Value> = serde_json::from_str(include_str!("../../../tests/data/yerc-frames.json")).unwrap();
+    frames.into_iter().find(|frame| frame["id"] == id).unwrap_or_else(|| panic!("no golden frame {id}"))
 }
 
-#[test]
-fn single_writes_are_the_golden_frames() {
-    same("R19", DX200, &["io", "set", "--group", "2956=0xA5"]);
-    same("M03t", DX200, &["register", "set", "10=0x1234"]);
-    same("R21", FS100, &["register", "set", "559=65535"]);
-    same("R23", FS100, &["var", "set", "B99=255"]);
-    same("R25", FS100, &["var", "set", "I5=-2"]);
-    same("R27", FS100, &["var", "set", "R3=1.5"]);
-    same("R29", FS100, &["var", "set", "S7=HELLO"]);
-    same("R29", DX200, &["var", "set", "--s16", "S7=HELLO"]);
-    same("R31", DX200, &["var", "set", "P1=pulse:s=1000,l=-2000,u=3000,r=-4000,b=5000,t=-6000"]);
-    same("R33", DX200, &["var", "set", "P3=user:x=0.001,y=0.002,z=0.003,rx=0.0004,ry=0.0005,rz=0.0006,user=2"]);
-    same("R35", DX200, &["var", "set", "BP5.axis1=-1"]);
-    same("R37", DX200, &["var", "set", "EX10=pulse:1=100,2=200"]);
+fn digits(frame: &Value) -> String {
+    frame["hex"].as_str().expect("frames are hexadecimal").to_owned()
 }
 
-#[test]
-fn plural_reads_and_writes_are_the_golden_frames() {
-    same("R57", DX200, &["io", "get", "--group", "1..474"]);
-    same("R59", FS100, &["io", "set", "--group", "2502=0x80", "--group", "2501=1"]);
-    same("R61", DX200, &["register", "set", "100=100", "102=300", "101=200"]);
-    same("R63", DX200, &["var", "get", "B10..B11"]);
-    same("R71", DX200, &["var", "get", "EX0..EX12"]);
-    let doubles: Vec<String> = (0..118).map(|n| format!("D{n}={}", n * 1000)).collect();
-    same_many("R65", DX200, &["var", "set"], &doubles);
-    let strings: Vec<String> = (0..29).map(|n| format!("S{n}=STR{n:02}")).collect();
-    same_many("R67", DX200, &["var", "set", "--s16"], &strings);
-    let strings: Vec<String> = (0..14).map(|n| format!("S{n}=LONG STRING {n:02}")).collect();
-    same_many("R79", DX200, &["var", "set"], &strings);
-    let pulses = (0..9).map(|n| format!("P{n}=pulse:s={n},l={},u={},r={},b={},t={}", -n, 2 * n, -2 * n, 3 * n, -3 * n));
-    same_many("R69", DX200, &["var", "set"], &pulses.collect::<Vec<_>>());
-}
-
-#[test]
-fn many_variables_are_a_handful_of_requests() {
-    let commands =
-        |words: &[&str]| frames(DX200, words, 0).iter().map(|frame| frame[48..52].to_owned()).collect::<Vec<_>>();
-    assert_eq!(commands(&["var", "get", "B0..B99", "I0..I99", "D0..D99"]), ["0203", "0303", "0403"]);
-    assert_eq!(commands(&["var", "get", "D5", "B0", "B0"]), ["7a00", "7c00"]);
-    assert_eq!(commands(&["var", "dump", "-", "--kinds", "P"]).len(), 15);
-    assert_eq!(commands(&["var", "dump", "-", "--kinds", "s"]).len(), 8);
-}
-
-#[test]
-fn a_change_of_one_signal_is_foreseen() {
-    let plan = rehearse(DX200, &["io", "set", "27010=on", "27011=off"]).unwrap();
-    let [read, write] = &plan[..] else { panic!("{plan:?}") };
-    assert_eq!(read["about"], "reads group 2701");
-    assert_eq!(&read["hex"].as_str().unwrap()[48..], "78008d0a010e0000");
-    assert!(write["about"].as_str().unwrap().starts_with("writes group 2701"));
-    assert_eq!(&write["hex"].as_str().unwrap()[48..], "78008d0a0110000001");
-}
-
-#[test]
-fn what_cannot_be_meant_is_not_sent() {
-    let failed = |words: &[&str]| {
-        let failure = rehearse(DX200, words).unwrap_err();
-        assert_eq!(failure.kind.exit(), 2, "{words:?}");
-        format!("{} {}", failure.message, failure.hint.unwrap_or_default())
-    };
-    assert!(failed(&["var", "set", "I0=1", "B0=256"]).contains("'256' is not a number from 0 to 255"));
-    assert!(failed(&["var", "set", "B0=1", "B0=2"]).contains("B0 is given twice"));
-    assert!(failed(&["var", "set", "S0=123456789012345678901234567890123"]).contains("33 bytes"));
-    assert!(failed(&["var", "set", "--s16", "S0=12345678901234567"]).contains("17 bytes"));
-    assert!(failed(&["var", "set", "S0=한글"]).contains("shift_jis"));
-    assert!(failed(&["io", "get", "9"]).contains("signal 9 does not exist"));
-    assert!(failed(&["io", "get", "5200"]).contains("does not exist on a dx200"));
-    assert!(failed(&["io", "set", "10010=on"]).contains("robot user output"));
-    assert!(failed(&["register", "get", "1000"]).contains("0-559, 560-999"));
-    assert!(failed(&["register", "set", "560=1"]).contains("0-559"));
-    assert!(failed(&["raw", "--file", "--service", "0x32"]).contains("yerc file list"));
-    assert!(failed(&["raw", "--command", "0x8D", "--instance", "1", "--service", "1", "--check"]).contains("0x008d"));
-}
-
-#[test]
-fn raw_sends_what_it_is_told() {
-    let words = [
-        "raw",
-        "--command",
-        "0x80",
-        "--instance",
-        "5",
-        "--attribute",
-        "2",
-        "--service",
-        "0x10",
-        "--data",
-        "ff ff:ff,0xff",
-    ];
-    same("R35", DX200, &words);
-    same("M01", DX200, &["raw", "--command", "0x72", "--instance", "1", "--service", "0x01"]);
-}
-
-#[test]
-fn undefined_positions_in_a_range_are_reported_one_by_one() {
-    let mut bench = Bench::new("sim:");
-    bench.data(&["var", "set", "P20=pulse:s=1,l=2,u=3,r=4,b=5,t=6", "EX3=pulse:1=9"]);
-    let data = bench.data(&["var", "get", "P18..P22", "EX3", "P18", "B8"]);
-    let entries = data["variables"].as_array().unwrap();
-    let shown: Vec<(&str, &Value)> =
-        entries.iter().map(|entry| (entry["name"].as_str().unwrap(), &entry["value"]["text"])).collect();
-    let text = |text: &str| Value::from(text);
-    let (p20, ex3) = (text("pulse:s=1,l=2,u=3,r=4,b=5,t=6,tool=0,user=0"), text("pulse:1=9"));
-    let null = &Value::Null;
-    assert_eq!(
-        shown,
-        [("P18", null), ("P19", null), ("P20", &p20), ("P21", null), ("P22", null), ("EX3", &ex3), ("B8", null)]
-    );
-    assert_eq!(entries[0]["refused"]["undefined"], true);
-    assert_eq!(entries[6]["value"], 0);
-    let (_, failure) = bench.run(&["var", "get", "P18..P19"]).unwrap();
-    assert_eq!(failure.unwrap().kind.exit(), 3);
-}
-
-#[test]
-fn numbers_beyond_the_last_are_found_and_named() {
-    let data = Bench::new("sim:").data(&["var", "get", "B90..B110"]);
-    let values = data["variables"].as_array().unwrap();
-    assert_eq!(values.iter().filter(|entry| entry["value"] == 0).count(), 10);
-    assert!(values[10..].iter().all(|entry| entry["refused"]["undefined"] == false), "{data}");
-}
-
-#[test]
-fn a_dump_is_restored_to_the_last_byte() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let (first, second) = (path("first.json"), path("second.json"));
-    let mut bench = Bench::new("sim:?model=dx200");
-    let values = [
-        "B0=255",
-        "I99=-32768",
-        "D5=-2147483648",
-        "R3=1.1",
-        "R4=-1e-40",
-        "S7=\u{30c6}\u{30b9}\u{30c8} \\x80",
-        "BP1=base:x=1.5,y=2,z=3",
-        "P5=user:x=-0.001,y=0,z=2147483.647,rx=0.0001,ry=-180,rz=0,re=1,tool=63,user=2,form=back+noflip,ext=w-ge180",
-    ];
-    bench.data(&[&["var", "set"], &values[..]].concat());
-    let summary = bench.data(&["var", "dump", &first]);
-    assert_eq!(summary["variables"], 500 + 3 * 128);
-    assert_eq!(bench.run(&["var", "dump", &first]).unwrap_err().kind.exit(), 1);
-    let mut other = Bench::new("sim:?model=dx200");
-    let restored = other.data(&["var", "restore", &first]);
-    assert_eq!(restored["written"].as_u64().unwrap() + restored["left_alone"].as_u64().unwrap(), 884);
-    other.data(&["var", "dump", &second]);
-    let variables = |path: &str| {
-        let text = std::fs::read_to_string(path).unwrap();
-        let lines = text.lines().filter(|line| line.contains("\"name\"")).map(ToOwned::to_owned);
-        lines.collect::<Vec<String>>()
-    };
-    let (before, after) = (variables(&first), variables(&second));
-    assert_eq!(before.len(), 884);
-    if let Some((before, after)) = before.iter().zip(&after).find(|(before, after)| before != after) {
-        panic!("{before} became {after}");
-    }
-    for name in ["P5", "R4", "S7", "BP1"] {
-        assert_eq!(bench.data(&["var", "get", name]), other.data(&["var", "get", name]));
-    }
-    let only = other.data(&["var", "restore", &first, "--only", "B,S"]);
-    assert_eq!(only["written_names"], "B0..B99, S0..S99");
-}
-
-#[test]
-fn a_file_of_var_get_sets_a_position() {
-    let file = tempfile::NamedTempFile::new().unwrap();
-    let mut bench = Bench::new("sim:");
-    let shown = bench.data(&["var", "get", "P2"]);
-    std::fs::write(file.path(), serde_json::json!({ "ok": true, "data": shown }).to_string()).unwrap();
-    bench.data(&["var", "set", &format!("P9=@{}", file.path().display()), "P9.tool=7"]);
-    let (p2, p9) = (&shown["variables"][0]["value"], bench.data(&["var", "get", "P9"]));
-    let p9 = &p9["variables"][0]["value"];
-    assert_eq!((&p9["x_mm"], &p9["tool"]), (&p2["x_mm"], &Value::from(7)));
-    let failure = bench.run(&["var", "set", &format!("EX9=@{}", file.path().display())]).unwrap_err();
-    assert_eq!(failure.kind.exit(), 2);
-}
-
-#[test]
-fn one_signal_is_switched_and_the_others_stay() {
-    let mut bench = Bench::new("sim:?model=fs100");
-    bench.data(&["io", "set", "--group", "2501=0xF0"]);
-    let data = bench.data(&["io", "set", "25010=on", "25017=off", "25020=on"]);
-    assert_eq!((&data["groups"][0]["value"], &data["groups"][1]["value"]), (&Value::from(0x71), &Value::from(1)));
-    let data = bench.data(&["io", "get", "25010..25013", "25010", "--group", "2501..2502"]);
-    let on: Vec<bool> = data["signals"].as_array().unwrap().iter().map(|signal| signal["on"] == true).collect();
-    assert_eq!(on, [true, false, false, false]);
-    assert_eq!(data["groups"][0]["value_hex"], "0x71");
-}
-
-#[test]
-fn registers_by_the_dozen() {
-    let mut bench = Bench::new("sim:");
-    bench.data(&["register", "set", "5=0xFFFF", "6=1"]);
-    let data = bench.data(&["register", "get", "6", "5..6"]);
-    let numbers: Vec<&Value> = data["registers"].as_array().unwrap().iter().map(|word| &word["value"]).collect();
-    assert_eq!(numbers, [&Value::from(1), &Value::from(0xFFFF)]);
-}
-
-#[test]
-fn a_lost_write_is_accounted_for() {
-    let mut bench = Bench::new("sim:?fault=drop=100%25");
-    let failure = bench.run(&["var", "set", "B0=1", "I0=1"]).unwrap_err();
-    assert_eq!(failure.kind.exit(), 6);
-    assert!(failure.message.ends_with("done; written or not: B0; not written: I0"), "{failure}");
-}
-
-#[test]
-fn raw_prints_a_refusal_and_fails() {
-    let mut bench = Bench::new("sim:");
-    let words = ["raw", "--command", "0x7f", "--instance", "100", "--service", "1"];
-    let (data, failure) = bench.run(&words).unwrap();
-    assert_eq!((&data["status"], &data["added_status"]), (&Value::from("0x1f"), &Value::from("0xb005")));
-    assert_eq!(failure.unwrap().kind.exit(), 3);
-    let data = bench.data(&["raw", "--command", "0x72", "--instance", "1", "--service", "1"]);
-    assert_eq!((&data["data_bytes"], data["fields"].as_array().unwrap().len()), (&Value::from(8), 2));
+fn without_header(frame: &Value) -> String {
+    let frame = digits(frame);
+    assert_eq!(&frame[..12], hex(b"YERC\x20\0"));
+    frame[48..].to_owned()
 }

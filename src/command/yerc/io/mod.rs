@@ -3,6 +3,8 @@
 mod get;
 mod set;
 mod signal;
+#[cfg(test)]
+mod tests;
 
 use schemars::JsonSchema;
 use serde::Serialize;

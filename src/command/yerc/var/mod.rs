@@ -3,6 +3,8 @@
 mod dump;
 mod entry;
 mod get;
+#[cfg(test)]
+mod lines;
 mod position;
 mod read;
 mod restore;
