@@ -9,6 +9,7 @@
 //! `ARMCTL_BLESS=1 cargo test --test readme` writes what was printed into the blocks that differ.
 #![cfg(unix)]
 
+use std::fmt::Write as _;
 use std::io::{BufRead as _, BufReader};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -105,7 +106,7 @@ fn run(block: &str, files: &[(String, String)]) -> Result<String, String> {
     let mut script = String::from("exec 2>&1\n");
     for command in &commands {
         let command = simulator.as_ref().map_or_else(|| command.clone(), |simulator| simulator.reached(command));
-        script.push_str(&format!("{command}\nlast=$?\nprintf '{MARK} %s\\n' $last\n(exit $last)\n"));
+        writeln!(script, "{command}\nlast=$?\nprintf '{MARK} %s\\n' $last\n(exit $last)").expect("strings take text");
     }
     let output = shell(&script, folder.path())?;
     let output = simulator.as_ref().map_or_else(|| output.clone(), |simulator| simulator.documented(&output));
@@ -119,7 +120,7 @@ fn run(block: &str, files: &[(String, String)]) -> Result<String, String> {
         if code.trim() != "0" && !is_shown {
             return Err(format!("`{command}` ended with {} and printed\n{last}", code.trim()));
         }
-        page.push_str(&format!("$ {}\n{last}", command.replace('\n', "\n> ")));
+        write!(page, "$ {}\n{last}", command.replace('\n', "\n> ")).expect("strings take text");
         last = rest;
     }
     Ok(page)
