@@ -1,4 +1,4 @@
-//! UDP sockets that serve a [`Peer`]: the other end of [`udp`](super::udp).
+//! UDP sockets that serve a [`Service`]: the other end of [`udp`](super::udp).
 
 use std::collections::HashMap;
 use std::io;
