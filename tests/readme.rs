@@ -1,10 +1,10 @@
 //! Runs the console blocks of the README and of `docs/` with the built binary and compares what they print.
 //!
-//! A block is one shell session in a folder of its own, with a home of its own and no `ARMCTL_…` variables. `...` on a
-//! line of its own stands for any lines, `[..]` for any text within a line. A command may only fail where the next one
-//! is `echo $?`. Blocks that speak of `127.0.0.1:10040` get a simulator of their own, on ports that the system chooses.
-//! TOML blocks that begin with `# NAME.toml` lie in the folders of that page's blocks as files of that name.
-//! Blocks marked `sh` are not run: installation, real controllers.
+//! The blocks below one `##` heading are one shell session, in a folder of its own, with a home of its own and no
+//! `ARMCTL_…` variables. `...` on a line of its own stands for any lines, `[..]` for any text within a line. A command
+//! may only fail where the next one is `echo $?`. Sections that speak of `127.0.0.1:10040` get a simulator of their own,
+//! on ports that the system chooses. TOML blocks that begin with `# NAME.toml` lie in the folders of that page's sessions
+//! as files of that name. Blocks marked `sh` are not run: installation, real controllers.
 //!
 //! `ARMCTL_BLESS=1 cargo test --test readme` writes what was printed into the blocks that differ.
 #![cfg(unix)]
@@ -32,21 +32,28 @@ fn console_blocks_print_what_they_show() {
         let path = root().join(page);
         let Ok(mut text) = std::fs::read_to_string(&path) else { panic!("{page} is missing") };
         let files = files(&text);
-        for (number, range) in blocks(&text, "console").into_iter().enumerate().rev() {
-            let block = text[range.clone()].to_owned();
-            let printed = match run(&block, &files) {
+        // From the end, so that blessing one section leaves the places of those before it.
+        for section in sections(&text).into_iter().rev() {
+            let heading = text[section.clone()].lines().next().unwrap_or_default().to_owned();
+            let blocks: Vec<Range<usize>> = blocks(&text[section.clone()], "console")
+                .into_iter()
+                .map(|block| section.start + block.start..section.start + block.end)
+                .collect();
+            let shown: Vec<String> = blocks.iter().map(|block| text[block.clone()].to_owned()).collect();
+            let printed = match run(&shown, &files) {
                 Ok(printed) => printed,
                 Err(why) => {
-                    wrong.push(format!("{page}, block {}: {why}", number + 1));
+                    wrong.push(format!("{page}, {heading}: {why}"));
                     continue;
                 }
             };
-            let assert = snapbox::Assert::new().normalize_paths(false);
-            let compared = assert.try_eq(Some(&page), printed.as_str().into_data(), block.as_str().into_data());
-            match compared {
-                Ok(()) => {}
-                Err(_) if bless => text.replace_range(range, &printed),
-                Err(difference) => wrong.push(format!("{page}, block {}:\n{difference}", number + 1)),
+            for ((range, shown), printed) in blocks.into_iter().zip(shown).zip(printed).rev() {
+                let assert = snapbox::Assert::new().normalize_paths(false);
+                match assert.try_eq(Some(&page), printed.as_str().into_data(), shown.as_str().into_data()) {
+                    Ok(()) => {}
+                    Err(_) if bless => text.replace_range(range, &printed),
+                    Err(difference) => wrong.push(format!("{page}, {heading}:\n{difference}")),
+                }
             }
         }
         if bless {
@@ -67,6 +74,13 @@ fn the_set_up_takes_exactly_the_two_commands() {
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Where the sections are, each with its `##` heading.
+fn sections(text: &str) -> Vec<Range<usize>> {
+    let starts: Vec<usize> = text.match_indices("\n## ").map(|(at, _)| at + 1).collect();
+    let ends = starts.iter().skip(1).copied().chain([text.len()]);
+    starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect()
 }
 
 /// Name and content of the files that a page shows.
@@ -95,35 +109,39 @@ fn blocks(text: &str, language: &str) -> Vec<Range<usize>> {
     blocks
 }
 
-/// Runs the commands of a block; what comes back is the block as it should read.
-fn run(block: &str, files: &[(String, String)]) -> Result<String, String> {
+/// Runs the commands of a section's blocks in one session; what comes back is the blocks as they should read.
+fn run(blocks: &[String], files: &[(String, String)]) -> Result<Vec<String>, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     for (name, content) in files {
         std::fs::write(folder.path().join(name), content).map_err(|error| format!("{name}: {error}"))?;
     }
-    let simulator = block.contains(DOCUMENTED).then(Simulator::start);
-    let commands = commands(block);
+    let simulator = blocks.iter().any(|block| block.contains(DOCUMENTED)).then(Simulator::start);
+    let blocks: Vec<Vec<String>> = blocks.iter().map(|block| commands(block)).collect();
     let mut script = String::from("exec 2>&1\n");
-    for command in &commands {
+    for command in blocks.iter().flatten() {
         let command = simulator.as_ref().map_or_else(|| command.clone(), |simulator| simulator.reached(command));
         writeln!(script, "{command}\nlast=$?\nprintf '{MARK} %s\\n' $last\n(exit $last)").expect("strings take text");
     }
     let output = shell(&script, folder.path())?;
     let output = simulator.as_ref().map_or_else(|| output.clone(), |simulator| simulator.documented(&output));
-    let mut page = String::new();
-    let mut printed = output.split(MARK);
-    let mut last = printed.next().unwrap_or_default();
-    for (index, command) in commands.iter().enumerate() {
-        let next = printed.next().ok_or_else(|| format!("the shell ended before `{command}` was done"))?;
-        let (code, rest) = next.split_once('\n').unwrap_or((next, ""));
-        let is_shown = commands.get(index + 1).is_some_and(|next| next == "echo $?");
-        if code.trim() != "0" && !is_shown {
-            return Err(format!("`{command}` ended with {} and printed\n{last}", code.trim()));
+    // What a command printed stands before its mark, its exit code behind it.
+    let mut rest = output.as_str();
+    let mut pages = Vec::new();
+    for block in &blocks {
+        let mut page = String::new();
+        for (index, command) in block.iter().enumerate() {
+            let ended = rest.split_once(MARK).and_then(|(printed, after)| Some((printed, after.split_once('\n')?)));
+            let (printed, (code, after)) = ended.ok_or_else(|| format!("the shell ended in `{command}`: {rest}"))?;
+            let is_shown = block.get(index + 1).is_some_and(|next| next == "echo $?");
+            if code.trim() != "0" && !is_shown {
+                return Err(format!("`{command}` ended with {} and printed\n{printed}", code.trim()));
+            }
+            write!(page, "$ {}\n{printed}", command.replace('\n', "\n> ")).expect("strings take text");
+            rest = after;
         }
-        write!(page, "$ {}\n{last}", command.replace('\n', "\n> ")).expect("strings take text");
-        last = rest;
+        pages.push(page);
     }
-    Ok(page)
+    Ok(pages)
 }
 
 /// The commands of a block: lines that begin with `$ `, continued by lines that begin with `> `.
