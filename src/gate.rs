@@ -42,7 +42,7 @@ impl Gate {
         }
         let refused = |message: String| Failure::new(Kind::RefusedHere, message);
         if !screen.can_ask() {
-            return Err(refused(format!("not confirmed: this would {intent} on {}", robot.label()))
+            return Err(refused(format!("not confirmed: on {} this would {intent}", robot.label()))
                 .hint("add --yes when nobody is in the cell, or --dry-run to see what would be sent"));
         }
         screen.ask_note(&format!("{}: a {} controller, not the built-in simulator", robot.label(), robot.family));

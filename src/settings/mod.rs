@@ -81,7 +81,12 @@ impl Robot {
     /// How messages name it: `cell3 (udp://192.168.1.31)`.
     pub fn label(&self) -> String {
         let url = self.target.value.url();
-        if self.target.origin == Origin::Robot { format!("{} ({url})", self.name) } else { url.to_owned() }
+        if self.target.origin == Origin::Robot {
+            format!("{} ({url})", self.name)
+        } else {
+            // The bare `sim:` would run into the colon that follows a label.
+            url.trim_end_matches(':').to_owned()
+        }
     }
 }
 

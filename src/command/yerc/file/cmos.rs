@@ -137,7 +137,6 @@ struct Waiting<'a> {
 impl<'a> Waiting<'a> {
     fn new(screen: &'a Screen) -> Self {
         let what = "the controller makes its backup, which takes about ten minutes";
-        screen.step(what);
         Self { screen, progress: screen.spinner(what), has_begun: false }
     }
 
