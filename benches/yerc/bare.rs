@@ -1,0 +1,75 @@
+//! The least that a client can do: a blocking socket, no sessions, no repeats, hardly a check.
+
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
+use std::time::Duration;
+
+use armctl::controller::yerc::files::FileName;
+use armctl::controller::yerc::wire::{HEADER_LEN, LAST_BLOCK, MAX_FRAME};
+
+use crate::peers::{ACK, BLOCK, STATUS_ANSWER, STATUS_REQUEST, block};
+
+/// Loopback loses nothing; should it, the run ends instead of hanging.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+fn open(peer: SocketAddr) -> io::Result<UdpSocket> {
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
+    socket.connect(peer)?;
+    socket.set_read_timeout(Some(PATIENCE))?;
+    Ok(socket)
+}
+
+/// A client of [`peers::echo`](crate::peers::echo).
+pub struct Echo(UdpSocket);
+
+impl Echo {
+    pub fn open(peer: SocketAddr) -> io::Result<Self> {
+        Ok(Self(open(peer)?))
+    }
+
+    /// A datagram out, a datagram back.
+    pub fn round_trip(&mut self) -> io::Result<()> {
+        let mut buffer = [0; MAX_FRAME];
+        self.0.send(&[0; STATUS_REQUEST])?;
+        let len = self.0.recv(&mut buffer)?;
+        if len == STATUS_ANSWER { Ok(()) } else { Err(io::Error::other("an answer of another size")) }
+    }
+}
+
+/// A client of a file server that takes blocks as they come.
+pub struct Download {
+    socket: UdpSocket,
+    request: Vec<u8>,
+    ack: Vec<u8>,
+}
+
+impl Download {
+    pub fn open(peer: SocketAddr) -> io::Result<Self> {
+        let request = FileName::new("BIG.DAT").map_err(io::Error::other)?.save().frame(0);
+        let mut ack = request[..HEADER_LEN].to_vec();
+        ack[6..8].fill(0);
+        ack[ACK] = 1;
+        Ok(Self { socket: open(peer)?, request, ack })
+    }
+
+    /// Fetches the file and says how large it is.
+    pub fn run(&mut self) -> io::Result<u64> {
+        let mut buffer = [0; MAX_FRAME];
+        let mut bytes = 0;
+        self.socket.send(&self.request)?;
+        for expected in 1.. {
+            let len = self.socket.recv(&mut buffer)?;
+            let frame = &buffer[..len];
+            if len < HEADER_LEN || block(frame) & !LAST_BLOCK != expected {
+                return Err(io::Error::other("another block is due"));
+            }
+            bytes += (len - HEADER_LEN) as u64;
+            self.ack[BLOCK..BLOCK + 4].copy_from_slice(&frame[BLOCK..BLOCK + 4]);
+            self.socket.send(&self.ack)?;
+            if block(frame) & LAST_BLOCK != 0 {
+                break;
+            }
+        }
+        Ok(bytes)
+    }
+}

@@ -1,0 +1,235 @@
+//! How fast armctl is, side by side with the least that could do the same work.
+//!
+//! Every comparison runs its contenders in turn, round by round, so that whatever else the machine does strikes them
+//! alike; the figures are medians, and a ratio is the median of the ratios of neighbours. Everything goes over
+//! loopback to servers of the same kind: a thread that blocks in its socket.
+//!
+//! `cargo bench --bench yerc` measures; `-- --quick`, and `cargo test --benches`, only show that all of it works.
+
+#![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
+
+mod bare;
+mod peers;
+mod process;
+mod table;
+
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, anyhow, ensure};
+use armctl::command::yerc::Family as Yerc;
+use armctl::command::yerc::link::Link;
+use armctl::command::{Access, Family as _};
+use armctl::controller::Risk;
+use armctl::controller::yerc::files::FileName;
+use armctl::controller::yerc::query::ReadStatus;
+use armctl::controller::yerc::session::DownloadEnd;
+use armctl::failure::Failure;
+use armctl::output::{ColorChoice, Format, Screen};
+use armctl::settings::target::Family;
+use armctl::settings::{Selection, Sources};
+use moto_hses_client::HsesClient;
+use tokio::runtime::Runtime;
+
+use peers::Controller;
+use table::{Goal, Row, Table};
+
+const MIB: u64 = 1024 * 1024;
+
+/// How much work is done; enough for figures, or just enough to see that it works.
+struct Effort {
+    status_rounds: usize,
+    exchanges: u32,
+    download_rounds: usize,
+    download: u64,
+    starts: usize,
+    big: u64,
+}
+
+const FULL: Effort =
+    Effort { status_rounds: 40, exchanges: 2_000, download_rounds: 9, download: 16 * MIB, starts: 200, big: 64 * MIB };
+
+const QUICK: Effort =
+    Effort { status_rounds: 3, exchanges: 200, download_rounds: 3, download: MIB / 2, starts: 5, big: 2 * MIB };
+
+fn main() -> anyhow::Result<()> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    // `cargo bench` says so; `cargo test` says nothing.
+    let is_quick = args.iter().any(|arg| arg == "--quick") || !args.iter().any(|arg| arg == "--bench");
+    let effort = if is_quick { QUICK } else { FULL };
+    let mut table = Table::new();
+    status(&effort, &mut table).context("status round trips")?;
+    download(&effort, &mut table).context("download")?;
+    start(&effort, &mut table).context("whole process")?;
+    println!("{table}");
+    let mut table = Table::new();
+    memory(&effort, &mut table).context("memory")?;
+    println!("{table}");
+    if is_quick || cfg!(debug_assertions) {
+        println!("A short or unoptimized run: it shows that the comparisons work, the figures mean nothing.");
+    }
+    Ok(())
+}
+
+/// Status round trips: our link, a bare echo of the same sizes, the client of `moto-hses-client`.
+fn status(effort: &Effort, table: &mut Table) -> anyhow::Result<()> {
+    let controller = Controller::start(0)?;
+    let runtime = runtime()?;
+    let mut link = connect(&runtime, &controller)?;
+    let hses = runtime.block_on(HsesClient::new(&controller.robot.to_string()))?;
+    let mut echo = bare::Echo::open(peers::echo()?)?;
+
+    let exchanges = effort.exchanges;
+    let ours = || {
+        runtime.block_on(async {
+            for _ in 0..exchanges {
+                link.ask(&ReadStatus).await.map_err(told)?;
+            }
+            anyhow::Ok(())
+        })
+    };
+    let bare = || (0..exchanges).try_for_each(|_| Ok(echo.round_trip()?));
+    let other = || {
+        runtime.block_on(async {
+            for _ in 0..exchanges {
+                hses.read_status().await?;
+            }
+            anyhow::Ok(())
+        })
+    };
+    let [ours, bare, other] =
+        in_turn(effort.status_rounds, [&mut { ours } as &mut dyn Work, &mut { bare }, &mut { other }])?;
+    let per_second = |times: &[f64]| format!("{:.0} /s", f64::from(exchanges) / median(times));
+    let mut section = table.section("status round trips over loopback");
+    section.row(Row::new("bare blocking UDP echo, 32 bytes out, 40 back", per_second(&bare)));
+    let ratio = ratio(&bare, &ours);
+    section.row(Row::new("armctl, Link::ask(ReadStatus)", per_second(&ours)).against(ratio, Goal::AtLeast(0.8)));
+    let ahead = self::ratio(&other, &ours);
+    section.row(Row::new("moto-hses-client, read_status", per_second(&other)).against_ours(ahead, Goal::MoreThan(1.0)));
+    Ok(())
+}
+
+/// A file from the controller into nowhere: our link, and a bare loop that checks the block number.
+fn download(effort: &Effort, table: &mut Table) -> anyhow::Result<()> {
+    let size = effort.download;
+    let controller = Controller::start(size)?;
+    let runtime = runtime()?;
+    let mut link = connect(&runtime, &controller)?;
+    let mut plain = bare::Download::open(controller.file)?;
+
+    let request = FileName::new("BIG.DAT")?.save();
+    let ours = || {
+        let mut sum = 0;
+        let end = runtime.block_on(link.download(&request, u64::MAX, None, |piece| {
+            sum += piece.len() as u64;
+            Ok(())
+        }));
+        let end = end.map_err(told)?;
+        ensure!(matches!(end, DownloadEnd::Complete { bytes, .. } if bytes == size && sum == size), "{end:?}");
+        Ok(())
+    };
+    let bare = || {
+        let bytes = plain.run()?;
+        ensure!(bytes == size, "{bytes} bytes came");
+        Ok(())
+    };
+    let [ours, bare] = in_turn(effort.download_rounds, [&mut { ours } as &mut dyn Work, &mut { bare }])?;
+    let rate = |times: &[f64]| format!("{:.1} MiB/s", mebibytes(size) / median(times));
+    let mut section = table.section(&format!("download of {:.1} MiB in blocks of 479 bytes", mebibytes(size)));
+    section.row(Row::new("bare blocking stop-and-wait", rate(&bare)));
+    let ratio = ratio(&bare, &ours);
+    section.row(Row::new("armctl, Link::download", rate(&ours)).against(ratio, Goal::AtLeast(0.9)));
+    Ok(())
+}
+
+/// `armctl yerc status` from start to exit, beside a process that does nothing.
+fn start(effort: &Effort, table: &mut Table) -> anyhow::Result<()> {
+    let controller = Controller::start(0)?;
+    let mut status = process::armctl(&controller, &["yerc", "status"]);
+    let ours = || process::succeed(&mut status);
+    let mut nothing = process::nothing();
+    let bare = || process::succeed(&mut nothing);
+    let [ours, bare] = in_turn(effort.starts, [&mut { ours } as &mut dyn Work, &mut { bare }])?;
+    let mut section = table.section("a whole process, start to exit");
+    let millis = |times: &[f64]| median(times) * 1e3;
+    section.row(Row::new("true", format!("{:.2} ms", millis(&bare))));
+    let row = Row::new("armctl yerc status", format!("{:.2} ms", millis(&ours)));
+    section.row(row.goal(millis(&ours), Goal::AtMost(3.0, "ms")));
+    Ok(())
+}
+
+/// The most memory that a large download takes.
+fn memory(effort: &Effort, table: &mut Table) -> anyhow::Result<()> {
+    let controller = Controller::start(effort.big)?;
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().to_str().context("the folder for temporary files is not UTF-8")?;
+    let mut get = process::armctl(&controller, &["yerc", "file", "get", "BIG.DAT", "--output", path]);
+    let peak = process::peak_memory(&mut get)?;
+    let got = std::fs::metadata(folder.path().join("BIG.DAT"))?.len();
+    ensure!(got == effort.big, "{got} bytes were stored");
+    let mut section = table.section(&format!("memory for a download of {:.0} MiB", mebibytes(effort.big)));
+    let row = Row::new("armctl yerc file get, resident at most", format!("{:.1} MiB", mebibytes(peak)));
+    section.row(row.goal(mebibytes(peak), Goal::AtMost(20.0, "MiB")));
+    Ok(())
+}
+
+/// Runs as `armctl` does.
+fn runtime() -> anyhow::Result<Runtime> {
+    Ok(tokio::runtime::Builder::new_current_thread().enable_all().build()?)
+}
+
+/// Connects as a command does.
+fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
+    let target = controller.url().parse().map_err(|failure| told(failure))?;
+    let selection = Selection { target: Some(target), ..Selection::default() };
+    let sources = Sources { selection, ..Sources::default() };
+    let robots = sources.robots(Some(Family::Yerc)).map_err(told)?;
+    let robot = robots.first().context("a target is a robot")?;
+    let access = Access { granted: Risk::Read, dry_run: false, trace: None };
+    let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
+    runtime.block_on(Yerc::connect(robot, access, &screen)).map_err(told)
+}
+
+fn told(failure: Failure) -> anyhow::Error {
+    anyhow!("{failure}")
+}
+
+/// What a contender does in a round.
+trait Work: FnMut() -> anyhow::Result<()> {}
+
+impl<F: FnMut() -> anyhow::Result<()>> Work for F {}
+
+/// The seconds that each contender took in each round, after one round that does not count.
+fn in_turn<const N: usize>(rounds: usize, mut contenders: [&mut dyn Work; N]) -> anyhow::Result<[Vec<f64>; N]> {
+    let mut times = [const { Vec::new() }; N];
+    for round in 0..=rounds {
+        for (work, times) in contenders.iter_mut().zip(&mut times) {
+            let time = clocked(*work)?;
+            if round > 0 {
+                times.push(time.as_secs_f64());
+            }
+        }
+    }
+    Ok(times)
+}
+
+fn clocked(work: &mut dyn Work) -> anyhow::Result<Duration> {
+    let start = Instant::now();
+    work()?;
+    Ok(start.elapsed())
+}
+
+/// How many times as fast as `base` the other one is, round by round.
+fn ratio(base: &[f64], other: &[f64]) -> f64 {
+    median(&base.iter().zip(other).map(|(base, other)| base / other).collect::<Vec<_>>())
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a figure for people")]
+fn mebibytes(bytes: u64) -> f64 {
+    bytes as f64 / MIB as f64
+}
