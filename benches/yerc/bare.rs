@@ -19,7 +19,7 @@ fn open(peer: SocketAddr) -> io::Result<UdpSocket> {
     Ok(socket)
 }
 
-/// A client of [`peers::echo`](crate::peers::echo).
+/// A client to whom the answers mean nothing.
 pub struct Echo(UdpSocket);
 
 impl Echo {

@@ -4,7 +4,8 @@
 //! alike; the figures are medians, and a ratio is the median of the ratios of neighbours. Everything goes over
 //! loopback to servers of the same kind: a thread that blocks in its socket.
 //!
-//! `cargo bench --bench yerc` measures; `-- --quick`, and `cargo test --benches`, only show that all of it works.
+//! `cargo bench --bench yerc` measures everything, with `-- status download` only that; `-- --quick`, and
+//! `cargo test --benches`, only show that all of it works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -51,19 +52,22 @@ const FULL: Effort =
 const QUICK: Effort =
     Effort { status_rounds: 3, exchanges: 200, download_rounds: 3, download: MIB / 2, starts: 5, big: 2 * MIB };
 
+/// A comparison, and the word that chooses it.
+const COMPARISONS: [(&str, fn(&Effort) -> anyhow::Result<Table>); 4] =
+    [("status", status), ("download", download), ("start", start), ("memory", memory)];
+
 fn main() -> anyhow::Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     // `cargo bench` says so; `cargo test` says nothing.
     let is_quick = args.iter().any(|arg| arg == "--quick") || !args.iter().any(|arg| arg == "--bench");
     let effort = if is_quick { QUICK } else { FULL };
-    let mut table = Table::new();
-    status(&effort, &mut table).context("status round trips")?;
-    download(&effort, &mut table).context("download")?;
-    start(&effort, &mut table).context("whole process")?;
-    println!("{table}");
-    let mut table = Table::new();
-    memory(&effort, &mut table).context("memory")?;
-    println!("{table}");
+    let chosen: Vec<&String> = args.iter().filter(|arg| !arg.starts_with('-')).collect();
+    println!("{}", table::HEADER);
+    for (name, compare) in COMPARISONS {
+        if chosen.is_empty() || chosen.iter().any(|chosen| *chosen == name) {
+            println!("{}", compare(&effort).context(name)?);
+        }
+    }
     if is_quick || cfg!(debug_assertions) {
         println!("A short or unoptimized run: it shows that the comparisons work, the figures mean nothing.");
     }
@@ -71,12 +75,12 @@ fn main() -> anyhow::Result<()> {
 }
 
 /// Status round trips: our link, a bare echo of the same sizes, the client of `moto-hses-client`.
-fn status(effort: &Effort, table: &mut Table) -> anyhow::Result<()> {
+fn status(effort: &Effort) -> anyhow::Result<Table> {
     let controller = Controller::start(0)?;
     let runtime = runtime()?;
     let mut link = connect(&runtime, &controller)?;
     let hses = runtime.block_on(HsesClient::new(&controller.robot.to_string()))?;
-    let mut echo = bare::Echo::open(peers::echo()?)?;
+    let mut echo = bare::Echo::open(controller.robot)?;
 
     let exchanges = effort.exchanges;
     let ours = || {
@@ -99,17 +103,17 @@ fn status(effort: &Effort, table: &mut Table) -> anyhow::Result<()> {
     let [ours, bare, other] =
         in_turn(effort.status_rounds, [&mut { ours } as &mut dyn Work, &mut { bare }, &mut { other }])?;
     let per_second = |times: &[f64]| format!("{:.0} /s", f64::from(exchanges) / median(times));
-    let mut section = table.section("status round trips over loopback");
-    section.row(Row::new("bare blocking UDP echo, 32 bytes out, 40 back", per_second(&bare)));
+    let mut table = Table::new("status round trips over loopback");
+    table.row(Row::new("bare blocking UDP echo, 32 bytes out, 40 back", per_second(&bare)));
     let ratio = ratio(&bare, &ours);
-    section.row(Row::new("armctl, Link::ask(ReadStatus)", per_second(&ours)).against(ratio, Goal::AtLeast(0.8)));
+    table.row(Row::new("armctl, Link::ask(ReadStatus)", per_second(&ours)).against(ratio, Goal::AtLeast(0.8)));
     let ahead = self::ratio(&other, &ours);
-    section.row(Row::new("moto-hses-client, read_status", per_second(&other)).against_ours(ahead, Goal::MoreThan(1.0)));
-    Ok(())
+    table.row(Row::new("moto-hses-client, read_status", per_second(&other)).against_ours(ahead, Goal::MoreThan(1.0)));
+    Ok(table)
 }
 
 /// A file from the controller into nowhere: our link, and a bare loop that checks the block number.
-fn download(effort: &Effort, table: &mut Table) -> anyhow::Result<()> {
+fn download(effort: &Effort) -> anyhow::Result<Table> {
     let size = effort.download;
     let controller = Controller::start(size)?;
     let runtime = runtime()?;
@@ -134,31 +138,31 @@ fn download(effort: &Effort, table: &mut Table) -> anyhow::Result<()> {
     };
     let [ours, bare] = in_turn(effort.download_rounds, [&mut { ours } as &mut dyn Work, &mut { bare }])?;
     let rate = |times: &[f64]| format!("{:.1} MiB/s", mebibytes(size) / median(times));
-    let mut section = table.section(&format!("download of {:.1} MiB in blocks of 479 bytes", mebibytes(size)));
-    section.row(Row::new("bare blocking stop-and-wait", rate(&bare)));
+    let mut table = Table::new(format!("download of {:.1} MiB in blocks of 479 bytes", mebibytes(size)));
+    table.row(Row::new("bare blocking stop-and-wait", rate(&bare)));
     let ratio = ratio(&bare, &ours);
-    section.row(Row::new("armctl, Link::download", rate(&ours)).against(ratio, Goal::AtLeast(0.9)));
-    Ok(())
+    table.row(Row::new("armctl, Link::download", rate(&ours)).against(ratio, Goal::AtLeast(0.9)));
+    Ok(table)
 }
 
 /// `armctl yerc status` from start to exit, beside a process that does nothing.
-fn start(effort: &Effort, table: &mut Table) -> anyhow::Result<()> {
+fn start(effort: &Effort) -> anyhow::Result<Table> {
     let controller = Controller::start(0)?;
     let mut status = process::armctl(&controller, &["yerc", "status"]);
     let ours = || process::succeed(&mut status);
     let mut nothing = process::nothing();
     let bare = || process::succeed(&mut nothing);
     let [ours, bare] = in_turn(effort.starts, [&mut { ours } as &mut dyn Work, &mut { bare }])?;
-    let mut section = table.section("a whole process, start to exit");
+    let mut table = Table::new("a whole process, start to exit");
     let millis = |times: &[f64]| median(times) * 1e3;
-    section.row(Row::new("true", format!("{:.2} ms", millis(&bare))));
+    table.row(Row::new("true", format!("{:.2} ms", millis(&bare))));
     let row = Row::new("armctl yerc status", format!("{:.2} ms", millis(&ours)));
-    section.row(row.goal(millis(&ours), Goal::AtMost(3.0, "ms")));
-    Ok(())
+    table.row(row.goal(millis(&ours), Goal::AtMost(3.0, "ms")));
+    Ok(table)
 }
 
 /// The most memory that a large download takes.
-fn memory(effort: &Effort, table: &mut Table) -> anyhow::Result<()> {
+fn memory(effort: &Effort) -> anyhow::Result<Table> {
     let controller = Controller::start(effort.big)?;
     let folder = tempfile::tempdir()?;
     let path = folder.path().to_str().context("the folder for temporary files is not UTF-8")?;
@@ -166,10 +170,10 @@ fn memory(effort: &Effort, table: &mut Table) -> anyhow::Result<()> {
     let peak = process::peak_memory(&mut get)?;
     let got = std::fs::metadata(folder.path().join("BIG.DAT"))?.len();
     ensure!(got == effort.big, "{got} bytes were stored");
-    let mut section = table.section(&format!("memory for a download of {:.0} MiB", mebibytes(effort.big)));
+    let mut table = Table::new(format!("memory for a download of {:.0} MiB", mebibytes(effort.big)));
     let row = Row::new("armctl yerc file get, resident at most", format!("{:.1} MiB", mebibytes(peak)));
-    section.row(row.goal(mebibytes(peak), Goal::AtMost(20.0, "MiB")));
-    Ok(())
+    table.row(row.goal(mebibytes(peak), Goal::AtMost(20.0, "MiB")));
+    Ok(table)
 }
 
 /// Runs as `armctl` does.

@@ -40,15 +40,6 @@ impl Controller {
     }
 }
 
-/// Answers every datagram with one of the size of a status answer.
-pub fn echo() -> io::Result<SocketAddr> {
-    let answer = vec![0x5A; STATUS_ANSWER];
-    serve(move |_, out| {
-        out.clear();
-        out.extend(&answer);
-    })
-}
-
 /// Answers what arrives on a port of the system's choice with what `respond` puts into the buffer, if anything.
 fn serve(mut respond: impl FnMut(&[u8], &mut Vec<u8>) + Send + 'static) -> io::Result<SocketAddr> {
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;

@@ -58,35 +58,35 @@ impl Row {
     }
 }
 
-/// Sections of rows.
-pub struct Table(String);
+/// A comparison.
+pub struct Table {
+    title: String,
+    rows: Vec<Row>,
+}
+
+/// What the columns of every table are.
+pub const HEADER: &str = "                                                          median  ratio         goal";
 
 impl Table {
-    pub fn new() -> Self {
-        Self(format!("{:<48}{:>16}  {:<14}goal", "", "median", "ratio"))
+    pub fn new(title: impl Into<String>) -> Self {
+        Self { title: title.into(), rows: Vec::new() }
     }
 
-    pub fn section(&mut self, title: &str) -> Section<'_> {
-        self.0 += &format!("\n{title}\n");
-        Section(&mut self.0)
+    pub fn row(&mut self, row: Row) {
+        self.rows.push(row);
     }
 }
 
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-/// A comparison.
-pub struct Section<'a>(&'a mut String);
-
-impl Section<'_> {
-    pub fn row(&mut self, Row { name, figure, ratio, goal }: Row) {
-        let goal =
-            goal.map_or(String::new(), |(goal, is_met)| format!("{goal} {}", if is_met { "met" } else { "MISSED" }));
-        let line = format!("  {name:<46}{figure:>16}  {ratio:<14}{goal}");
-        *self.0 += line.trim_end();
-        self.0.push('\n');
+        writeln!(f, "{}", self.title)?;
+        for Row { name, figure, ratio, goal } in &self.rows {
+            write!(f, "  {name:<46}{figure:>16}  {ratio:<14}")?;
+            if let Some((goal, is_met)) = goal {
+                write!(f, "{goal} {}", if *is_met { "met" } else { "MISSED" })?;
+            }
+            writeln!(f)?;
+        }
+        Ok(())
     }
 }

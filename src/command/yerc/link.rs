@@ -430,26 +430,35 @@ impl Link {
         session: &mut S,
         mut serve: impl FnMut(Want<'_, S>) -> Result<(), Failure>,
     ) -> Result<S::Outcome, Failure> {
-        let began = Instant::now();
         let channel = channel(division);
+        let began = self.started.elapsed();
+        let mut now = began;
         loop {
-            match session.poll(self.started.elapsed()) {
+            // The clock is read where time may have passed: after a wait, and after a visit to the disk.
+            match session.poll(now) {
                 Step::Send(bytes) => self.send(channel, &bytes).await?,
-                Step::Data(piece) => serve(Want::Take(&piece))?,
-                Step::Feed => serve(Want::Feed(session))?,
+                Step::Data(piece) => {
+                    serve(Want::Take(&piece))?;
+                    now = self.started.elapsed();
+                }
+                Step::Feed => {
+                    serve(Want::Feed(session))?;
+                    now = self.started.elapsed();
+                }
                 Step::Wait(until) => {
-                    // A frame that arrived in the last moment counts: the clock is read again after it.
-                    let until = self.started + until;
-                    let Ok(received) = timeout_at(until, self.receive(channel)).await else { continue };
+                    let received = timeout_at(self.started + until, self.receive(channel)).await;
+                    // A frame that arrived in the last moment counts.
+                    now = self.started.elapsed();
+                    let Ok(received) = received else { continue };
                     let len = received?;
                     let again = self.finished.as_mut().and_then(|last| last.linger(&self.buffer[..len]));
                     match again {
                         Some(ack) => self.send(channel, &ack).await?,
-                        None => session.handle(self.started.elapsed(), &self.buffer[..len]),
+                        None => session.handle(now, &self.buffer[..len]),
                     }
                 }
                 Step::Done(outcome) => {
-                    self.totals.waited += began.elapsed();
+                    self.totals.waited += now.saturating_sub(began);
                     return Ok(outcome);
                 }
             }
