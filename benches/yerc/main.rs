@@ -52,8 +52,10 @@ const FULL: Effort =
 const QUICK: Effort =
     Effort { status_rounds: 3, exchanges: 200, download_rounds: 3, download: MIB / 2, starts: 5, big: 2 * MIB };
 
+type Comparison = fn(&Effort) -> anyhow::Result<Table>;
+
 /// A comparison, and the word that chooses it.
-const COMPARISONS: [(&str, fn(&Effort) -> anyhow::Result<Table>); 4] =
+const COMPARISONS: [(&str, Comparison); 4] =
     [("status", status), ("download", download), ("start", start), ("memory", memory)];
 
 fn main() -> anyhow::Result<()> {
@@ -183,7 +185,7 @@ fn runtime() -> anyhow::Result<Runtime> {
 
 /// Connects as a command does.
 fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
-    let target = controller.url().parse().map_err(|failure| told(failure))?;
+    let target = controller.url().parse().map_err(told)?;
     let selection = Selection { target: Some(target), ..Selection::default() };
     let sources = Sources { selection, ..Sources::default() };
     let robots = sources.robots(Some(Family::Yerc)).map_err(told)?;
@@ -193,6 +195,7 @@ fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
     runtime.block_on(Yerc::connect(robot, access, &screen)).map_err(told)
 }
 
+#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
 fn told(failure: Failure) -> anyhow::Error {
     anyhow!("{failure}")
 }

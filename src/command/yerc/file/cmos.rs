@@ -80,7 +80,7 @@ impl Command for Cmos {
 
 impl Cmos {
     async fn start(&self, link: &mut Link, screen: &Screen) -> Result<BatchBackup, Failure> {
-        let mut waiting = Waiting::new(screen);
+        let mut waiting = Waiting::new(screen, false);
         let came = self.ask(link, |block| {
             waiting.advance(block);
             Ok(())
@@ -98,8 +98,8 @@ impl Cmos {
     async fn make_and_fetch(&self, link: &mut Link, screen: &Screen, target: &Target) -> Result<BatchBackup, Failure> {
         let mut draft = target.begin()?;
         let requests = if self.download_only { 1 } else { 2 };
-        for _ in 0..requests {
-            let mut waiting = Waiting::new(screen);
+        for request in 1..=requests {
+            let mut waiting = Waiting::new(screen, request == requests);
             let came = self.ask(link, |block| {
                 waiting.advance(block);
                 draft.write(block)
@@ -135,8 +135,13 @@ struct Waiting<'a> {
 }
 
 impl<'a> Waiting<'a> {
-    fn new(screen: &'a Screen) -> Self {
-        let what = "the controller makes its backup, which takes about ten minutes";
+    fn new(screen: &'a Screen, is_made: bool) -> Self {
+        let what = if is_made {
+            "the controller sends its backup"
+        } else {
+            "the controller makes its backup, which takes about ten minutes"
+        };
+        screen.step(what);
         Self { screen, progress: screen.spinner(what), has_begun: false }
     }
 
