@@ -62,7 +62,7 @@ impl Command for Backup {
             match transfer::list(link, *kind).await {
                 Ok(names) => work.extend(names.into_iter().map(|name| (*kind, name))),
                 Err(failure) if failure.kind == Kind::Refused => refused.push((*kind, failure)),
-                Err(failure) => return Err(failure),
+                Err(failure) => return Err(transfer::about(&kind.filter(), failure)),
             }
         }
         make_folder(&folder)?;

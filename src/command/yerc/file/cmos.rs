@@ -80,26 +80,21 @@ impl Command for Cmos {
 
 impl Cmos {
     async fn start(&self, link: &mut Link, screen: &Screen) -> Result<BatchBackup, Failure> {
-        let mut waiting = Waiting::new(screen, false);
-        let came = self.ask(link, |block| {
-            waiting.advance(block);
-            Ok(())
-        });
-        match came.await? {
-            None => Ok(BatchBackup { path: None, bytes: None }),
-            Some(bytes) => Err(Failure::new(
-                Kind::Malformed,
-                format!("the controller did not make a backup but sent one that it had, {bytes} bytes"),
-            )
-            .hint("fetch it with --download-only")),
-        }
+        let _waiting = Waiting::new(screen, MAKING);
+        // The transfer ends at its first block, so that the controller keeps the backup it has.
+        let had_one = |_: &[u8]| {
+            Err(Failure::new(Kind::Malformed, "the controller has a backup already and made no new one")
+                .hint("fetch that one with --download-only"))
+        };
+        self.ask(link, had_one).await?;
+        Ok(BatchBackup { path: None, bytes: None })
     }
 
     async fn make_and_fetch(&self, link: &mut Link, screen: &Screen, target: &Target) -> Result<BatchBackup, Failure> {
         let mut draft = target.begin()?;
-        let requests = if self.download_only { 1 } else { 2 };
-        for request in 1..=requests {
-            let mut waiting = Waiting::new(screen, request == requests);
+        let requests = if self.download_only { &[FETCHING][..] } else { &[MAKING, FETCHING] };
+        for what in requests {
+            let mut waiting = Waiting::new(screen, what);
             let came = self.ask(link, |block| {
                 waiting.advance(block);
                 draft.write(block)
@@ -109,8 +104,8 @@ impl Cmos {
                 return Ok(BatchBackup { path: Some(target.path().display().to_string()), bytes: Some(bytes) });
             }
         }
-        Err(Failure::new(Kind::Malformed, "the controller says that the backup is made, but does not send it")
-            .hint("fetch it with --download-only, or take it from the pendant; record it with --trace and report it"))
+        Err(Failure::new(Kind::Malformed, "the controller made a backup instead of sending the one it had")
+            .hint("fetch it with --download-only; if that makes one again, take it from the pendant and report it"))
     }
 
     async fn ask(
@@ -127,6 +122,9 @@ impl Cmos {
     }
 }
 
+const MAKING: &str = "the controller makes its backup, which takes about ten minutes";
+const FETCHING: &str = "waiting for the backup";
+
 /// Shows that the controller takes its time, then what comes.
 struct Waiting<'a> {
     screen: &'a Screen,
@@ -135,12 +133,7 @@ struct Waiting<'a> {
 }
 
 impl<'a> Waiting<'a> {
-    fn new(screen: &'a Screen, is_made: bool) -> Self {
-        let what = if is_made {
-            "the controller sends its backup"
-        } else {
-            "the controller makes its backup, which takes about ten minutes"
-        };
+    fn new(screen: &'a Screen, what: &str) -> Self {
         screen.step(what);
         Self { screen, progress: screen.spinner(what), has_begun: false }
     }

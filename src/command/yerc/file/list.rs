@@ -34,7 +34,8 @@ impl Command for List {
         }
         let mut listing = Listing::default();
         for kind in &types {
-            match transfer::list(link, *kind).await {
+            let listed = transfer::list(link, *kind).await;
+            match listed.map_err(|failure| transfer::about(&kind.filter(), failure)) {
                 Ok(names) => listing.files.extend(names.iter().map(|name| Listed {
                     name: Shown::new(link.encoding, name),
                     file_type: type_word(FileType::of(name).unwrap_or(*kind)),

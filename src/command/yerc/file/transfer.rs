@@ -38,7 +38,7 @@ pub async fn list(link: &mut Link, kind: FileType) -> Result<Vec<Vec<u8>>, Failu
             Ok(Vec::new())
         }
         end => {
-            taken(&end).map_err(|failure| about(&kind.filter(), failure))?;
+            taken(&end)?;
             Ok(split_list(&data).into_iter().map(<[u8]>::to_vec).collect())
         }
     }
