@@ -1,7 +1,7 @@
 //! The one loop that every robot command goes through: choose robots, pass the gate, run, report, repeat.
 
 use std::future::{Future, poll_fn};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::task::Poll;
 use std::time::Duration;
 
@@ -136,8 +136,21 @@ impl Run {
         }
     }
 
-    /// Repeats a reading command, from start to start without drift.
+    /// Repeats a reading command over one connection, from start to start without drift.
     async fn watch<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Stopped> {
+        let stopped = |failure| Stopped::at(robot, command, failure);
+        let mut link = self.connect(command, robot).await.map_err(stopped)?;
+        let watched = self.watch_over(command, robot, &mut link).await;
+        F::close(link, &self.screen).await.map_err(stopped)?;
+        watched
+    }
+
+    async fn watch_over<F: Family>(
+        &self,
+        command: &dyn AnyCommand<F>,
+        robot: &Robot,
+        link: &mut F::Link,
+    ) -> Result<(), Stopped> {
         let repeat = &self.repeat;
         let every = repeat.every.unwrap_or(EVERY);
         let began = Instant::now();
@@ -145,7 +158,7 @@ impl Run {
         loop {
             let place = if runs == 0 { Place::First } else { Place::Next };
             runs = runs.saturating_add(1);
-            let silence = match self.once(command, robot).await {
+            let silence = match self.attempt(command, robot, link).await {
                 Ok(report) => {
                     self.print(robot, command.id(), &*report, place)?;
                     if let Some(until) = &repeat.until
@@ -186,6 +199,16 @@ impl Run {
 
     /// Runs on several robots at a time and reports in the order they were named.
     async fn many<F: Family>(&self, command: &dyn AnyCommand<F>, robots: &[Robot]) -> Result<(), Stopped> {
+        if robots.len() > 1 && self.trace.as_deref().is_some_and(|path| path != Path::new("-")) {
+            return Err(Failure::usage("one capture file cannot hold several robots")
+                .hint("trace one robot at a time, or use --trace - for text")
+                .into());
+        }
+        if self.repeat.is_wanted() {
+            return Err(Failure::usage("--watch, --count and --until are for one robot")
+                .hint("name it with -r, or repeat the command in a loop of the shell")
+                .into());
+        }
         let work = futures_util::stream::iter(robots).map(|robot| self.once(command, robot)).buffered(PARALLEL);
         let outcomes: Vec<Outcome> = work.collect().await;
         let mut envelopes = Vec::new();
@@ -236,13 +259,23 @@ impl Run {
         }
     }
 
-    /// One connection, one run. Ctrl-C during a motion stops the robot first.
+    /// One connection, one run.
     async fn once<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Outcome {
-        let risk = command.risk();
-        let access = Access { granted: risk, dry_run: self.gate.dry_run, trace: self.trace.clone() };
-        let mut link = interruptible(F::connect(robot, access, &self.screen)).await??;
-        let context =
-            Context { robot, link: &mut link, screen: &self.screen, several: self.sources.selection.is_plural() };
+        let mut link = self.connect(command, robot).await?;
+        let outcome = self.attempt(command, robot, &mut link).await;
+        F::close(link, &self.screen).await?;
+        outcome
+    }
+
+    async fn connect<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<F::Link, Failure> {
+        let access = Access { granted: command.risk(), dry_run: self.gate.dry_run, trace: self.trace.clone() };
+        interruptible(F::connect(robot, access, &self.screen)).await?
+    }
+
+    /// One run. Ctrl-C during a motion stops the robot first.
+    async fn attempt<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot, link: &mut F::Link) -> Outcome {
+        let several = self.sources.selection.is_plural();
+        let context = Context { robot, link: &mut *link, screen: &self.screen, several };
         if self.gate.dry_run {
             // Such a link only takes notes; the command gets as far as it can without an answer.
             let noted = {
@@ -251,22 +284,20 @@ impl Run {
             };
             return match noted {
                 Poll::Ready(Err(failure)) => Err(failure),
-                Poll::Ready(Ok(_)) | Poll::Pending => Ok(Box::new(Rehearsal { frames: F::rehearsed(&mut link) })),
+                Poll::Ready(Ok(_)) | Poll::Pending => Ok(Box::new(Rehearsal { frames: F::rehearsed(link) })),
             };
         }
-        let outcome = match interruptible(command.run(context)).await {
+        match interruptible(command.run(context)).await {
             Ok(outcome) => outcome,
-            Err(_) if risk == Risk::Motion && self.gate.on_interrupt == OnInterrupt::Stop => {
-                Err(match F::halt(&mut link).await {
+            Err(_) if command.risk() == Risk::Motion && self.gate.on_interrupt == OnInterrupt::Stop => {
+                Err(match F::halt(link).await {
                     Ok(how) => Failure::new(Kind::Interrupted, format!("the robot was stopped: {how}")),
                     Err(failure) => Failure::new(Kind::Interrupted, format!("the robot may still move: {failure}"))
                         .hint("use the pendant or the emergency stop if it must not"),
                 })
             }
             Err(interrupt) => Err(interrupt),
-        };
-        F::close(link, &self.screen).await?;
-        outcome
+        }
     }
 
     /// Tables of the same columns become one, with the robot in front; other views stand below each other.

@@ -156,7 +156,11 @@ impl Family for Yerc {
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
         link.granted = link.granted.max(Risk::Write);
-        link.ask(&Hold(true)).await?;
+        // The one order that is repeated after silence: HOLD twice is HOLD once, and a lost one lets the robot move on.
+        let reply = link.converse(&Hold(true).request(), true).await?;
+        if !reply.status.is_ok() {
+            return Err(Refusal(reply.status).into());
+        }
         Ok("HOLD is on; `yerc hold off` releases it".to_owned())
     }
 
@@ -239,13 +243,16 @@ impl Link {
         Ok(if reply.status.is_ok() { Ok(reply.data) } else { Err(Refusal(reply.status)) })
     }
 
-    /// Sends a request as it is and returns the whole answer, good or bad.
+    /// Sends a request as it is and returns the whole answer, good or bad. Only what changes nothing is repeated.
     pub async fn reply(&mut self, request: &Request) -> Result<Reply, Failure> {
+        self.converse(request, request.risk() == Risk::Read).await
+    }
+
+    async fn converse(&mut self, request: &Request, is_repeatable: bool) -> Result<Reply, Failure> {
         self.admit(request).await?;
-        let risk = request.risk();
         let frame = request.frame(0);
         let frame = RequestFrame::parse(&frame).map_err(|error| Failure::local(error.to_string()))?;
-        let mut session = Exchange::new(&frame, risk == Risk::Read, self.policy, &self.ids);
+        let mut session = Exchange::new(&frame, is_repeatable, self.policy, &self.ids);
         let ended = self.drive(request.division(), &mut session, |_| Ok(())).await?;
         self.totals.exchanges += 1;
         self.heard(session.counters());
