@@ -85,7 +85,8 @@ const BORDERS: [(&str, &[&str]); 6] = [
 ];
 
 /// Commands that touch a transport: the link of a family with its trace, and the simulators' server.
-const LINKS: [&str; 3] = ["command/yerc/link.rs", "command/yerc/trace.rs", "command/common/sim.rs"];
+const LINKS: [&str; 4] =
+    ["command/yerc/link.rs", "command/yerc/simulated.rs", "command/yerc/trace.rs", "command/common/sim.rs"];
 
 /// Words that write to the terminal or end the process, and the only folder that may have them.
 const PRINTING: [&str; 8] = ["stdout()", "stderr()", "println!", "eprintln!", "print!", "eprint!", "Stdout", "Stderr"];

@@ -4,8 +4,8 @@
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
-use armctl::command::common::sim::Simulated;
 use armctl::command::yerc::link::Link;
+use armctl::command::yerc::simulated::Simulated;
 use armctl::controller::yerc::Model::{self, Dx200, Fs100};
 use armctl::controller::yerc::files::FileName;
 use armctl::controller::yerc::group::Group;

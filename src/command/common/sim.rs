@@ -2,7 +2,6 @@
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::{Args, Subcommand};
 use schemars::JsonSchema;
@@ -11,14 +10,13 @@ use tokio::io::{AsyncBufReadExt as _, BufReader, Lines, Stdin};
 
 use crate::command::Report;
 use crate::command::run::{Run, Stopped, interruptible};
-use crate::command::yerc::link::{busy_share, channel, load_start};
+use crate::command::yerc::simulated::{self, Simulated};
 use crate::controller::yerc::Model;
-use crate::controller::yerc::simulator::{Simulator, Start};
-use crate::controller::yerc::wire::Division;
+use crate::controller::yerc::simulator::Simulator;
 use crate::failure::{Failure, Kind};
 use crate::output::view::View;
 use crate::transport::fault::{FaultSpec, Faults};
-use crate::transport::server::{Server, Service};
+use crate::transport::server::Server;
 
 /// Which simulator to serve.
 #[derive(Debug, Args)]
@@ -80,16 +78,11 @@ impl Sim {
 
 impl SimYerc {
     async fn run(self, run: &Run) -> Result<(), Stopped> {
-        let mut start = match &self.state {
-            Some(path) => load_start(path)?,
-            None => Start::for_model(self.model.unwrap_or(Model::Dx200)),
-        };
+        let model = self.model.unwrap_or(Model::Dx200);
+        let start = simulated::start(self.state.as_deref(), model, self.fault.as_ref())?;
         if let Some(model) = self.model.filter(|model| *model != start.model()) {
             let message = format!("the start state is of a {}, not a {model}", start.model());
             return Err(Failure::usage(message).hint("leave --model away, or change the file").into());
-        }
-        if let Some(fault) = &self.fault {
-            start = start.with_busy(busy_share(fault));
         }
         let model = start.model();
         let robot = self.bind;
@@ -155,26 +148,6 @@ fn cannot_listen(robot: SocketAddr, file: SocketAddr, error: &std::io::Error) ->
         _ => "choose an address of this machine with --bind",
     };
     Failure::new(Kind::NoAnswer, message).hint(hint)
-}
-
-/// A simulated controller as a service for many clients: channel 0 is the robot server, 1 the file server.
-#[derive(Debug)]
-pub struct Simulated(pub Simulator);
-
-impl Service for Simulated {
-    fn receive(&mut self, now: Duration, channel: usize, client: u64, bytes: &[u8]) {
-        let division = if channel == 0 { Division::Robot } else { Division::File };
-        self.0.receive(now, division, client, bytes);
-    }
-
-    fn transmit(&mut self, now: Duration) -> Option<(usize, u64, Vec<u8>)> {
-        let outgoing = self.0.transmit(now)?;
-        Some((channel(outgoing.division), outgoing.peer, outgoing.bytes))
-    }
-
-    fn wake(&self) -> Option<Duration> {
-        self.0.wake()
-    }
 }
 
 /// A simulator that listens.

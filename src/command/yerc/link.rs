@@ -3,15 +3,15 @@
 use std::convert::Infallible;
 use std::io;
 use std::net::SocketAddr;
-use std::path::Path;
 use std::time::Duration;
 
 use serde_json::{Value, json};
 use tokio::time::{Instant, timeout_at};
 
+use super::simulated::{self, Simulated, channel};
 use super::trace::Trace;
 use crate::command::{Access, Family};
-use crate::controller::text::Encoding;
+use crate::controller::text::{Encoding, hex};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::files::data_frame;
 use crate::controller::yerc::query::{Hold, Query};
@@ -19,7 +19,7 @@ use crate::controller::yerc::request::Request;
 use crate::controller::yerc::session::{
     Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd,
 };
-use crate::controller::yerc::simulator::{Simulator, Start};
+use crate::controller::yerc::simulator::Simulator;
 use crate::controller::yerc::status;
 use crate::controller::yerc::wire::{Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
 use crate::controller::{Risk, Session, Step};
@@ -28,7 +28,7 @@ use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::{self, Place};
 use crate::transport::fault::{FaultSpec, Faults};
-use crate::transport::sim::{InProcess, Peer};
+use crate::transport::sim::InProcess;
 use crate::transport::tap::Direction;
 use crate::transport::udp::Udp;
 
@@ -63,7 +63,7 @@ pub struct Link {
 #[derive(Debug)]
 enum Transport {
     Udp(Udp),
-    Sim(Box<InProcess<SimPeer>>),
+    Sim(Box<InProcess<Simulated>>),
     /// A dry run: what would be sent is noted.
     Notes(Vec<Value>),
 }
@@ -119,16 +119,13 @@ impl Family for Yerc {
                 })?)
             }
             Place::Sim(sim) => {
-                let mut start = start(sim, robot)?;
-                model = start.model();
-                let faults = sim.fault.as_deref().map(str::parse::<FaultSpec>).transpose();
-                let faults = faults.map_err(|error| {
+                let faults = sim.fault.as_deref().map(str::parse::<FaultSpec>).transpose().map_err(|error| {
                     Failure::usage(format!("{}: {error}", robot.target.value)).hint("write % as %25 in a URL")
                 })?;
-                if let Some(spec) = &faults {
-                    start = start.with_busy(busy_share(spec));
-                }
-                Transport::Sim(Box::new(InProcess::new(SimPeer(Simulator::new(start)), faults.map(Faults::pair))))
+                let start = simulated::start(sim.state.as_deref(), robot.model.value, faults.as_ref())?;
+                model = start.model();
+                let controller = Simulated(Simulator::new(start));
+                Transport::Sim(Box::new(InProcess::new(controller, faults.map(Faults::pair))))
             }
             Place::Other { scheme } => {
                 return Err(Failure::usage(format!("yerc is not reached over {scheme}:")).hint("use udp:// or sim:"));
@@ -552,62 +549,4 @@ impl Link {
                 .hint("check this machine's network"),
         }
     }
-}
-
-/// Robot and file server have a port each.
-pub const fn channel(division: Division) -> usize {
-    match division {
-        Division::Robot => 0,
-        Division::File => 1,
-    }
-}
-
-/// The start state: a file's, or the built-in one of the model.
-fn start(sim: &target::Sim, robot: &Robot) -> Result<Start, Failure> {
-    let Some(path) = &sim.state else { return Ok(Start::for_model(robot.model.value)) };
-    load_start(path)
-}
-
-/// How often a simulated controller is busy, 0.0 to 1.0.
-pub fn busy_share(faults: &FaultSpec) -> f64 {
-    f64::from(faults.busy.per_10_000()) / 10_000.0
-}
-
-/// Reads a start state from a file.
-pub fn load_start(path: &Path) -> Result<Start, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|error| Failure::io(path.display(), &error))?;
-    // Files that the state names lie beside it.
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let read = |name: &str| {
-        let path = folder.join(name);
-        std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))
-    };
-    Start::parse(&text, read).map_err(|error| {
-        Failure::usage(format!("{}: {error}", path.display()))
-            .hint("`armctl help simulator` shows the form of the file")
-    })
-}
-
-/// A simulated controller as the peer of a transport: there is but one client.
-#[derive(Debug)]
-struct SimPeer(Simulator);
-
-impl Peer for SimPeer {
-    fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
-        let division = if channel == 0 { Division::Robot } else { Division::File };
-        self.0.receive(now, division, 0, bytes);
-    }
-
-    fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)> {
-        self.0.transmit(now).map(|outgoing| (channel(outgoing.division), outgoing.bytes))
-    }
-
-    fn wake(&self) -> Option<Duration> {
-        self.0.wake()
-    }
-}
-
-/// Bytes as lower-case hexadecimal digits.
-pub fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -15,6 +15,7 @@ pub mod overview;
 mod position;
 mod raw;
 mod register;
+pub mod simulated;
 mod status;
 #[cfg(test)]
 mod testing;

@@ -5,11 +5,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use super::link::{Refusal, hex};
+use super::link::Refusal;
 use super::register::unsigned;
 use crate::command::common::decode::{FieldRow, field_table, parse_hex};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
+use crate::controller::text::hex;
 use crate::controller::yerc::describe::{Sender, describe};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::session::Reply;

@@ -5,10 +5,11 @@ use futures_util::FutureExt as _;
 use serde_json::Value;
 
 use super::Family;
-use super::link::{Link, hex};
+use super::link::Link;
 use crate::cli::{Cli, Top};
 use crate::command::{Access, AnyCommand, Context, Family as _, Noun as _};
 use crate::controller::Risk;
+use crate::controller::text::hex;
 use crate::failure::Failure;
 use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::inventory::Options;

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use crate::command::Access;
+use crate::controller::text::hex;
 use crate::controller::yerc::describe::{Sender, summary};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::wire::RequestFrame;
@@ -70,6 +71,6 @@ impl Trace {
             Direction::Received => ("<-", Sender::Controller),
         };
         let line = format!("{arrow} {}", summary(bytes, sender, self.asked.as_ref()));
-        if self.text > 1 { format!("{line}\n   {}", super::link::hex(bytes)) } else { line }
+        if self.text > 1 { format!("{line}\n   {}", hex(bytes)) } else { line }
     }
 }

@@ -11,7 +11,7 @@ use sha2::{Digest as _, Sha256};
 
 use super::local::{Target, is_plain_file_name};
 use super::name::{exact, unhex};
-use crate::command::yerc::link::hex;
+use crate::controller::text::hex;
 use crate::controller::yerc::files::FileName;
 use crate::failure::{Failure, Kind};
 use crate::output::escape;

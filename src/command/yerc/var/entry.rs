@@ -6,8 +6,9 @@ use serde_json::{Map, Value as Json};
 
 use super::in_form;
 use super::position::{self, PositionData};
-use crate::command::yerc::link::{Refusal, hex};
+use crate::command::yerc::link::Refusal;
 use crate::controller::text::Encoding;
+use crate::controller::text::hex;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::payload::Text;
 use crate::controller::yerc::status;
