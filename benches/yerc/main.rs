@@ -16,7 +16,7 @@ mod table;
 
 use std::time::{Duration, Instant};
 
-use anyhow::{Context as _, anyhow, ensure};
+use anyhow::{Context as _, ensure};
 use armctl::command::yerc::Family as Yerc;
 use armctl::command::yerc::link::Link;
 use armctl::command::{Access, Family as _};
@@ -24,7 +24,6 @@ use armctl::controller::Risk;
 use armctl::controller::yerc::files::FileName;
 use armctl::controller::yerc::query::ReadStatus;
 use armctl::controller::yerc::session::DownloadEnd;
-use armctl::failure::Failure;
 use armctl::output::{ColorChoice, Format, Screen};
 use armctl::settings::target::Family;
 use armctl::settings::{Selection, Sources};
@@ -47,15 +46,16 @@ struct Effort {
 }
 
 const FULL: Effort =
-    Effort { status_rounds: 40, exchanges: 2_000, download_rounds: 9, download: 16 * MIB, starts: 200, big: 64 * MIB };
+    Effort { status_rounds: 40, exchanges: 2_000, download_rounds: 15, download: 16 * MIB, starts: 200, big: 64 * MIB };
 
 const QUICK: Effort =
     Effort { status_rounds: 3, exchanges: 200, download_rounds: 3, download: MIB / 2, starts: 5, big: 2 * MIB };
 
-type Comparison = fn(&Effort) -> anyhow::Result<Table>;
+/// What makes the table of a comparison.
+type Compare = fn(&Effort) -> anyhow::Result<Table>;
 
-/// A comparison, and the word that chooses it.
-const COMPARISONS: [(&str, Comparison); 4] =
+/// The comparisons, by the word that chooses one.
+const COMPARISONS: [(&str, Compare); 4] =
     [("status", status), ("download", download), ("start", start), ("memory", memory)];
 
 fn main() -> anyhow::Result<()> {
@@ -88,7 +88,7 @@ fn status(effort: &Effort) -> anyhow::Result<Table> {
     let ours = || {
         runtime.block_on(async {
             for _ in 0..exchanges {
-                link.ask(&ReadStatus).await.map_err(told)?;
+                link.ask(&ReadStatus).await?;
             }
             anyhow::Ok(())
         })
@@ -129,7 +129,7 @@ fn download(effort: &Effort) -> anyhow::Result<Table> {
             sum += piece.len() as u64;
             Ok(())
         }));
-        let end = end.map_err(told)?;
+        let end = end?;
         ensure!(matches!(end, DownloadEnd::Complete { bytes, .. } if bytes == size && sum == size), "{end:?}");
         Ok(())
     };
@@ -185,19 +185,14 @@ fn runtime() -> anyhow::Result<Runtime> {
 
 /// Connects as a command does.
 fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
-    let target = controller.url().parse().map_err(told)?;
+    let target = controller.url().parse()?;
     let selection = Selection { target: Some(target), ..Selection::default() };
     let sources = Sources { selection, ..Sources::default() };
-    let robots = sources.robots(Some(Family::Yerc)).map_err(told)?;
+    let robots = sources.robots(Some(Family::Yerc))?;
     let robot = robots.first().context("a target is a robot")?;
     let access = Access { granted: Risk::Read, dry_run: false, trace: None };
     let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
-    runtime.block_on(Yerc::connect(robot, access, &screen)).map_err(told)
-}
-
-#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
-fn told(failure: Failure) -> anyhow::Error {
-    anyhow!("{failure}")
+    Ok(runtime.block_on(Yerc::connect(robot, access, &screen))?)
 }
 
 /// What a contender does in a round.

@@ -343,8 +343,9 @@ impl Link {
         };
         let channel = channel(Division::File);
         let until = Instant::now() + self.policy.attempt;
-        while let Ok(received) = timeout_at(until, self.receive(channel)).await {
-            let len = received?;
+        while Instant::now() < until
+            && let Some(len) = self.receive(channel, until).await?
+        {
             if let Some(ack) = last.linger(&self.buffer[..len]) {
                 self.send(channel, &ack).await?;
             }
@@ -450,11 +451,10 @@ impl Link {
                     now = self.started.elapsed();
                 }
                 Step::Wait(until) => {
-                    let received = timeout_at(self.started + until, self.receive(channel)).await;
+                    let received = self.receive(channel, self.started + until).await?;
                     // A frame that arrived in the last moment counts.
                     now = self.started.elapsed();
-                    let Ok(received) = received else { continue };
-                    let len = received?;
+                    let Some(len) = received else { continue };
                     let again = self.finished.as_mut().and_then(|last| last.linger(&self.buffer[..len]));
                     match again {
                         Some(ack) => self.send(channel, &ack).await?,
@@ -483,16 +483,18 @@ impl Link {
         self.trace.record(Direction::Sent, self.transport.ends(channel), bytes)
     }
 
-    async fn receive(&mut self, channel: usize) -> Result<usize, Failure> {
+    /// Waits for a datagram and puts it into the buffer; `None` if none came until then.
+    async fn receive(&mut self, channel: usize, until: Instant) -> Result<Option<usize>, Failure> {
+        let buffer = &mut self.buffer[..];
         let received = match &mut self.transport {
-            Transport::Udp(udp) => udp.receive(channel, &mut self.buffer[..]).await,
-            Transport::Sim(sim) => Ok(sim.receive(channel, &mut self.buffer[..]).await),
+            Transport::Udp(udp) => udp.receive(channel, buffer, until).await,
+            Transport::Sim(sim) => Ok(timeout_at(until, sim.receive(channel, buffer)).await.ok()),
             Transport::Notes(_) => std::future::pending().await,
         };
-        let len = received.map_err(|error| self.broken(channel, &error))?;
+        let Some(len) = received.map_err(|error| self.broken(channel, &error))? else { return Ok(None) };
         self.totals.received += 1;
         self.trace.record(Direction::Received, self.transport.ends(channel), &self.buffer[..len])?;
-        Ok(len)
+        Ok(Some(len))
     }
 
     /// Says at `-v` what else was on the line.
