@@ -6,6 +6,7 @@ use std::task::Poll;
 use std::time::Duration;
 
 use futures_util::StreamExt as _;
+use futures_util::stream;
 use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -136,7 +137,7 @@ impl Run {
         }
     }
 
-    /// Repeats a reading command over one connection, from start to start without drift.
+    /// Repeats a reading command over one connection.
     async fn watch<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Stopped> {
         let stopped = |failure| Stopped::at(robot, command, failure);
         let mut link = self.connect(command, robot).await.map_err(stopped)?;
@@ -151,19 +152,14 @@ impl Run {
         robot: &Robot,
         link: &mut F::Link,
     ) -> Result<(), Stopped> {
-        let repeat = &self.repeat;
-        let every = repeat.every.unwrap_or(EVERY);
-        let began = Instant::now();
-        let mut runs = 0u32;
+        let stopped = |failure| Stopped::at(robot, command, failure);
+        let mut rounds = Rounds::new(&self.repeat);
         loop {
-            let place = if runs == 0 { Place::First } else { Place::Next };
-            runs = runs.saturating_add(1);
             let silence = match self.attempt(command, robot, link).await {
                 Ok(report) => {
+                    let place = if rounds.is_first() { Place::First } else { Place::Next };
                     self.print(robot, command.id(), &*report, place)?;
-                    if let Some(until) = &repeat.until
-                        && until.is_true(&as_value(&Envelope::of(robot, command.id(), report.data()))?)?
-                    {
+                    if rounds.is_met(&Envelope::of(robot, command.id(), report.data()))? {
                         return Ok(());
                     }
                     None
@@ -177,49 +173,84 @@ impl Run {
                     }
                     Some(failure)
                 }
-                Err(failure) => return Err(Stopped::at(robot, command, failure)),
+                Err(failure) => return Err(stopped(failure)),
             };
-            let next = began + every.saturating_mul(runs);
-            let is_over = repeat.count.is_some_and(|count| u64::from(runs) >= count)
-                || repeat.within.is_some_and(|within| next.duration_since(began) > within);
-            if is_over {
-                return match (silence, &repeat.until) {
-                    (Some(failure), _) => Err(Stopped { failure, envelope: None, told: true }),
-                    (None, Some(_)) => {
-                        let failure = Failure::new(Kind::ConditionNotMet, "the condition of --until was not met");
-                        Err(Stopped::at(robot, command, failure.hint("--for sets how long to wait for it")))
-                    }
-                    (None, None) => Ok(()),
+            if !rounds.next().await.map_err(stopped)? {
+                return match silence {
+                    Some(failure) => Err(Stopped { failure, envelope: None, told: true }),
+                    None => rounds.end().map_err(stopped),
                 };
             }
-            let rest = interruptible(tokio::time::sleep_until(next)).await;
-            rest.map_err(|failure| Stopped::at(robot, command, failure))?;
         }
     }
 
-    /// Runs on several robots at a time and reports in the order they were named.
+    /// Runs on several robots at a time, over a connection each, and reports in the order they were named.
     async fn many<F: Family>(&self, command: &dyn AnyCommand<F>, robots: &[Robot]) -> Result<(), Stopped> {
         if robots.len() > 1 && self.trace.as_deref().is_some_and(|path| path != Path::new("-")) {
             return Err(Failure::usage("one capture file cannot hold several robots")
                 .hint("trace one robot at a time, or use --trace - for text")
                 .into());
         }
-        if self.repeat.is_wanted() {
-            return Err(Failure::usage("--watch, --count and --until are for one robot")
-                .hint("name it with -r, or repeat the command in a loop of the shell")
-                .into());
+        let connected = stream::iter(robots).map(|robot| self.connect(command, robot)).buffered(PARALLEL);
+        let mut links: Vec<Result<F::Link, Failure>> = connected.collect().await;
+        let verdict = self.many_over(command, robots, &mut links).await;
+        for link in links.into_iter().flatten() {
+            F::close(link, &self.screen).await?;
         }
-        let work = futures_util::stream::iter(robots).map(|robot| self.once(command, robot)).buffered(PARALLEL);
-        let outcomes: Vec<Outcome> = work.collect().await;
-        let mut envelopes = Vec::new();
-        let mut failures = Vec::new();
+        verdict
+    }
+
+    async fn many_over<F: Family>(
+        &self,
+        command: &dyn AnyCommand<F>,
+        robots: &[Robot],
+        links: &mut [Result<F::Link, Failure>],
+    ) -> Result<(), Stopped> {
+        let mut rounds = Rounds::new(&self.repeat);
+        loop {
+            let attempts = stream::iter(robots.iter().zip(&mut *links)).map(|(robot, link)| async move {
+                match link {
+                    Ok(link) => self.attempt(command, robot, link).await,
+                    Err(failure) => Err(failure.clone()),
+                }
+            });
+            let outcomes: Vec<Outcome> = attempts.buffered(PARALLEL).collect().await;
+            let envelopes = robots.iter().zip(&outcomes).map(|(robot, outcome)| {
+                enveloped(robot, command.id(), outcome.as_ref().map(AsRef::as_ref).map_err(Clone::clone))
+            });
+            let envelopes: Vec<Envelope> = envelopes.collect::<Result<_, _>>()?;
+            self.print_many(robots, &outcomes, &envelopes, &rounds)?;
+            if !self.repeat.is_wanted() || self.gate.dry_run {
+                return self.verdict(&outcomes);
+            }
+            if rounds.is_met(&envelopes)? {
+                return Ok(());
+            }
+            if !rounds.next().await? {
+                self.verdict(&outcomes)?;
+                return rounds.end().map_err(Stopped::from);
+            }
+        }
+    }
+
+    fn print_many(
+        &self,
+        robots: &[Robot],
+        outcomes: &[Outcome],
+        envelopes: &[Envelope],
+        rounds: &Rounds<'_>,
+    ) -> Result<(), Failure> {
+        if !self.is_for_people() {
+            if self.screen.format == Format::Jsonl {
+                return envelopes.iter().try_for_each(|envelope| self.emit(&timed(envelope.clone())));
+            }
+            return self.emit(&envelopes);
+        }
         let mut views = Vec::new();
-        for (robot, outcome) in robots.iter().zip(&outcomes) {
-            let failure = outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |report| report.failure());
-            failures.extend(failure);
+        for (robot, outcome) in robots.iter().zip(outcomes) {
             match outcome {
-                Ok(report) if self.is_for_people() => views.push((robot, report.view())),
-                Err(failure) if self.is_for_people() => {
+                Ok(report) => views.push((robot, report.view())),
+                Err(failure) => {
                     // Failures of the link name the robot already.
                     let label = robot.label();
                     let is_named = failure.message.starts_with(&label);
@@ -227,36 +258,24 @@ impl Run {
                         if is_named { failure.message.clone() } else { format!("{label}: {}", failure.message) };
                     self.screen.failure(&Failure { message, ..failure.clone() });
                 }
-                outcome => {
-                    let report = outcome.as_ref().map(AsRef::as_ref).map_err(Clone::clone);
-                    let envelope = enveloped(robot, command.id(), report)?;
-                    if self.screen.format == Format::Jsonl {
-                        self.emit(&timed(envelope.clone()))?;
-                    }
-                    envelopes.push(envelope);
-                }
             }
         }
-        if self.is_for_people() {
-            self.show_many(&views)?;
-        } else if self.screen.format != Format::Jsonl {
-            self.emit(&envelopes)?;
-        }
-        let told = !self.is_for_people();
-        match failures.pop() {
-            None => Ok(()),
-            Some(failure) if failures.len() + 1 == robots.len() && failures.iter().all(|f| f.kind == failure.kind) => {
-                Err(Stopped {
-                    failure: Failure { message: "every robot failed".into(), ..failure },
-                    envelope: None,
-                    told,
-                })
-            }
-            Some(_) => {
-                let message = format!("{} of {} robots failed", failures.len() + 1, robots.len());
-                Err(Stopped { failure: Failure::new(Kind::Mixed, message), envelope: None, told })
-            }
-        }
+        self.show_many(&views, if rounds.is_first() { Place::First } else { Place::Next })
+    }
+
+    /// What the outcomes of several robots come to.
+    fn verdict(&self, outcomes: &[Outcome]) -> Result<(), Stopped> {
+        let failures: Vec<Failure> = outcomes
+            .iter()
+            .filter_map(|outcome| outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |r| r.failure()))
+            .collect();
+        let Some(first) = failures.first() else { return Ok(()) };
+        let failure = if failures.len() == outcomes.len() && failures.iter().all(|failure| failure.kind == first.kind) {
+            Failure { message: "every robot failed".into(), ..first.clone() }
+        } else {
+            Failure::new(Kind::Mixed, format!("{} of {} robots failed", failures.len(), outcomes.len()))
+        };
+        Err(Stopped { failure, envelope: None, told: !self.is_for_people() })
     }
 
     /// One connection, one run.
@@ -301,10 +320,10 @@ impl Run {
     }
 
     /// Tables of the same columns become one, with the robot in front; other views stand below each other.
-    fn show_many(&self, views: &[(&Robot, View)]) -> Result<(), Failure> {
+    fn show_many(&self, views: &[(&Robot, View)], place: Place<'_>) -> Result<(), Failure> {
         let tables = views.iter().map(|(robot, view)| Some((robot.name.as_str(), view.as_table()?)));
         match tables.collect::<Option<Vec<_>>>().and_then(|tables| Table::joined("robot", &tables)) {
-            Some(table) => self.show(&View::table(table), Place::Alone),
+            Some(table) => self.show(&View::table(table), place),
             None => views
                 .iter()
                 .enumerate()
@@ -359,6 +378,50 @@ impl Run {
             }
         };
         screen.data(&text)
+    }
+}
+
+/// The rounds of a watch, from start to start without drift.
+#[derive(Debug)]
+struct Rounds<'a> {
+    repeat: &'a Repeat,
+    began: Instant,
+    done: u32,
+}
+
+impl<'a> Rounds<'a> {
+    fn new(repeat: &'a Repeat) -> Self {
+        Self { repeat, began: Instant::now(), done: 0 }
+    }
+
+    fn is_first(&self) -> bool {
+        self.done == 0
+    }
+
+    /// Whether the condition of `--until` holds.
+    fn is_met(&self, value: &impl Serialize) -> Result<bool, Failure> {
+        self.repeat.until.as_ref().map_or(Ok(false), |until| until.is_true(&as_value(value)?))
+    }
+
+    /// Waits for the next round; `false` when there is none.
+    async fn next(&mut self) -> Result<bool, Failure> {
+        self.done = self.done.saturating_add(1);
+        let next = self.began + self.repeat.every.unwrap_or(EVERY).saturating_mul(self.done);
+        let is_over = self.repeat.count.is_some_and(|count| u64::from(self.done) >= count)
+            || self.repeat.within.is_some_and(|within| next.duration_since(self.began) > within);
+        if !is_over {
+            interruptible(tokio::time::sleep_until(next)).await?;
+        }
+        Ok(!is_over)
+    }
+
+    /// What it means that the rounds are over.
+    fn end(&self) -> Result<(), Failure> {
+        if self.repeat.until.is_none() {
+            return Ok(());
+        }
+        Err(Failure::new(Kind::ConditionNotMet, "the condition of --until was not met")
+            .hint("--for sets how long to wait for it"))
     }
 }
 
