@@ -108,10 +108,11 @@ fn painted(line: &Cell, color: bool) -> String {
     format!("\x1b[{code}m{text}\x1b[0m")
 }
 
-/// `x (mm)` becomes `x_mm`.
+/// `x (mm)` becomes `x_mm`, and `#` `number`.
 fn column_id(name: &str) -> String {
     let words = name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
-    words.map(str::to_lowercase).collect::<Vec<_>>().join("_")
+    let id = words.map(str::to_lowercase).collect::<Vec<_>>().join("_");
+    if id.is_empty() { "number".to_owned() } else { id }
 }
 
 fn csv_line(out: &mut String, fields: &[String]) {
