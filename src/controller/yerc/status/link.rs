@@ -94,8 +94,8 @@ pub(super) static ROWS: &[AddedRow] = &[
     row(0xB003, Class::Data, BOTH, "request data size error",
         "The request carries more or fewer bytes than the command takes; strings and moves differ between the \
          models.",
-        "Set the right model for this robot. With `armctl yerc raw`, compare the data length with the command's \
-         layout."),
+        "Set the right model for this robot. An FS100 that refuses a cartesian move may want the 25 words of its \
+         manual: ?model=fs100&move_words=25. `armctl yerc raw --check` compares lengths."),
     row(0xB004, Class::Data, BOTH, "outside the data range",
         "A value sent is outside what the data can hold, or number plus count runs past the end.",
         "Check value, first number and count against the limits of this controller."),
@@ -122,8 +122,9 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The coordinate system of the move does not exist or does not fit the group.",
         "Use base, robot, tool or a taught user coordinate system."),
     row(0xB00C, Class::Data, BOTH, "type setting error",
-        "The kind of the position does not exist or cannot be used here.",
-        "Check the position type: pulse, base, robot, tool or user."),
+        "The form of a move (its words \"type\" and \"expanded type\") has bits that are not defined, or cannot be \
+         reached; in a position, its kind does not exist.",
+        "Check --form and --extended-form of the move, or the kind of the position (pulse, base, robot, tool, user)."),
     row(0xB00D, Class::Data, BOTH, "tool number setting error",
         "The tool number is out of range or the tool is not set up.",
         "Use a tool that exists on this controller (pendant: ROBOT > TOOL)."),

@@ -13,7 +13,8 @@ pub(super) static ROWS: &[AddedRow] = &[
     row(0x1011, Class::Operand, BOTH, "wrong number of operands",
         "The request carries more or fewer values than the command takes. The move commands differ between FS100 \
          (25 words) and DX200 (26 words).",
-        "Set the right model for this robot. If it is right, record the exchange with --trace and report it."),
+        "Set the right model for this robot; for an FS100 that refuses a cartesian move, also try move_words=25 in its \
+         target. If it stays, record the exchange with --trace."),
     row(0x1012, Class::Operand, BOTH, "operand value out of range",
         "One of the values sent is outside what this controller accepts: a speed, a number, a mode, or an odd count \
          of bytes.",
