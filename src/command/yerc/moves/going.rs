@@ -7,13 +7,14 @@ use serde::Serialize;
 use tokio::time::Instant;
 
 use crate::command::Report;
-use crate::command::yerc::link::Link;
+use crate::command::yerc::link::{Link, Refusal};
 use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost};
 use crate::command::yerc::orders::usage;
 use crate::command::yerc::position::{self, PositionReport, in_a_line};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{ControllerStatus, Position, PositionKind};
 use crate::controller::yerc::query::{Coordinates, Query, ReadPosition, ReadStatus};
+use crate::controller::yerc::status::is_absent;
 use crate::controller::yerc::units::{self, Unit};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -206,10 +207,34 @@ async fn resting_place(
 /// A move has words for every axis, and 0 in those that the operator did not name would move them there. That is
 /// only right for axes that are not fitted, or stand at 0.
 async fn refuse_silent_zeros(link: &mut Link, group: Group, named: usize, flag: &str) -> Result<(), Failure> {
+    if named >= words(group) {
+        return Ok(());
+    }
     let question = ReadPosition::new(link.model, group, Coordinates::Pulse).map_err(usage)?;
-    // A group that the controller does not have cannot move.
-    let Ok(position) = link.try_ask(&question).await? else { return Ok(()) };
-    silent_zero(group, &position, named, flag).map_or(Ok(()), Err)
+    match link.try_ask(&question).await? {
+        Ok(position) => silent_zero(group, &position, named, flag).map_or(Ok(()), Err),
+        // A group that the controller does not have cannot move.
+        Err(Refusal(status)) if is_absent(status) => Ok(()),
+        // Any other reason leaves open where the axes stand.
+        Err(refusal) => {
+            let failure = Failure::from(refusal);
+            let message =
+                format!("the axes of {group} that {flag} does not name could not be read: {}", failure.message);
+            Err(Failure { message, ..failure }.hint(format!(
+                "nothing was sent, as they might move to 0; repeat it, or name {} axes with {flag}, 0 where none is fitted",
+                words(group)
+            )))
+        }
+    }
+}
+
+/// Axes of a group that a move has words for (FS and DX 3.3.39, 3.3.40).
+const fn words(group: Group) -> usize {
+    match group {
+        Group::Robot(_) => 8,
+        Group::Base(_) => 3,
+        Group::Station(_) => 6,
+    }
 }
 
 fn silent_zero(group: Group, position: &Position, named: usize, flag: &str) -> Option<Failure> {

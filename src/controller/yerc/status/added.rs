@@ -1,6 +1,7 @@
 //! The table of added status codes: what a row holds, and how one is found.
 
 use super::super::Model;
+use super::super::wire::Status;
 use super::{link, robot};
 
 /// What an added status is about.
@@ -102,6 +103,18 @@ pub fn is_busy(code: u32) -> bool {
     added(code).is_some_and(|row| row.class == Class::Busy)
 }
 
+/// Whether a refusal says that the thing asked for does not exist: an instance the controller does not know, or data
+/// and groups that it does not have. What controllers answer for a group that is not fitted is not printed.
+pub fn is_absent(status: Status) -> bool {
+    /// Wrong control group or base axis, instance, and data or types that are not there.
+    const ABSENT: [u32; 8] = [0x3370, 0x3380, 0xA001, 0xB002, 0xB004, 0xB005, 0xB007, 0xB008];
+    match (status.code, status.added) {
+        (0x00, _) => false,
+        (0x08 | 0x28, 0) => true,
+        (_, added) => ABSENT.contains(&added),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -133,6 +146,19 @@ mod tests {
             }
             assert!(row.cause.ends_with('.') && row.remedy.ends_with('.'), "{:#06X}", row.code);
         }
+    }
+
+    #[test]
+    fn busy_or_in_another_mode_is_not_absent() {
+        for added in [0xA001, 0xB008, 0xB005] {
+            assert!(is_absent(Status::refused(added)), "{added:#x}");
+        }
+        assert!(is_absent(Status { code: 0x28, ..Status::OK }));
+        for added in [0xD8FA, 0x2010, 0x2150, 0x3070, 0xC002, 0xCFFF] {
+            assert!(!is_absent(Status::refused(added)), "{added:#x}");
+        }
+        assert!(!is_absent(Status { code: 0x1F, ..Status::OK }));
+        assert!(!is_absent(Status::OK));
     }
 
     #[test]

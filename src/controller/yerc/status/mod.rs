@@ -13,7 +13,7 @@ mod added;
 mod link;
 mod robot;
 
-pub use added::{AddedRow, Class, added, all_added, is_busy};
+pub use added::{AddedRow, Class, added, all_added, is_absent, is_busy};
 
 /// One status code. Only the DX200 manual prints a list (chapter 4); FS100 is expected to use the same codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
