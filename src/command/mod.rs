@@ -67,7 +67,7 @@ pub trait Family: Sized + 'static {
     /// Connects. With `dry_run` nothing is opened.
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Self::Link, Failure>;
 
-    /// Stops whatever moves, and says how: "HOLD is on".
+    /// Stops what this link set in motion, and says what was done: "the robot was stopped: HOLD is on".
     async fn halt(link: &mut Self::Link) -> Result<String, Failure>;
 
     /// What a dry run would have sent, in the order of sending.

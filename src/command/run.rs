@@ -99,7 +99,7 @@ impl Run {
         }
         let robots = self.sources.robots(Some(F::FAMILY))?;
         let selection = &self.sources.selection;
-        let each_named = selection.robots.len() == robots.len() && selection.tags.is_empty();
+        let each_named = robots.iter().all(|robot| selection.robots.contains(&robot.name));
         Gate::pass_many(risk, &robots, each_named)?;
         if risk == Risk::Motion {
             // From here on Ctrl-C, at a question too, ends in a message and an exit code instead of a killed process.
@@ -310,11 +310,15 @@ impl Run {
             Ok(outcome) => outcome,
             Err(_) if command.risk() == Risk::Motion && self.gate.on_interrupt == OnInterrupt::Stop => {
                 Err(match F::halt(link).await {
-                    Ok(how) => Failure::new(Kind::Interrupted, format!("the robot was stopped: {how}")),
+                    Ok(done) => Failure::new(Kind::Interrupted, done),
                     Err(failure) => Failure::new(Kind::Interrupted, format!("the robot may still move: {failure}"))
                         .hint("use the pendant or the emergency stop if it must not"),
                 })
             }
+            Err(interrupt) if command.risk() == Risk::Motion => Err(Failure {
+                message: format!("{}: left as it is; what was started goes on", interrupt.message),
+                ..interrupt
+            }),
             Err(interrupt) => Err(interrupt),
         }
     }
@@ -481,10 +485,12 @@ fn as_value(value: &impl Serialize) -> Result<Value, Failure> {
 
 /// Waits for `work`, or for Ctrl-C or a request to end.
 pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failure> {
+    // Listens before the work begins: it may send an order the first time it is polled.
+    let interrupt = interrupt();
     tokio::select! {
         biased;
         done = work => Ok(done),
-        name = interrupt() => Err(Failure::new(Kind::Interrupted, name)),
+        name = interrupt => Err(Failure::new(Kind::Interrupted, name)),
     }
 }
 
@@ -494,14 +500,18 @@ fn catch_interrupts() {
     drop(tokio::signal::unix::signal(tokio::signal::unix::SignalKind::interrupt()));
 }
 
+/// Ends at the next Ctrl-C or request to end; those that come from this call on count, also before it is polled.
 #[cfg(unix)]
-async fn interrupt() -> &'static str {
+fn interrupt() -> impl Future<Output = &'static str> {
     use tokio::signal::unix::{SignalKind, signal};
 
-    let Ok(mut terminate) = signal(SignalKind::terminate()) else { return std::future::pending().await };
-    tokio::select! {
-        _ = tokio::signal::ctrl_c() => "Ctrl-C",
-        _ = terminate.recv() => "asked to end (SIGTERM)",
+    let signals = signal(SignalKind::interrupt()).and_then(|keys| Ok((keys, signal(SignalKind::terminate())?)));
+    async {
+        let Ok((mut keys, mut terminate)) = signals else { return std::future::pending().await };
+        tokio::select! {
+            _ = keys.recv() => "Ctrl-C",
+            _ = terminate.recv() => "asked to end (SIGTERM)",
+        }
     }
 }
 

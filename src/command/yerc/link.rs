@@ -44,6 +44,8 @@ pub struct Link {
     policy: Policy,
     ids: Ids,
     granted: Risk,
+    /// Whether a request left that moves the robot.
+    has_moved: bool,
     label: String,
     /// Model of the controller: number ranges and layouts follow from it.
     pub model: Model,
@@ -78,6 +80,11 @@ impl Transport {
         }
     }
 }
+
+/// How long a stop is tried at least, the silence after which it is sent again (it doubles), and how often.
+const STOP_WITHIN: Duration = Duration::from_secs(3);
+const REPEAT_STOP: Duration = Duration::from_millis(100);
+const STOPS: u32 = 8;
 
 /// Room for more than a frame, so that an oversized datagram shows.
 const BUFFER: usize = 2048;
@@ -139,6 +146,7 @@ impl Family for Yerc {
             policy: Policy { deadline: timeout, attempt, retries: robot.retries.value },
             ids: Ids::default(),
             granted: access.granted,
+            has_moved: false,
             label: robot.label(),
             model,
             encoding: robot.encoding.value,
@@ -152,13 +160,21 @@ impl Family for Yerc {
     }
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
+        // What else moves there is not this command's to stop.
+        if !link.has_moved {
+            return Ok("nothing was sent that moves the robot".to_owned());
+        }
+        link.screen.note("stopping the robot: HOLD on");
         link.granted = link.granted.max(Risk::Write);
-        // The one order that is repeated after silence: HOLD twice is HOLD once, and a lost one lets the robot move on.
+        // The one order that is repeated after silence, whatever the options say of timeout and retries: HOLD twice is
+        // HOLD once, and a lost one lets the robot move on.
+        let Policy { deadline, .. } = link.policy;
+        link.policy = Policy { deadline: deadline.max(STOP_WITHIN), attempt: REPEAT_STOP, retries: STOPS };
         let reply = link.converse(&Hold(true).request(), true).await?;
         if !reply.status.is_ok() {
             return Err(Refusal(reply.status).into());
         }
-        Ok("HOLD is on; `yerc hold off` releases it".to_owned())
+        Ok("the robot was stopped: HOLD is on; `yerc hold off` releases it".to_owned())
     }
 
     fn rehearsed(link: &mut Link) -> Vec<Value> {
@@ -256,7 +272,7 @@ impl Link {
         match ended {
             Ended::Answered(reply) => Ok(reply),
             Ended::NoAnswer(counters) => Err(self.silence(counters)),
-            Ended::OutcomeUnknown(counters) => Err(self.unknown(self.policy.deadline, counters)),
+            Ended::OutcomeUnknown(counters) => Err(self.unknown(request, self.policy.deadline, counters)),
         }
     }
 
@@ -288,7 +304,7 @@ impl Link {
         match end {
             // Only the batch backup changes something, and it is the one with a long first wait.
             DownloadEnd::NoAnswer { bytes: 0, counters } if request.risk() > Risk::Read => {
-                Err(self.unknown(first_wait.unwrap_or(self.policy.deadline), counters))
+                Err(self.unknown(request, first_wait.unwrap_or(self.policy.deadline), counters))
             }
             DownloadEnd::NoAnswer { bytes: 0, counters } => Err(self.silence(counters)),
             DownloadEnd::NoAnswer { bytes, .. } => {
@@ -398,6 +414,7 @@ impl Link {
             return Err(Failure::local(format!("a {:?} request was stopped before it left", request.risk()))
                 .hint("this is a fault of armctl: the command passed the gate as less than it is; please report it"));
         }
+        self.has_moved |= request.risk() == Risk::Motion;
         Ok(())
     }
 
@@ -521,13 +538,13 @@ impl Link {
     }
 
     /// Nobody confirmed something that may have been done.
-    fn unknown(&self, waited: Duration, counters: Counters) -> Failure {
+    fn unknown(&self, request: &Request, waited: Duration, counters: Counters) -> Failure {
         let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
         Failure::new(
             Kind::OutcomeUnknown,
             format!("{}: sent once, no answer within {waited:?}{seen}: it may or may not have been done", self.label),
         )
-        .hint("ask before you repeat it: `yerc status`, `yerc job show`, `yerc position` or the matching `get` tell")
+        .hint(format!("ask before you repeat it: {}", telltale(request)))
     }
 
     /// The socket has bad news.
@@ -550,5 +567,22 @@ impl Link {
             _ => Failure::new(Kind::NoAnswer, format!("{}: UDP port {port}: {}", self.label, plain(error)))
                 .hint("check this machine's network"),
         }
+    }
+}
+
+/// What tells whether a request that changes something was carried out.
+fn telltale(request: &Request) -> &'static str {
+    match request.command {
+        0 => "`yerc file list` tells what is there",
+        0x78 | 0x300 => "`yerc io get` tells",
+        0x79 | 0x301 => "`yerc register get` tells",
+        0x7A..=0x81 | 0x8C | 0x302..=0x309 | 0x30C => "`yerc var get` tells",
+        0x82 => "`yerc alarm list` and `yerc status` tell",
+        0x83 | 0x84 => "`yerc status` tells",
+        0x85 => "the pendant shows it; a message may safely be sent again",
+        0x86 => "`yerc status` and `yerc job show` tell whether it runs",
+        0x87 => "`yerc job show` tells",
+        0x8A | 0x8B => "keep clear; `yerc status` and `yerc position` tell whether it moves, and where it is",
+        _ => "`yerc status` tells how the controller stands",
     }
 }

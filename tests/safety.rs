@@ -1,0 +1,396 @@
+//! What must not happen to a machine, tried with the program itself against controllers that answer by half: orders that
+//! leave twice, motions that nobody allowed, axes that move to 0 unasked, a Ctrl-C that stops nothing.
+
+#![cfg(unix)]
+
+use std::net::UdpSocket;
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// Command, instance and service of a request, and its data.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Asked {
+    command: u16,
+    instance: u16,
+    service: u8,
+    data: Vec<u8>,
+}
+
+impl Asked {
+    fn parse(frame: &[u8]) -> Self {
+        let word = |at: usize| u16::from_le_bytes([frame[at], frame[at + 1]]);
+        Self { command: word(24), instance: word(26), service: frame[29], data: frame[32..].to_vec() }
+    }
+
+    /// Whether it only reads (FS and DX 3.3, 3.4.3, 3.4.4).
+    fn is_read(&self) -> bool {
+        matches!(self.service, 0x01 | 0x0E | 0x32 | 0x33)
+    }
+}
+
+/// What a controller does with a request.
+enum Reaction {
+    Silence,
+    Answer(Vec<u8>),
+    Refuse(u16),
+}
+
+/// Two UDP ports, and all that arrived there.
+struct Controller {
+    url: String,
+    asked: Arc<Mutex<Vec<Asked>>>,
+    /// Says every request.
+    news: Receiver<Asked>,
+    over: Arc<AtomicBool>,
+    servers: Vec<JoinHandle<()>>,
+}
+
+impl Controller {
+    fn new(react: impl FnMut(&Asked) -> Reaction + Send + 'static) -> Self {
+        let (tell, news) = channel();
+        let (asked, over) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicBool::new(false)));
+        let react = Arc::new(Mutex::new(react));
+        let mut ports = Vec::new();
+        let servers = (0..2).map(|_| {
+            let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+            socket.set_read_timeout(Some(Duration::from_millis(20))).expect("a timeout");
+            ports.push(socket.local_addr().expect("an address").port());
+            let (tell, asked, over, react) = (tell.clone(), asked.clone(), over.clone(), react.clone());
+            std::thread::spawn(move || {
+                let mut buffer = [0; 2048];
+                while !over.load(Ordering::Relaxed) {
+                    let Ok((len, from)) = socket.recv_from(&mut buffer) else { continue };
+                    let request = Asked::parse(&buffer[..len]);
+                    let reaction = (react.lock().expect("no panic"))(&request);
+                    asked.lock().expect("no panic").push(request.clone());
+                    if let Some(frame) = answer(&buffer[..len], reaction) {
+                        socket.send_to(&frame, from).expect("sent");
+                    }
+                    let _gone = tell.send(request);
+                }
+            })
+        });
+        let servers = servers.collect();
+        let url = format!("udp://127.0.0.1:{}?file_port={}&model=dx200", ports[0], ports[1]);
+        Self { url, asked, news, over, servers }
+    }
+
+    /// Starts a command line, without a terminal.
+    fn start(&self, words: &str) -> Child {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.args(["-t", &self.url, "yerc"]).args(words.split_ascii_whitespace());
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.spawn().expect("armctl starts")
+    }
+
+    fn run(&self, words: &str) -> Output {
+        self.start(words).wait_with_output().expect("armctl ends")
+    }
+
+    /// Waits for a request.
+    fn wait_for(&self, wanted: impl Fn(&Asked) -> bool) {
+        while !wanted(&self.news.recv_timeout(Duration::from_secs(30)).expect("the request comes")) {}
+    }
+
+    /// The requests that were no reads.
+    fn changes(&self) -> Vec<Asked> {
+        self.asked.lock().expect("no panic").iter().filter(|asked| !asked.is_read()).cloned().collect()
+    }
+}
+
+impl Drop for Controller {
+    fn drop(&mut self) {
+        self.over.store(true, Ordering::Relaxed);
+        for server in self.servers.drain(..) {
+            let _ended = server.join();
+        }
+    }
+}
+
+fn answer(request: &[u8], reaction: Reaction) -> Option<Vec<u8>> {
+    let (status, added, data) = match reaction {
+        Reaction::Silence => return None,
+        Reaction::Answer(data) => (0, 0, data),
+        Reaction::Refuse(added) => (0x1F, added, Vec::new()),
+    };
+    let size = u16::try_from(data.len()).expect("short");
+    let mut frame = [b"YERC\x20\0", &size.to_le_bytes()[..], &[3, request[9], 1, request[11], 0, 0, 0, 0x80]].concat();
+    frame.extend(b"99999999");
+    frame.extend([request[29] | 0x80, status, u8::from(added != 0), 0]);
+    frame.extend(u32::from(added).to_le_bytes());
+    frame.extend(data);
+    Some(frame)
+}
+
+fn words(words: &[i32]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
+}
+
+/// A robot R1 on servo power that moves once it was told to, and stops on HOLD.
+fn robot(mut peculiar: impl FnMut(&Asked) -> Option<Reaction> + Send + 'static) -> Controller {
+    let (mut x, mut moving) = (0, false);
+    Controller::new(move |asked| {
+        if let Some(reaction) = peculiar(asked) {
+            moving |= matches!((asked.command, &reaction), (0x86 | 0x8A | 0x8B, Reaction::Answer(_)));
+            return reaction;
+        }
+        Reaction::Answer(match (asked.command, asked.instance) {
+            (0x75, 1) => {
+                x += i32::from(moving) * 500;
+                words(&[0, 0, 0, 0, 0, x, 0, 0, 0, 0, 0])
+            }
+            (0x75, _) => return Reaction::Refuse(0xA001),
+            // Play, one cycle, command remote, servo on.
+            (0x72, _) => words(&[0xC2 | i32::from(moving) << 3, 0x40]),
+            (0x86 | 0x8A | 0x8B, _) => {
+                moving = true;
+                Vec::new()
+            }
+            (0x83, 1) => {
+                moving = false;
+                Vec::new()
+            }
+            _ => Vec::new(),
+        })
+    })
+}
+
+fn interrupt(child: &Child) {
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
+    assert!(sent.success());
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+const MOVE: &str = "move pulse joint --pulses 90000,0,0,0,0,0 --speed 10% --yes";
+const HOLD_ON: &[u8] = &[1, 0, 0, 0];
+
+/// Every order, and what its message names as the one that tells the outcome.
+const ORDERS: [(&str, &str); 24] = [
+    ("servo on --yes", "yerc status"),
+    ("servo off", "yerc status"),
+    ("hold on", "yerc status"),
+    ("hold off", "yerc status"),
+    ("hlock on", "yerc status"),
+    ("hlock off", "yerc status"),
+    ("cycle once", "yerc status"),
+    ("say HELLO", "pendant"),
+    ("alarm reset", "yerc alarm list"),
+    ("alarm cancel", "yerc alarm list"),
+    ("job select A", "yerc job show"),
+    ("job start --yes", "yerc job show"),
+    ("var set B0=1", "yerc var get"),
+    ("var set B0=1 B1=2", "yerc var get"),
+    ("var set S0=A", "yerc var get"),
+    ("var set P1=pulse:s=1,l=2,u=3,r=4,b=5,t=6", "yerc var get"),
+    ("io set --group 2701=3", "yerc io get"),
+    ("io set --group 2701=3 --group 2702=4", "yerc io get"),
+    ("register set 1=2", "yerc register get"),
+    ("register set 1=2 2=3", "yerc register get"),
+    ("move relative --z 1 --speed 1mm/s --no-wait --yes", "yerc position"),
+    ("file delete A.JBI", "yerc file list"),
+    ("file cmos --start-only --wait 300ms", "--download-only"),
+    ("raw --command 0x8D --instance 1 --attribute 1 --service 0x10 --data 01000000 --yes", "yerc status"),
+];
+
+#[test]
+fn an_order_leaves_once_and_its_outcome_is_told_unknown() {
+    std::thread::scope(|scope| {
+        for (order, hint) in ORDERS {
+            scope.spawn(move || {
+                let controller = Controller::new(|_| Reaction::Silence);
+                let output = controller.run(&format!("{order} --timeout 700ms --retries 9"));
+                assert_eq!(output.status.code(), Some(6), "{order}: {}", stderr(&output));
+                assert_eq!(controller.asked.lock().unwrap().len(), 1, "{order}");
+                assert!(stderr(&output).contains(hint), "{order}: {}", stderr(&output));
+            });
+        }
+    });
+}
+
+/// One signal of a group is read with its seven neighbours, set, and written: without the first nothing is written.
+#[test]
+fn a_signal_is_not_written_when_its_group_could_not_be_read() {
+    let controller = Controller::new(|_| Reaction::Silence);
+    let output = controller.run("io set 27010=on --timeout 400ms");
+    assert_eq!((output.status.code(), controller.changes()), (Some(4), Vec::new()), "{}", stderr(&output));
+}
+
+#[test]
+fn nothing_moves_unasked_and_a_dry_run_sends_nothing() {
+    let controller = robot(|_| None);
+    for order in [
+        "servo on",
+        "job start",
+        MOVE.trim_end_matches(" --yes"),
+        "raw --command 0x86 --instance 1 --attribute 1 --service 0x10 --data 01000000",
+        "raw --command 0x83 --instance 2 --attribute 1 --service 0x10 --data 01000000",
+        "raw --command 0x90 --instance 1 --service 0x01",
+    ] {
+        let output = controller.run(order);
+        assert_eq!(output.status.code(), Some(7), "{order}: {}", stderr(&output));
+        assert!(stderr(&output).contains("--yes"), "{order}: {}", stderr(&output));
+    }
+    for (order, _) in ORDERS {
+        let output = controller.run(&format!("{order} --dry-run"));
+        assert_eq!(output.status.code(), Some(0), "{order}: {}", stderr(&output));
+    }
+    assert_eq!(*controller.asked.lock().unwrap(), []);
+}
+
+#[test]
+fn a_read_only_robot_takes_no_order_even_with_yes() {
+    let controller = robot(|_| None);
+    let folder = tempfile::tempdir().unwrap();
+    let inventory = folder.path().join("robots.toml");
+    let entry =
+        format!("[[robot]]\nname = \"cell\"\nfamily = \"yerc\"\ntarget = \"{}\"\nread_only = true\n", controller.url);
+    std::fs::write(&inventory, &entry).unwrap();
+    let run = |words: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.arg("--config").arg(&inventory).args(["-r", "cell", "yerc"]).args(words.split_ascii_whitespace());
+        command.env("HOME", folder.path()).output().unwrap()
+    };
+    for order in ["hold on", "servo on --yes", "var set B0=1 --yes", "job select A", MOVE, "file delete A.JBI"] {
+        let output = run(order);
+        assert_eq!(output.status.code(), Some(7), "{order}: {}", stderr(&output));
+        assert!(stderr(&output).contains("read-only"), "{order}: {}", stderr(&output));
+    }
+    assert_eq!(*controller.asked.lock().unwrap(), []);
+    assert_eq!(run("status").status.code(), Some(0));
+}
+
+/// Patterns may meet as many robots as there are patterns: what counts is that each robot was named.
+#[test]
+fn patterns_do_not_move_robots() {
+    let controllers = [robot(|_| None), robot(|_| None)];
+    let folder = tempfile::tempdir().unwrap();
+    let inventory = folder.path().join("robots.toml");
+    let [left, right] = [&controllers[0].url, &controllers[1].url];
+    let entry =
+        |name: &str, url: &str| format!("[[robot]]\nname = \"{name}\"\nfamily = \"yerc\"\ntarget = \"{url}\"\n");
+    std::fs::write(&inventory, entry("cell1", left) + &entry("cell2", right)).unwrap();
+    let run = |robots: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.arg("--config").arg(&inventory).args(robots).args(["yerc", "job", "start", "--yes"]);
+        command.env("HOME", folder.path()).output().unwrap()
+    };
+    for robots in [&["--all"][..], &["-r", "cell*"], &["-r", "*1", "-r", "*2"], &["-r", "cell1", "-r", "*2"]] {
+        let output = run(robots);
+        assert_eq!(output.status.code(), Some(7), "{robots:?}: {}", stderr(&output));
+    }
+    assert!(controllers.iter().all(|controller| controller.changes().is_empty()));
+    let output = run(&["-r", "cell1", "-r", "cell2"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(controllers.iter().all(|controller| controller.changes().len() == 1));
+}
+
+/// A base that is busy, or a screen that is open, says nothing about where its axes stand.
+#[test]
+fn axes_that_could_not_be_read_are_not_sent_to_zero() {
+    for (instance, code) in [(11, 0xD8FA), (11, 0x2150), (11, 0xCFFF), (1, 0x3070)] {
+        let controller =
+            robot(move |asked| (asked.command == 0x75 && asked.instance == instance).then_some(Reaction::Refuse(code)));
+        let output = controller.run(&format!("{MOVE} --no-wait --timeout 500ms"));
+        assert_eq!(output.status.code(), Some(3), "{code:#x}: {}", stderr(&output));
+        assert!(stderr(&output).contains("nothing was sent"), "{code:#x}: {}", stderr(&output));
+        assert_eq!(controller.changes(), [], "{code:#x}");
+    }
+    // Who names every axis needs no look at the others.
+    let controller = robot(|asked| (asked.command == 0x75).then_some(Reaction::Refuse(0x2150)));
+    let all = "move pulse joint --pulses 1,2,3,4,5,6,0,0 --base-axes 0,0,0 --speed 10% --yes --no-wait";
+    let output = controller.run(all);
+    assert_eq!((output.status.code(), controller.changes().len()), (Some(0), 1), "{}", stderr(&output));
+}
+
+#[test]
+fn a_look_before_a_move_that_gets_no_answer_ends_in_no_move() {
+    for instance in [1, 11] {
+        let silent =
+            move |asked: &Asked| (asked.command == 0x75 && asked.instance == instance).then_some(Reaction::Silence);
+        let controller = robot(silent);
+        let output = controller.run(&format!("{MOVE} --timeout 400ms"));
+        assert_eq!((output.status.code(), controller.changes()), (Some(4), Vec::new()), "{}", stderr(&output));
+    }
+}
+
+/// From the moment the order is on the line, Ctrl-C is HOLD on: answered, unanswered, and under way.
+#[test]
+fn ctrl_c_stops_first() {
+    for (name, orders_are_answered, polls) in [("unanswered", false, 0), ("accepted", true, 0), ("under way", true, 3)]
+    {
+        let controller =
+            robot(move |asked| (asked.command == 0x8B && !orders_are_answered).then_some(Reaction::Silence));
+        let child = controller.start(&format!("{MOVE} --timeout 20s"));
+        controller.wait_for(|asked| asked.command == 0x8B);
+        for _ in 0..polls {
+            controller.wait_for(|asked| asked.command == 0x72);
+        }
+        interrupt(&child);
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{name}: {}", stderr(&output));
+        assert!(stderr(&output).contains("HOLD is on"), "{name}: {}", stderr(&output));
+        let last = controller.changes().pop().unwrap();
+        assert_eq!((last.command, last.instance, &last.data[..]), (0x83, 1, HOLD_ON), "{name}");
+    }
+}
+
+/// The stop is repeated until it is confirmed, whatever the options say, and another Ctrl-C does not end it.
+#[test]
+fn a_lost_stop_is_sent_again() {
+    let mut lost = 4;
+    let controller = robot(move |asked| {
+        lost -= i32::from(asked.command == 0x83);
+        (asked.command == 0x83 && lost >= 0).then_some(Reaction::Silence)
+    });
+    let child = controller.start(&format!("{MOVE} --timeout 300ms --retries 0"));
+    controller.wait_for(|asked| asked.command == 0x72);
+    interrupt(&child);
+    controller.wait_for(|asked| asked.command == 0x83);
+    interrupt(&child);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    assert!(stderr(&output).contains("stopping the robot") && stderr(&output).contains("HOLD is on"));
+    assert_eq!(controller.changes().iter().filter(|asked| asked.command == 0x83).count(), 5);
+}
+
+#[test]
+fn a_stop_that_fails_is_told() {
+    let controller = robot(|asked| (asked.command == 0x83).then_some(Reaction::Refuse(0x2100)));
+    let child = controller.start(MOVE);
+    controller.wait_for(|asked| asked.command == 0x72);
+    interrupt(&child);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    assert!(stderr(&output).contains("may still move") && stderr(&output).contains("emergency stop"));
+}
+
+#[test]
+fn on_interrupt_leave_sends_nothing_and_says_so() {
+    let controller = robot(|_| None);
+    let child = controller.start(&format!("{MOVE} --on-interrupt leave"));
+    controller.wait_for(|asked| asked.command == 0x72);
+    interrupt(&child);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    assert!(stderr(&output).contains("goes on"), "{}", stderr(&output));
+    assert_eq!(controller.changes().len(), 1);
+}
+
+/// What others set in motion is not stopped by a Ctrl-C before the own order left.
+#[test]
+fn ctrl_c_before_the_order_leaves_the_robot_alone() {
+    let controller = robot(|asked| (asked.command == 0x75).then_some(Reaction::Silence));
+    let child = controller.start(&format!("{MOVE} --timeout 20s"));
+    controller.wait_for(|asked| asked.command == 0x75);
+    interrupt(&child);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), controller.changes()), (Some(130), Vec::new()), "{}", stderr(&output));
+    assert!(stderr(&output).contains("nothing was sent"), "{}", stderr(&output));
+}
