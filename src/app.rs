@@ -45,8 +45,12 @@ fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
 }
 
 fn run(cli: Cli) -> Result<(), Stopped> {
-    let makes_inventory = matches!(&cli.command, Top::Common(Common::Robots(robots)) if robots.makes_inventory());
-    let mut run = prepare(cli.globals, makes_inventory)?;
+    let need = match &cli.command {
+        Top::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
+        Top::Common(common) if !common.is_about_robots() => Need::Nothing,
+        _ => Need::Inventory,
+    };
+    let mut run = prepare(cli.globals, need)?;
     if let Top::Common(Common::Status(_)) = cli.command {
         run.sources.widen();
     }
@@ -65,11 +69,31 @@ fn run(cli: Cli) -> Result<(), Stopped> {
     done
 }
 
-/// Flags, environment and inventory, read once. With `makes_inventory` a file that is named may be missing.
-fn prepare(globals: Globals, makes_inventory: bool) -> Result<Run, Failure> {
+/// What a command wants of inventory and environment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Need {
+    /// Nothing: what is wrong in them is no matter, and `help` must tell how to set it right.
+    Nothing,
+    /// The inventory; one that is named must be there.
+    Inventory,
+    /// The inventory, which is made if it is not there.
+    InventoryOrNone,
+}
+
+/// Flags, environment and inventory, read once.
+fn prepare(globals: Globals, need: Need) -> Result<Run, Failure> {
     let screen = screen(&globals);
     let filter = globals.jq.as_deref().map(Filter::new).transpose()?;
     let until = globals.until.as_deref().map(Filter::new).transpose()?;
+    let gate = Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt };
+    let repeat = Repeat { every: globals.watch, count: globals.count, until, within: globals.within };
+    let trace = globals.trace.clone();
+    let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need)? };
+    Ok(Run { screen, sources, gate, repeat, filter, trace })
+}
+
+/// Which robots, and their settings.
+fn sources(globals: Globals, need: Need) -> Result<Sources, Failure> {
     let selection = Selection {
         sim: globals.sim,
         target: globals.target,
@@ -83,7 +107,7 @@ fn prepare(globals: Globals, makes_inventory: bool) -> Result<Run, Failure> {
         Some(path) => Some(path),
         None => variable("ARMCTL_CONFIG", |path| Ok(path.into()))?,
     });
-    if let (Location::Named(path), true) = (&location, makes_inventory) {
+    if let (Location::Named(path), Need::InventoryOrNone) = (&location, need) {
         location = Location::Usual(path.clone());
     }
     let inventory = if selection.sim || selection.target.is_some() {
@@ -98,21 +122,14 @@ fn prepare(globals: Globals, makes_inventory: bool) -> Result<Run, Failure> {
         ..Options::default()
     };
     let environment = Options {
-        timeout: variable("ARMCTL_TIMEOUT", duration::parse)?,
+        timeout: variable("ARMCTL_TIMEOUT", duration::parse_some)?,
         retries: variable("ARMCTL_RETRIES", |number| {
             number.parse().map_err(|_| format!("'{number}' is no number of repetitions"))
         })?,
         encoding: variable("ARMCTL_ENCODING", |name| name.parse().map_err(|error| format!("{error}")))?,
         ..Options::default()
     };
-    Ok(Run {
-        screen,
-        sources: Sources { selection, flags, environment, inventory },
-        gate: Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt },
-        repeat: Repeat { every: globals.watch, count: globals.count, until, within: globals.within },
-        filter,
-        trace: globals.trace,
-    })
+    Ok(Sources { selection, flags, environment, inventory })
 }
 
 /// A variable of the environment; an empty one counts as not set, a wrong one is an error that names it.
@@ -147,11 +164,7 @@ fn tell(screen: &Screen, Stopped { failure, envelope, told }: Stopped) -> ExitCo
 
 /// What the parser has to say: help and version on stdout, mistakes on stderr with exit code 2.
 fn refuse(args: &[OsString], error: &clap::Error) -> ExitCode {
-    let has = |flag: &str| args.iter().any(|arg| arg == flag);
-    let is_json = has("--json")
-        || has("-ojson")
-        || has("--jq")
-        || args.windows(2).any(|pair| pair[0] == "-o" && pair[1] == "json");
+    let is_json = wants_json(args);
     let format = if is_json { Format::Json } else { Format::Table };
     let screen = Screen::new(format, ColorChoice::Auto, false, 0);
     let rendered = error.render();
@@ -177,9 +190,63 @@ fn refuse(args: &[OsString], error: &clap::Error) -> ExitCode {
     ExitCode::from(Kind::Usage.exit())
 }
 
+/// Whether a command line that could not be parsed asks for JSON, in any of the forms that flags have.
+fn wants_json(args: &[OsString]) -> bool {
+    let is_json = |format: &str| matches!(format.trim_start_matches('='), "json" | "jsonl");
+    let mut words = args.iter().skip(1).map(|arg| arg.to_str().unwrap_or_default()).take_while(|arg| *arg != "--");
+    while let Some(word) = words.next() {
+        let format = match word {
+            "--json" | "--jq" => return true,
+            "--format" => words.next(),
+            _ if word.starts_with("--jq=") => return true,
+            _ if word.starts_with("--") => word.strip_prefix("--format"),
+            // Short flags without a value may stand before the last one, whose value may be the next word.
+            _ => match word
+                .strip_prefix('-')
+                .and_then(|flags| flags.trim_start_matches(['q', 'v', 'y']).strip_prefix('o'))
+            {
+                Some("") => words.next(),
+                value => value,
+            },
+        };
+        if format.is_some_and(is_json) {
+            return true;
+        }
+    }
+    false
+}
+
 /// The family that was typed although the command line does not have it.
 fn absent_family(args: &[OsString]) -> Option<Family> {
     let first = args.iter().skip(1).find_map(|arg| arg.to_str()?.parse::<Family>().ok())?;
     let known = Cli::command().get_subcommands().any(|command| command.get_name() == first.name());
     (!known).then_some(first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn json_is_recognised_in_a_line_that_does_not_parse() {
+        let wants = |line: &str| wants_json(&line.split(' ').map(OsString::from).collect::<Vec<_>>());
+        for line in [
+            "armctl --json x",
+            "armctl x --jq .a",
+            "armctl x --jq=.a",
+            "armctl x -o json",
+            "armctl x -ojsonl",
+            "armctl x -o=json",
+            "armctl x -qojson",
+            "armctl x -vyo json",
+            "armctl --format jsonl x",
+            "armctl --format=json x",
+        ] {
+            assert!(wants(line), "{line}");
+        }
+        for line in ["armctl x", "armctl x -o csv", "armctl x --format=table", "armctl say -- --json", "armctl x json"]
+        {
+            assert!(!wants(line), "{line}");
+        }
+    }
 }

@@ -122,7 +122,7 @@ pub struct Globals {
     pub on_interrupt: OnInterrupt,
 
     /// Longest wait for an answer (ARMCTL_TIMEOUT)
-    #[arg(long, global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse, help_heading = "Link")]
+    #[arg(long, global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse_some, help_heading = "Link")]
     pub timeout: Option<Duration>,
     /// Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)
     #[arg(long, global = true, hide_short_help = true, value_name = "N", help_heading = "Link")]
@@ -132,7 +132,7 @@ pub struct Globals {
     pub encoding: Option<Encoding>,
 
     /// Repeat a read, every second or every INTERVAL
-    #[arg(long, global = true, hide_short_help = true, value_name = "INTERVAL", num_args = 0..=1, default_missing_value = "1s", value_parser = duration::parse, help_heading = "Repeat")]
+    #[arg(long, global = true, hide_short_help = true, value_name = "INTERVAL", num_args = 0..=1, default_missing_value = "1s", value_parser = duration::parse_some, help_heading = "Repeat")]
     pub watch: Option<Duration>,
     /// Stop after so many reads
     #[arg(long, global = true, hide_short_help = true, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), help_heading = "Repeat")]

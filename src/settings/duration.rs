@@ -30,6 +30,14 @@ pub fn parse(text: &str) -> Result<Duration, String> {
     Ok(duration)
 }
 
+/// Reads a duration that must not be 0, as nothing answers in no time.
+pub fn parse_some(text: &str) -> Result<Duration, String> {
+    match parse(text)? {
+        Duration::ZERO => Err(format!("'{text}' leaves no time at all; write 500ms, 3s, 2m or 1h")),
+        duration => Ok(duration),
+    }
+}
+
 /// The shortest exact form, the inverse of [`parse`].
 pub fn display(duration: Duration) -> String {
     let ms = duration.as_millis();
@@ -42,7 +50,7 @@ pub fn display(duration: Duration) -> String {
     }
 }
 
-/// As a field of a TOML file: a string as above.
+/// As a field of a TOML file: a string as above, not 0.
 pub(super) mod field {
     use serde::{Deserialize, Deserializer, de::Error};
 
@@ -50,7 +58,7 @@ pub(super) mod field {
 
     pub(in super::super) fn deserialize<'de, D: Deserializer<'de>>(source: D) -> Result<Option<Duration>, D::Error> {
         let text = String::deserialize(source)?;
-        super::parse(&text).map(Some).map_err(D::Error::custom)
+        super::parse_some(&text).map(Some).map_err(D::Error::custom)
     }
 }
 
@@ -70,6 +78,9 @@ mod tests {
     fn junk_is_named() {
         for text in ["", "s", "-1s", "3 s", "1d", "1e3", "25h", "99999999999999999999s"] {
             assert!(parse(text).is_err(), "{text}");
+        }
+        for text in ["0", "0ms", "0.0"] {
+            assert!(parse_some(text).unwrap_err().contains("no time"), "{text}");
         }
     }
 }

@@ -41,6 +41,11 @@ pub enum Common {
 }
 
 impl Common {
+    /// Whether it asks or lists robots, and so needs the inventory.
+    pub fn is_about_robots(&self) -> bool {
+        matches!(self, Self::Status(_) | Self::Robots(_))
+    }
+
     /// Does it.
     pub async fn run(self, run: &Run) -> Result<(), Stopped> {
         match self {

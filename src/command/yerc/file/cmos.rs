@@ -37,7 +37,7 @@ pub struct Cmos {
     #[arg(long)]
     start_only: bool,
     /// Longest wait for the first answer
-    #[arg(long, value_name = "TIME", value_parser = duration::parse, default_value = "15m")]
+    #[arg(long, value_name = "TIME", value_parser = duration::parse_some, default_value = "15m")]
     wait: Duration,
     /// Replace the local file if it exists
     #[arg(long)]
