@@ -104,11 +104,15 @@ impl Run {
         if risk == Risk::Motion {
             // From here on Ctrl-C, at a question too, ends in a message and an exit code instead of a killed process.
             catch_interrupts();
+            for robot in &robots {
+                self.foresee(command, robot).await.map_err(|failure| Stopped::at(robot, command, failure))?;
+            }
         }
         for robot in &robots {
             let passed = self.gate.pass(&self.screen, robot, risk, &command.intent());
             passed.map_err(|failure| Stopped::at(robot, command, failure))?;
         }
+        self.begin_trace()?;
         match &robots[..] {
             [robot] if !selection.is_plural() => self.one(command, robot).await,
             robots => self.many(command, robots).await,
@@ -186,18 +190,21 @@ impl Run {
 
     /// Runs on several robots at a time, over a connection each, and reports in the order they were named.
     async fn many<F: Family>(&self, command: &dyn AnyCommand<F>, robots: &[Robot]) -> Result<(), Stopped> {
-        if robots.len() > 1 && self.trace.as_deref().is_some_and(|path| path != Path::new("-")) {
-            return Err(Failure::usage("one capture file cannot hold several robots")
-                .hint("trace one robot at a time, or use --trace - for text")
-                .into());
+        if self.gate.dry_run {
+            let rehearsals = stream::iter(robots).map(|robot| self.once(command, robot)).buffered(PARALLEL);
+            let outcomes: Vec<Outcome> = rehearsals.collect().await;
+            self.print_many(command.id(), robots, &outcomes, Place::First)?;
+            return self.verdict(&outcomes);
         }
         let connected = stream::iter(robots).map(|robot| self.connect(command, robot)).buffered(PARALLEL);
         let mut links: Vec<Result<F::Link, Failure>> = connected.collect().await;
         let verdict = self.many_over(command, robots, &mut links).await;
+        let mut closed = Ok(());
         for link in links.into_iter().flatten() {
-            F::close(link, &self.screen).await?;
+            closed = closed.and(F::close(link, &self.screen).await);
         }
-        verdict
+        verdict?;
+        Ok(closed?)
     }
 
     async fn many_over<F: Family>(
@@ -215,12 +222,9 @@ impl Run {
                 }
             });
             let outcomes: Vec<Outcome> = attempts.buffered(PARALLEL).collect().await;
-            let envelopes = robots.iter().zip(&outcomes).map(|(robot, outcome)| {
-                enveloped(robot, command.id(), outcome.as_ref().map(AsRef::as_ref).map_err(Clone::clone))
-            });
-            let envelopes: Vec<Envelope> = envelopes.collect::<Result<_, _>>()?;
-            self.print_many(robots, &outcomes, &envelopes, &rounds)?;
-            if !self.repeat.is_wanted() || self.gate.dry_run {
+            let place = if rounds.is_first() { Place::First } else { Place::Next };
+            let envelopes = self.print_many(command.id(), robots, &outcomes, place)?;
+            if !self.repeat.is_wanted() {
                 return self.verdict(&outcomes);
             }
             if rounds.is_met(&envelopes)? {
@@ -233,18 +237,26 @@ impl Run {
         }
     }
 
+    /// Writes what several robots reported, and says it as envelopes.
     fn print_many(
         &self,
+        id: &str,
         robots: &[Robot],
         outcomes: &[Outcome],
-        envelopes: &[Envelope],
-        rounds: &Rounds<'_>,
-    ) -> Result<(), Failure> {
+        place: Place<'_>,
+    ) -> Result<Vec<Envelope>, Failure> {
+        let envelopes = robots
+            .iter()
+            .zip(outcomes)
+            .map(|(robot, outcome)| enveloped(robot, id, outcome.as_ref().map(AsRef::as_ref).map_err(Clone::clone)));
+        let envelopes: Vec<Envelope> = envelopes.collect::<Result<_, _>>()?;
         if !self.is_for_people() {
             if self.screen.format == Format::Jsonl {
-                return envelopes.iter().try_for_each(|envelope| self.emit(&timed(envelope.clone())));
+                envelopes.iter().try_for_each(|envelope| self.emit(&timed(envelope.clone())))?;
+            } else {
+                self.emit(&envelopes)?;
             }
-            return self.emit(&envelopes);
+            return Ok(envelopes);
         }
         let mut views = Vec::new();
         for (robot, outcome) in robots.iter().zip(outcomes) {
@@ -260,7 +272,8 @@ impl Run {
                 }
             }
         }
-        self.show_many(&views, if rounds.is_first() { Place::First } else { Place::Next })
+        self.show_many(&views, place)?;
+        Ok(envelopes)
     }
 
     /// What the outcomes of several robots come to.
@@ -280,14 +293,21 @@ impl Run {
 
     /// One connection, one run.
     async fn once<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Outcome {
+        if self.gate.dry_run {
+            let frames = self.rehearse(command, robot, &self.screen).await?;
+            return Ok(Box::new(Rehearsal { frames }));
+        }
         let mut link = self.connect(command, robot).await?;
         let outcome = self.attempt(command, robot, &mut link).await;
-        F::close(link, &self.screen).await?;
-        outcome
+        // What became of the command is worth more than what became of the record of it.
+        let closed = F::close(link, &self.screen).await;
+        let report = outcome?;
+        closed.map_err(|failure| Failure { message: format!("it was done, but {}", failure.message), ..failure })?;
+        Ok(report)
     }
 
     async fn connect<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<F::Link, Failure> {
-        let access = Access { granted: command.risk(), dry_run: self.gate.dry_run, trace: self.trace.clone() };
+        let access = Access { granted: command.risk(), dry_run: false, trace: self.trace.clone() };
         interruptible(F::connect(robot, access, &self.screen)).await?
     }
 
@@ -295,17 +315,6 @@ impl Run {
     async fn attempt<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot, link: &mut F::Link) -> Outcome {
         let several = self.sources.selection.is_plural();
         let context = Context { robot, link: &mut *link, screen: &self.screen, several };
-        if self.gate.dry_run {
-            // Such a link only takes notes; the command gets as far as it can without an answer.
-            let noted = {
-                let mut run = command.run(context);
-                poll_fn(|task| Poll::Ready(run.as_mut().poll(task))).await
-            };
-            return match noted {
-                Poll::Ready(Err(failure)) => Err(failure),
-                Poll::Ready(Ok(_)) | Poll::Pending => Ok(Box::new(Rehearsal { frames: F::rehearsed(link) })),
-            };
-        }
         match interruptible(command.run(context)).await {
             Ok(outcome) => outcome,
             Err(_) if command.risk() == Risk::Motion && self.gate.on_interrupt == OnInterrupt::Stop => {
@@ -320,6 +329,45 @@ impl Run {
                 ..interrupt
             }),
             Err(interrupt) => Err(interrupt),
+        }
+    }
+
+    /// What `command` would send: the link only takes notes, and the command gets as far as it can without an answer.
+    async fn rehearse<F: Family>(
+        &self,
+        command: &dyn AnyCommand<F>,
+        robot: &Robot,
+        screen: &Screen,
+    ) -> Result<Vec<Value>, Failure> {
+        let access = Access { granted: command.risk(), dry_run: true, trace: self.trace.clone() };
+        let mut link = F::connect(robot, access, screen).await?;
+        let noted = {
+            let several = self.sources.selection.is_plural();
+            let mut run = command.run(Context { robot, link: &mut link, screen, several });
+            poll_fn(|task| Poll::Ready(run.as_mut().poll(task))).await
+        };
+        match noted {
+            Poll::Ready(Err(failure)) => Err(failure),
+            Poll::Ready(Ok(_)) | Poll::Pending => Ok(F::rehearsed(&mut link)),
+        }
+    }
+
+    /// Finds before anybody is asked what this controller's model cannot do: nobody should clear a cell for a mistyped
+    /// command. Simulators ask nobody, and may be of another model than their settings say.
+    async fn foresee<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Failure> {
+        if self.gate.dry_run || robot.target.value.is_simulated() {
+            return Ok(());
+        }
+        self.rehearse(command, robot, &self.screen.silenced()).await.map(|_| ())
+    }
+
+    /// Empties the file of `--trace`, to which every connection of this command then appends.
+    fn begin_trace(&self) -> Result<(), Failure> {
+        match self.trace.as_deref() {
+            Some(path) if path != Path::new("-") && !self.gate.dry_run => {
+                std::fs::File::create(path).map(|_| ()).map_err(|error| Failure::io(path.display(), &error))
+            }
+            _ => Ok(()),
         }
     }
 

@@ -58,6 +58,12 @@ impl Screen {
         Self { format, quiet, verbosity, color }
     }
 
+    /// The same, but silent about everything that is not an error.
+    #[must_use]
+    pub fn silenced(self) -> Self {
+        Self { quiet: true, verbosity: 0, ..self }
+    }
+
     /// Whether errors are JSON too.
     pub fn is_json(&self) -> bool {
         matches!(self.format, Format::Json | Format::Jsonl)

@@ -3,8 +3,8 @@
 //! Datagrams are wrapped in made-up IPv4 or IPv6 and UDP headers (link type RAW), with the real addresses where they
 //! are known, so that a dissector for the port finds them.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::fs::{File, OpenOptions};
+use std::io::{self, Write};
 use std::net::{IpAddr, SocketAddr};
 use std::path::Path;
 use std::time::Duration;
@@ -27,16 +27,17 @@ const INTERFACE: u32 = 1;
 const ENHANCED_PACKET: u32 = 6;
 const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
 
-/// An open capture file.
+/// An open capture file. Every block is written at once and whole, so that several connections can share a file, and
+/// that what was recorded is there however the process ends.
 #[derive(Debug)]
-pub struct Capture<W: Write = BufWriter<File>> {
+pub struct Capture<W: Write = File> {
     out: W,
 }
 
 impl Capture {
-    /// Starts a file; one that exists is replaced, as by any capture tool.
-    pub fn create(path: &Path) -> io::Result<Self> {
-        Self::new(BufWriter::new(File::create(path)?))
+    /// Starts a section at the end of a file, which is made if it is not there. A file may have any number of them.
+    pub fn append(path: &Path) -> io::Result<Self> {
+        Self::new(OpenOptions::new().append(true).create(true).open(path)?)
     }
 }
 
@@ -48,12 +49,13 @@ impl<W: Write> Capture<W> {
         section.extend(1u16.to_le_bytes());
         section.extend(0u16.to_le_bytes());
         section.extend(u64::MAX.to_le_bytes());
-        out.write_all(&block(SECTION_HEADER, section))?;
+        let mut head = block(SECTION_HEADER, section);
         let mut interface = Vec::new();
         interface.extend(LINKTYPE_RAW.to_le_bytes());
         interface.extend(0u16.to_le_bytes());
         interface.extend(0u32.to_le_bytes());
-        out.write_all(&block(INTERFACE, interface))?;
+        head.extend(block(INTERFACE, interface));
+        out.write_all(&head)?;
         Ok(Self { out })
     }
 
@@ -71,11 +73,6 @@ impl<W: Write> Capture<W> {
         body.extend(len);
         body.extend(&packet);
         self.out.write_all(&block(ENHANCED_PACKET, body))
-    }
-
-    /// Writes what is buffered.
-    pub fn flush(&mut self) -> io::Result<()> {
-        self.out.flush()
     }
 }
 

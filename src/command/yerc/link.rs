@@ -8,6 +8,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 use tokio::time::{Instant, timeout_at};
 
+pub use super::refusal::Refusal;
 use super::simulated::{self, Simulated, channel};
 use super::trace::Trace;
 use crate::command::{Access, Family};
@@ -20,8 +21,7 @@ use crate::controller::yerc::session::{
     Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd,
 };
 use crate::controller::yerc::simulator::Simulator;
-use crate::controller::yerc::status;
-use crate::controller::yerc::wire::{Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
+use crate::controller::yerc::wire::{Division, LAST_BLOCK, MAX_DATA, RequestFrame};
 use crate::controller::{Risk, Session, Step};
 use crate::failure::{Failure, Kind, plain};
 use crate::output::Screen;
@@ -96,19 +96,6 @@ struct Totals {
     received: u64,
     waited: Duration,
     exchanges: u32,
-}
-
-/// A controller's "no".
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Refusal(pub Status);
-
-impl From<Refusal> for Failure {
-    fn from(Refusal(status): Refusal) -> Self {
-        let explanation = status::explain(status);
-        Failure::new(Kind::Refused, format!("the controller refused: {}. {}", explanation.name, explanation.cause))
-            .hint(explanation.remedy.into_owned())
-            .code(explanation.code_text)
-    }
 }
 
 impl Family for Yerc {
@@ -203,7 +190,7 @@ enum Want<'a, S> {
 impl Link {
     /// Asks one question; a refusal is a failure.
     pub async fn ask<Q: Query>(&mut self, query: &Q) -> Result<Q::Answer, Failure> {
-        Ok(self.try_ask(query).await??)
+        self.try_ask(query).await?.map_err(|refusal| refusal.of(query.risk()))
     }
 
     /// Asks one question; a refusal is an answer.
@@ -334,7 +321,7 @@ impl Link {
         let frame = request.frame(0);
         let frame = RequestFrame::parse(&frame).map_err(|error| Failure::local(error.to_string()))?;
         let mut session = Upload::new(&frame, self.policy, &self.ids);
-        let end = self
+        let driven = self
             .drive(Division::File, &mut session, |want| {
                 if let Want::Feed(session) = want {
                     let piece = give()?;
@@ -342,13 +329,27 @@ impl Link {
                 }
                 Ok(())
             })
-            .await?;
+            .await;
+        let end = driven.map_err(|failure| Self::cut_off(failure, &session))?;
         self.totals.exchanges += 1;
         self.heard(session.counters());
         match end {
             UploadEnd::NoAnswer(counters) => Err(self.silence(counters)),
             end => Ok(end),
         }
+    }
+
+    /// A failure on this side in the middle of an upload; after the first block the controller may hold a part or all.
+    fn cut_off(failure: Failure, upload: &Upload) -> Failure {
+        let sent = upload.sent();
+        if sent == 0 {
+            return failure;
+        }
+        let message =
+            format!("{}; {sent} bytes had been sent: the file may be there, whole or in part", failure.message);
+        let kind = if failure.kind == Kind::NoAnswer { Kind::OutcomeUnknown } else { failure.kind };
+        Failure { kind, message, ..failure }
+            .hint("compare it with `yerc file diff` before anybody runs it, or send it again")
     }
 
     /// On a line that loses frames, waits a moment for the last block to come again, which means that its ACK got lost:
@@ -497,7 +498,8 @@ impl Link {
             Transport::Notes(_) => Ok(()),
         };
         sent.map_err(|error| self.broken(channel, &error))?;
-        self.trace.record(Direction::Sent, self.transport.ends(channel), bytes)
+        self.trace.record(Direction::Sent, self.transport.ends(channel), bytes);
+        Ok(())
     }
 
     /// Waits for a datagram and puts it into the buffer; `None` if none came until then.
@@ -510,7 +512,7 @@ impl Link {
         };
         let Some(len) = received.map_err(|error| self.broken(channel, &error))? else { return Ok(None) };
         self.totals.received += 1;
-        self.trace.record(Direction::Received, self.transport.ends(channel), &self.buffer[..len])?;
+        self.trace.record(Direction::Received, self.transport.ends(channel), &self.buffer[..len]);
         Ok(Some(len))
     }
 

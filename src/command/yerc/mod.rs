@@ -14,6 +14,7 @@ mod orders;
 pub mod overview;
 mod position;
 mod raw;
+mod refusal;
 mod register;
 pub mod simulated;
 mod status;

@@ -9,7 +9,7 @@ use crate::controller::text::hex;
 use crate::controller::yerc::describe::{Sender, summary};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::wire::RequestFrame;
-use crate::failure::Failure;
+use crate::failure::{Failure, plain};
 use crate::output::Screen;
 use crate::transport::tap::{Capture, Direction};
 
@@ -20,6 +20,8 @@ pub struct Trace {
     /// Text on stderr: 0 nothing, 1 a line a frame, 2 the bytes too.
     text: u8,
     capture: Option<Capture>,
+    /// Why the record is not whole.
+    broken: Option<Failure>,
     /// The last request: an answer does not repeat what it is about.
     asked: Option<Request>,
 }
@@ -34,35 +36,34 @@ impl Trace {
                 None
             }
             Some(path) if !access.dry_run => {
-                Some(Capture::create(path).map_err(|error| Failure::io(path.display(), &error))?)
+                Some(Capture::append(path).map_err(|error| Failure::io(path.display(), &error))?)
             }
             _ => None,
         };
-        Ok(Self { screen: *screen, text, capture, asked: None })
+        Ok(Self { screen: *screen, text, capture, broken: None, asked: None })
     }
 
-    /// Records a datagram between the two addresses, own one first.
-    pub fn record(
-        &mut self,
-        direction: Direction,
-        ends: (SocketAddr, SocketAddr),
-        bytes: &[u8],
-    ) -> Result<(), Failure> {
+    /// Records a datagram between the two addresses, own one first. A full disk ends the record, not the conversation:
+    /// a robot may be moving.
+    pub fn record(&mut self, direction: Direction, ends: (SocketAddr, SocketAddr), bytes: &[u8]) {
         if self.text > 0 {
             self.screen.note(&self.line(direction, bytes));
         }
         if direction == Direction::Sent && self.text > 0 {
             self.asked = RequestFrame::parse(bytes).ok().map(Request::from);
         }
-        let Some(capture) = &mut self.capture else { return Ok(()) };
+        let Some(capture) = &mut self.capture else { return };
         let time = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let (from, to) = if direction == Direction::Sent { ends } else { (ends.1, ends.0) };
-        capture.datagram(time, from, to, bytes).map_err(|error| Failure::io("trace", &error))
+        if let Err(error) = capture.datagram(time, from, to, bytes) {
+            self.capture = None;
+            self.broken = Some(Failure::local(format!("the record of --trace is not whole: {}", plain(&error))));
+        }
     }
 
-    /// Writes what is buffered.
+    /// Tells whether the record is whole.
     pub fn finish(&mut self) -> Result<(), Failure> {
-        self.capture.as_mut().map_or(Ok(()), |capture| capture.flush().map_err(|error| Failure::io("trace", &error)))
+        self.broken.take().map_or(Ok(()), Err)
     }
 
     fn line(&self, direction: Direction, bytes: &[u8]) -> String {

@@ -47,7 +47,8 @@ pub async fn write_all<O: Order>(link: &mut Link, screen: &Screen, orders: &[O])
 
 /// The failure, and what became of each order; `done` of them were confirmed, the next one failed.
 fn account<O: Order>(failure: Failure, orders: &[O], done: usize) -> Failure {
-    let refused = failure.kind == Kind::Refused;
+    // Where nobody listens, nothing was done either.
+    let refused = matches!(failure.kind, Kind::Refused | Kind::NoAnswer);
     if refused && orders.len() == 1 {
         return failure;
     }
@@ -105,6 +106,8 @@ mod tests {
             message(&refused, 0),
             "the controller refused: no. Because; nothing was written; not written: register 0..2, 10, 20..21"
         );
+        let closed = Failure::new(Kind::NoAnswer, "nothing listens");
+        assert_eq!(message(&closed, 1), "nothing listens; written: register 0..2; not written: register 10, 20..21");
         let lost = Failure::new(Kind::OutcomeUnknown, "no answer");
         assert_eq!(
             message(&lost, 1),

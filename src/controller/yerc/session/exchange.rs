@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::super::wire::{AnswerFrame, RequestFrame, Status};
-use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy};
+use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy, is_damaged};
 use crate::controller::{Now, Session, Step};
 
 /// What a controller answered. A refusal is an answer.
@@ -38,9 +38,9 @@ pub struct Exchange {
     repeatable: bool,
     started: Option<Now>,
     attempts: u32,
-    /// The last busy refusal.
+    /// The last refusal after which the request goes out again.
     busy: Option<Reply>,
-    /// Whether the last copy sent was refused as busy and the next one is due later.
+    /// Whether the last copy sent was so refused and the next one is due later.
     pausing: bool,
     ended: Option<Ended>,
 }
@@ -136,7 +136,8 @@ impl Session for Exchange {
         if self.ended.is_some() {
             return count(&mut self.inbox.counters.duplicated);
         }
-        if !is_busy(answer.status) {
+        let damaged = self.repeatable && is_damaged(answer.status);
+        if !damaged && !is_busy(answer.status) {
             // Also under a former id: then the network doubled the request, and the other copy was carried out.
             self.ended = Some(Ended::Answered(self.reply(now, &answer)));
         } else if answer.id != self.inbox.id {
@@ -144,7 +145,8 @@ impl Session for Exchange {
         } else if self.pausing {
             count(&mut self.inbox.counters.duplicated);
         } else {
-            count(&mut self.inbox.counters.busy);
+            let counters = &mut self.inbox.counters;
+            count(if damaged { &mut counters.damaged } else { &mut counters.busy });
             let reply = self.reply(now, &answer);
             if self.pace.pause(now) {
                 self.pausing = true;
@@ -271,6 +273,28 @@ mod tests {
         let Ended::Answered(reply) = done(&mut session, ms(120)) else { panic!("not answered") };
         assert_eq!((reply.status, reply.attempts), (Status::OK, 2));
         assert_eq!(session.counters(), Counters { busy: 1, duplicated: 1, late: 1, ..Counters::default() });
+    }
+
+    #[test]
+    fn a_read_that_was_damaged_on_its_way_is_asked_again_and_a_change_is_not() {
+        for added in [0xE4A5, 0xE4A6, 0xE4A7] {
+            let status = Status::refused(added);
+            let mut session = start(&READ, true);
+            sent(&mut session, ms(0));
+            session.handle(ms(5), &answer(&READ, 0, status, &[]));
+            assert_eq!(session.poll(ms(5)), Step::Wait(ms(105)));
+            assert_eq!(sent(&mut session, ms(105))[11], 1);
+            session.handle(ms(110), &answer(&READ, 1, Status::OK, &[7]));
+            let Ended::Answered(reply) = done(&mut session, ms(110)) else { panic!("not answered") };
+            assert_eq!((reply.status, reply.data), (Status::OK, vec![7]));
+            assert_eq!(session.counters(), Counters { damaged: 1, ..Counters::default() });
+
+            let mut session = start(&START, false);
+            sent(&mut session, ms(0));
+            session.handle(ms(5), &answer(&START, 0, status, &[]));
+            let Ended::Answered(reply) = done(&mut session, ms(5)) else { panic!("not answered") };
+            assert_eq!(reply.status, status);
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //!
 //! - **Reads repeat, changes do not.** A request that changes state leaves once; without an answer its outcome is
 //!   unknown, and is said to be. The one exception is a busy refusal, which states that nothing was done.
+//! - **A read that was damaged on its way goes out again** as one that was lost does.
 //! - **A busy refusal is waited out under a new id.** A second copy of the old refusal can then never pass for a refusal
 //!   of the request that followed it, which may well have been carried out.
 //! - **A transfer keeps one id** and is stop-and-wait. Only silence makes a session send its last frame again, never a
@@ -40,6 +41,11 @@ const LATE_WINDOW: u8 = 32;
 /// Whether a controller refused only because it was busy.
 pub fn is_busy(result: Status) -> bool {
     !result.is_ok() && status::is_busy(result.added)
+}
+
+/// Whether a controller refused a frame that was damaged on its way: size of the header, identifier, stated size (DX 5).
+pub fn is_damaged(result: Status) -> bool {
+    !result.is_ok() && matches!(result.added, 0xE4A5..=0xE4A7)
 }
 
 /// How long to wait and how often to try.
@@ -97,10 +103,12 @@ pub struct Counters {
     pub repeats: u32,
     /// Busy refusals.
     pub busy: u32,
+    /// Refusals of a request that was damaged on its way.
+    pub damaged: u32,
 }
 
 impl Counters {
-    fn named(&self) -> [(u32, &'static str); 8] {
+    fn named(&self) -> [(u32, &'static str); 9] {
         [
             (self.late, "late"),
             (self.foreign, "foreign"),
@@ -110,6 +118,7 @@ impl Counters {
             (self.garbage, "garbage"),
             (self.repeats, "repeated"),
             (self.busy, "busy"),
+            (self.damaged, "damaged on the way"),
         ]
     }
 

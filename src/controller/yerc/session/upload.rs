@@ -134,6 +134,11 @@ impl Upload {
         self.inbox.counters
     }
 
+    /// Bytes that have left so far.
+    pub fn sent(&self) -> u64 {
+        self.sent
+    }
+
     /// Bytes the controller has acknowledged so far.
     pub fn taken(&self) -> u64 {
         self.taken
