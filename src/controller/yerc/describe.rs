@@ -5,7 +5,7 @@ mod data;
 use super::Model;
 use super::payload::PositionKind;
 use super::request::Request;
-use super::table::{Action, BATCH_BACKUP_PATH, Row};
+use super::table::{Action, BATCH_BACKUP_PATH, Row, service};
 use super::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, RequestFrame, Status, WireError};
 use crate::controller::text::hex;
 
@@ -313,6 +313,8 @@ impl<'a> Notes<'a> {
         self.take(1, "added status size", |bytes| format!("{} words of 16 bits", little(bytes)));
         self.take(1, "padding", |_| String::new());
         self.take(4, "added status", |bytes| format!("{:04X}", little(bytes)));
+        let is_file = self.frame.get(9) == Some(&2);
+        let answered = self.frame.get(24).map(|byte| byte.wrapping_sub(ANSWER_BIT));
         let refused = self.frame.get(25).is_some_and(|&status| status != 0);
         match (row, request) {
             (Some(row), Some(request)) if !refused && row.division == Division::Robot => {
@@ -323,6 +325,11 @@ impl<'a> Notes<'a> {
                 self.take_rest("data", |_| "more than the command answers".to_owned());
             }
             (Some(_), _) => self.take_rest("file data", |bytes| format!("{} bytes", bytes.len())),
+            // The file server's answers say by their service what they carry.
+            _ if is_file && answered == Some(service::LIST) => {
+                self.take_rest("names", |bytes| format!("\"{}\"", bytes.escape_ascii()));
+            }
+            _ if is_file => self.take_rest("file data", |bytes| format!("{} bytes", bytes.len())),
             _ => self.take_rest("data", |_| "depends on the command".to_owned()),
         }
         let damage = AnswerFrame::parse(self.frame).err().map(|error| error.to_string());
@@ -345,7 +352,7 @@ fn attribute_words(row: &Row, allowed: bool, request: &Request) -> String {
     }
     let named = row.service(request.service).map(|service| row.fields_of(service, request.attribute));
     match named {
-        Some([field]) => format!("{}: {}", request.attribute, field.name),
+        Some([field]) if request.attribute > 0 => format!("{}: {}", request.attribute, field.name),
         _ => request.attribute.to_string(),
     }
 }
@@ -422,6 +429,30 @@ mod tests {
             summary(&frame, Sender::Controller, Some(&ask)),
             "#1 answer to 0x75 robot position read: ok, 24 bytes"
         );
+    }
+
+    #[test]
+    fn the_file_server_says_by_its_service_what_it_sends() {
+        let answer = |service: u8, data: &[u8]| {
+            let (block, status) = (1 | LAST_BLOCK, Status::OK);
+            let frame = AnswerFrame { division: Division::File, ack: true, id: 8, block, service, status, data }.emit();
+            describe(&frame, Sender::Controller, None)
+        };
+        assert_eq!(meaning(&answer(0xB2, b"1.JBI\r\n22.JBI\r\n"), "names"), r#""1.JBI\r\n22.JBI\r\n""#);
+        assert_eq!(meaning(&answer(0x96, b"NOP\r\n"), "file data"), "5 bytes");
+    }
+
+    #[test]
+    fn a_count_that_is_not_allowed_shows() {
+        let count = |command, count: u8| {
+            let frame = request(command, 0, 0, 0x33, &[count, 0, 0, 0]).frame(0);
+            let description = describe(&frame, Sender::Client, None);
+            assert_eq!(meaning(&description, "attribute"), "0", "no field is named by 0");
+            meaning(&description, "count").to_owned()
+        };
+        assert_eq!(count(0x304, 118), "118");
+        assert_eq!(count(0x304, 119), "119, not allowed: 1 to 118");
+        assert_eq!(count(0x302, 3), "3, not allowed: even counts only");
     }
 
     #[test]

@@ -10,8 +10,14 @@ impl Notes<'_> {
     /// Notes the data of a request that writes, or of an answer to one that reads.
     pub(super) fn payload(&mut self, row: &Row, request: &Request) {
         let Some(service) = row.service(request.service) else { return };
-        if row.plural.is_some() {
-            self.take(4, "count", |bytes| little(bytes).to_string());
+        if let Some(plural) = row.plural {
+            self.take(4, "count", |bytes| match little(bytes) {
+                count if count == 0 || count > u64::from(plural.max) => {
+                    format!("{count}, not allowed: 1 to {}", plural.max)
+                }
+                count if plural.even && count % 2 == 1 => format!("{count}, not allowed: even counts only"),
+                count => count.to_string(),
+            });
             let mut number = u32::from(request.instance);
             let asks = service.action == Action::Read && self.is_request();
             while self.left() > 0 && !asks && self.problem.is_none() {
