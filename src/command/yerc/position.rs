@@ -113,11 +113,11 @@ struct CartesianPosition {
     /// A word for each bit of the form.
     form: Vec<&'static str>,
     /// The word of the form as received.
-    form_raw: u32,
+    form_code: u32,
     /// A word for each bit of the extended form.
     extended_form: Vec<&'static str>,
     /// The word of the extended form as received.
-    extended_form_raw: u32,
+    extended_form_code: u32,
     #[serde(skip)]
     axes: Axes,
 }
@@ -169,9 +169,9 @@ impl From<&payload::Position> for CartesianPosition {
             tool: position.tool,
             user: position.user,
             form: position.form.words().collect(),
-            form_raw: position.form.0,
+            form_code: position.form.0,
             extended_form: position.extended.words().collect(),
-            extended_form_raw: position.extended.0,
+            extended_form_code: position.extended.0,
             axes: position.axes,
         }
     }
@@ -272,9 +272,9 @@ impl CartesianPosition {
             .collect();
         rows.push(["tool".into(), self.tool.into(), "".into()]);
         rows.push(["user".into(), self.user.into(), "".into()]);
-        rows.push(["form".into(), short(&self.form, self.form_raw, 3).into(), "".into()]);
-        if self.extended_form_raw != 0 {
-            let words = short(&self.extended_form, self.extended_form_raw, 0);
+        rows.push(["form".into(), short(&self.form, self.form_code, 3).into(), "".into()]);
+        if self.extended_form_code != 0 {
+            let words = short(&self.extended_form, self.extended_form_code, 0);
             rows.push(["extended".into(), words.into(), "".into()]);
         }
         rows
@@ -367,7 +367,7 @@ mod tests {
         assert_eq!(json["base"]["y_mm"].to_string(), "-0.001");
         assert_eq!(json["base"]["rz_deg"].to_string(), "-0.0001");
         assert_eq!(json["base"]["form"][2], "noflip");
-        assert_eq!(json["base"]["form_raw"], 4);
+        assert_eq!(json["base"]["form_code"], 4);
         assert!(json["base"].get("re_deg").is_none());
     }
 
