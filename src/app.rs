@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory as _, Parser as _};
+use clap::{CommandFactory as _, FromArgMatches as _};
 
 use crate::cli::{Cli, Globals, Top};
 use crate::command::Noun as _;
@@ -24,7 +24,7 @@ use crate::settings::{Selection, Sources};
 /// Runs a command line, the program's name included, and says how the process ends.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let args = with_family(args.into_iter().collect());
-    let cli = match Cli::try_parse_from(&args) {
+    let cli = match parse(&args) {
         Ok(cli) => cli,
         Err(error) => return refuse(&args, &error),
     };
@@ -33,6 +33,17 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(stopped) => tell(&screen, stopped),
     }
+}
+
+fn parse(args: &[OsString]) -> Result<Cli, clap::Error> {
+    let mut command = Cli::command();
+    let parsed = command.try_get_matches_from_mut(args);
+    let cli = parsed.and_then(|mut matches| Cli::from_arg_matches_mut(&mut matches));
+    let cli = cli.map_err(|error| error.format(&mut command));
+    // It holds some thousand parts. The process is short, and their memory goes with it: taking them apart one by one
+    // would be a quarter of all the work that a short command is.
+    std::mem::forget(command);
+    cli
 }
 
 /// Started under the name of a family (a link to the binary), the program is that subcommand.

@@ -46,7 +46,7 @@ struct Effort {
 }
 
 const FULL: Effort =
-    Effort { status_rounds: 40, exchanges: 2_000, download_rounds: 15, download: 16 * MIB, starts: 200, big: 64 * MIB };
+    Effort { status_rounds: 200, exchanges: 400, download_rounds: 15, download: 16 * MIB, starts: 200, big: 64 * MIB };
 
 const QUICK: Effort =
     Effort { status_rounds: 3, exchanges: 200, download_rounds: 3, download: MIB / 2, starts: 5, big: 2 * MIB };
