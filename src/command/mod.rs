@@ -11,6 +11,7 @@ pub mod yerc;
 use std::future::Future;
 use std::pin::Pin;
 
+use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 use serde::Serialize;
 use serde_json::Value;
@@ -170,6 +171,16 @@ pub struct SchemaEntry {
     pub schema: fn() -> Schema,
 }
 
+impl SchemaEntry {
+    /// The schema of a report as it is written: what may be left out is not required.
+    pub fn of<R: JsonSchema>(id: &'static str) -> Self {
+        Self {
+            id,
+            schema: || SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<R>(),
+        }
+    }
+}
+
 /// A command, or a noun that leads to commands by its verbs.
 pub trait Noun<F: Family> {
     /// The command that was typed.
@@ -184,7 +195,7 @@ impl<C: Command + 'static> Noun<C::Family> for C {
     }
 
     fn schemas() -> Vec<SchemaEntry> {
-        vec![SchemaEntry { id: C::ID, schema: || schemars::schema_for!(C::Report) }]
+        vec![SchemaEntry::of::<C::Report>(C::ID)]
     }
 }
 

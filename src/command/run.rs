@@ -120,13 +120,15 @@ impl Run {
     }
 
     /// Reports what a command without a robot has to say.
-    pub fn local(&self, id: &str, report: &impl Report) -> Result<(), Failure> {
+    pub fn local(&self, id: &str, report: &impl Report) -> Result<(), Stopped> {
+        let failure = Report::failure(report);
         if self.is_for_people() {
             self.show(&Report::view(report), Place::Alone)?;
         } else {
-            self.emit(&Envelope::local(id, report.data()?))?;
+            let envelope = Envelope::local(id, report.data()?);
+            self.emit(&Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope })?;
         }
-        Report::failure(report).map_or(Ok(()), Err)
+        failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: !self.is_for_people() }))
     }
 
     async fn one<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Stopped> {
@@ -259,20 +261,24 @@ impl Run {
             return Ok(envelopes);
         }
         let mut views = Vec::new();
+        let mut reasons = Vec::new();
         for (robot, outcome) in robots.iter().zip(outcomes) {
             match outcome {
-                Ok(report) => views.push((robot, report.view())),
-                Err(failure) => {
-                    // Failures of the link name the robot already.
-                    let label = robot.label();
-                    let is_named = failure.message.starts_with(&label);
-                    let message =
-                        if is_named { failure.message.clone() } else { format!("{label}: {}", failure.message) };
-                    self.screen.failure(&Failure { message, ..failure.clone() });
+                Ok(report) => {
+                    views.push((robot, report.view()));
+                    reasons.extend(report.failure().map(|failure| (robot, failure)));
                 }
+                Err(failure) => reasons.push((robot, failure.clone())),
             }
         }
         self.show_many(&views, place)?;
+        for (robot, failure) in reasons {
+            // Failures of the link name the robot already.
+            let label = robot.label();
+            let is_named = failure.message.starts_with(&label);
+            let message = if is_named { failure.message } else { format!("{label}: {}", failure.message) };
+            self.screen.failure(&Failure { message, ..failure });
+        }
         Ok(envelopes)
     }
 
@@ -284,7 +290,7 @@ impl Run {
             .collect();
         let Some(first) = failures.first() else { return Ok(()) };
         let failure = if failures.len() == outcomes.len() && failures.iter().all(|failure| failure.kind == first.kind) {
-            Failure { message: "every robot failed".into(), ..first.clone() }
+            Failure::new(first.kind, "every robot failed")
         } else {
             Failure::new(Kind::Mixed, format!("{} of {} robots failed", failures.len(), outcomes.len()))
         };
@@ -499,17 +505,19 @@ pub struct Rehearsal {
 
 impl Report for Rehearsal {
     fn view(&self) -> View {
-        let mut table = Table::new(&["#", "would be sent"], "nothing would be sent");
+        const EMPTY: &str = "nothing would be sent";
+        let about = |frame: &Value| frame.get("about").and_then(Value::as_str).map(ToOwned::to_owned);
+        let mut plain = Table::new(&["#", "would be sent"], EMPTY);
+        let mut explained = Table::new(&["#", "about", "would be sent"], EMPTY);
         for (index, frame) in self.frames.iter().enumerate() {
             let shown = match frame.as_object().and_then(|object| object.values().next()) {
                 Some(Value::String(text)) => text.clone(),
                 _ => frame.to_string(),
             };
-            let about =
-                frame.get("about").and_then(Value::as_str).map(|about| format!("{about}\n")).unwrap_or_default();
-            table.row([(index + 1).into(), (about + &shown).into()]);
+            plain.row([(index + 1).into(), shown.as_str().into()]);
+            explained.row([(index + 1).into(), about(frame).unwrap_or_default().into(), shown.into()]);
         }
-        View::table(table)
+        View::table(if self.frames.iter().any(|frame| about(frame).is_some()) { explained } else { plain })
     }
 }
 

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::run::Run;
+use crate::command::run::{Run, Stopped};
 use crate::controller::yerc::describe::{Description, FieldNote, Sender, describe};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::table::service;
@@ -53,7 +53,7 @@ fn number(text: &str) -> Result<u16, String> {
 }
 
 impl Decode {
-    pub(super) fn run(self, run: &Run) -> Result<(), Failure> {
+    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
         let Self::Yerc(yerc) = self;
         let frames = yerc.frames()?;
         run.local("decode.yerc", &yerc.explained(&frames))

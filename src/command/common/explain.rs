@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::run::Run;
+use crate::command::run::{Run, Stopped};
 use crate::controller::yerc::status;
 use crate::failure::Failure;
 use crate::output::view::{Section, View};
@@ -21,7 +21,7 @@ pub enum Explain {
 }
 
 impl Explain {
-    pub(super) fn run(self, run: &Run) -> Result<(), Failure> {
+    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
         let Self::Yerc { code } = self;
         let found = status::lookup(&code).map_err(|error| {
             Failure::usage(error.to_string()).hint("error messages and `alarm list` show the code to look up")

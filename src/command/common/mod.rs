@@ -49,16 +49,15 @@ impl Common {
     /// Does it.
     pub async fn run(self, run: &Run) -> Result<(), Stopped> {
         match self {
-            Self::Status(overview) => return run.robots(&overview).await,
-            Self::Sim(sim) => return sim.run(run).await,
+            Self::Status(overview) => run.robots(&overview).await,
+            Self::Sim(sim) => sim.run(run).await,
             Self::Robots(robots) => robots.run(run),
             Self::Decode(decode) => decode.run(run),
             Self::Explain(explain) => explain.run(run),
-            Self::Completions(completions) => completions.run(run),
-            Self::Man(man) => man.run(run),
-            Self::Schema(schema) => schema.run(run),
-            Self::Help(help) => help.run(run),
+            Self::Completions(completions) => Ok(completions.run(run)?),
+            Self::Man(man) => Ok(man.run(run)?),
+            Self::Schema(schema) => Ok(schema.run(run)?),
+            Self::Help(help) => Ok(help.run(run)?),
         }
-        .map_err(Stopped::from)
     }
 }

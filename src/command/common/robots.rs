@@ -8,7 +8,7 @@ use serde::Serialize;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, value};
 
 use crate::command::Report;
-use crate::command::run::Run;
+use crate::command::run::{Run, Stopped};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Table, View};
 use crate::settings::inventory::{Inventory, is_name, nearest};
@@ -72,7 +72,7 @@ impl Robots {
         matches!(self, Self::Add(_))
     }
 
-    pub(super) fn run(self, run: &Run) -> Result<(), Failure> {
+    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
         let inventory = &run.sources.inventory;
         match self {
             Self::List => run.local("robots.list", &List::of(inventory)),
@@ -84,7 +84,7 @@ impl Robots {
 }
 
 impl Show {
-    fn run(&self, run: &Run) -> Result<(), Failure> {
+    fn run(&self, run: &Run) -> Result<(), Stopped> {
         let entry = known(&run.sources.inventory, &self.name)?;
         let robot = run.sources.resolved(entry, None)?;
         let settings = vec![
@@ -109,23 +109,27 @@ fn row<T>(name: &'static str, setting: &Setting<T>, show: impl Fn(&T) -> String)
 }
 
 impl Add {
-    fn run(&self, run: &Run) -> Result<(), Failure> {
+    fn run(self, run: &Run) -> Result<(), Stopped> {
         if !is_name(&self.name) {
             return Err(Failure::usage(format!("'{}' is no robot name", self.name))
-                .hint("use letters, digits, '-', '_' and '.'"));
+                .hint("use letters, digits, '-', '_' and '.'")
+                .into());
         }
         if run.sources.inventory.robots.iter().any(|robot| robot.name == self.name) {
             return Err(Failure::usage(format!("there is a robot '{}' already", self.name))
-                .hint(format!("`armctl robots remove {}` removes it", self.name)));
+                .hint(format!("`armctl robots remove {}` removes it", self.name))
+                .into());
         }
         let Some(family) = self.family.or(self.url.family()) else {
-            return Err(Failure::usage(format!("'{}' does not tell the family", self.url)).hint("add --family yerc"));
+            let failure = Failure::usage(format!("'{}' does not tell the family", self.url));
+            return Err(failure.hint("add --family yerc").into());
         };
         if !self.url.reaches(family) {
             return Err(Failure::usage(format!("{family} is not reached over {}:", self.url.scheme()))
-                .hint("`armctl help targets` lists the URLs of each family"));
+                .hint("`armctl help targets` lists the URLs of each family")
+                .into());
         }
-        edit(run, |document| {
+        let file = edit(run, |document| {
             let mut robot = toml_edit::Table::new();
             robot["name"] = value(&self.name);
             robot["target"] = value(self.url.url());
@@ -146,15 +150,14 @@ impl Add {
             }
             Ok(())
         })?;
-        run.screen.note(&format!("added {} ({})", self.name, self.url));
-        Ok(())
+        run.local("robots.add", &Changed { done: "added", name: self.name, target: self.url.url().to_owned(), file })
     }
 }
 
 impl Remove {
-    fn run(&self, run: &Run) -> Result<(), Failure> {
-        known(&run.sources.inventory, &self.name)?;
-        edit(run, |document| {
+    fn run(self, run: &Run) -> Result<(), Stopped> {
+        let target = known(&run.sources.inventory, &self.name)?.target.url().to_owned();
+        let file = edit(run, |document| {
             let list = document.get_mut("robot").and_then(Item::as_array_of_tables_mut);
             let list = list.ok_or("`robot` is no list of [[robot]] tables")?;
             list.retain(|robot| robot.get("name").and_then(Item::as_str) != Some(&self.name));
@@ -163,13 +166,12 @@ impl Remove {
             }
             Ok(())
         })?;
-        run.screen.note(&format!("removed {}", self.name));
-        Ok(())
+        run.local("robots.remove", &Changed { done: "removed", name: self.name, target, file })
     }
 }
 
-/// Changes the file and keeps its comments; it is written beside and renamed.
-fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static str>) -> Result<(), Failure> {
+/// Changes the file and keeps its comments; it is written beside and renamed. What comes back is where it is.
+fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static str>) -> Result<String, Failure> {
     let path = run.sources.inventory.path.as_deref().ok_or_else(|| {
         Failure::new(Kind::Usage, "there is no home folder to keep robots.toml in").hint("name a file with --config")
     })?;
@@ -184,7 +186,8 @@ fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static 
     let text = document.to_string();
     // What would not be read again is not written.
     Inventory::parse(&text, &path.display().to_string())?;
-    replace(path, text.as_bytes()).map_err(|error| Failure::io(path.display(), &error))
+    replace(path, text.as_bytes()).map_err(|error| Failure::io(path.display(), &error))?;
+    Ok(path.display().to_string())
 }
 
 fn replace(path: &Path, content: &[u8]) -> std::io::Result<()> {
@@ -207,6 +210,23 @@ fn known<'a>(inventory: &'a Inventory, name: &str) -> Result<&'a crate::settings
             None => failure.hint("`armctl robots list` shows them, `armctl robots add` adds one"),
         }
     })
+}
+
+/// A robot that came into the inventory or left it.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Changed {
+    /// `added` or `removed`.
+    done: &'static str,
+    name: String,
+    target: String,
+    /// The file that was changed.
+    file: String,
+}
+
+impl Report for Changed {
+    fn view(&self) -> View {
+        View::text(format!("{} {} ({})", self.done, self.name, self.target))
+    }
 }
 
 /// The inventory.

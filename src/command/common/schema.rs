@@ -40,12 +40,14 @@ pub fn all() -> Vec<SchemaEntry> {
     let mut all = <Yerc as Noun<link::Yerc>>::schemas();
     all.extend(<Overview as Noun<link::Yerc>>::schemas());
     all.extend([
-        SchemaEntry { id: "decode.yerc", schema: || schemars::schema_for!(super::decode::Frames) },
-        SchemaEntry { id: "dry-run", schema: || schemars::schema_for!(Rehearsal) },
-        SchemaEntry { id: "explain.yerc", schema: || schemars::schema_for!(super::explain::Codes) },
-        SchemaEntry { id: "robots.list", schema: || schemars::schema_for!(super::robots::List) },
-        SchemaEntry { id: "sim.yerc", schema: || schemars::schema_for!(super::sim::Serving) },
-        SchemaEntry { id: "robots.show", schema: || schemars::schema_for!(super::robots::Shown) },
+        SchemaEntry::of::<super::decode::Frames>("decode.yerc"),
+        SchemaEntry::of::<Rehearsal>("dry-run"),
+        SchemaEntry::of::<super::explain::Codes>("explain.yerc"),
+        SchemaEntry::of::<super::robots::Changed>("robots.add"),
+        SchemaEntry::of::<super::robots::List>("robots.list"),
+        SchemaEntry::of::<super::robots::Changed>("robots.remove"),
+        SchemaEntry::of::<super::robots::Shown>("robots.show"),
+        SchemaEntry::of::<super::sim::Serving>("sim.yerc"),
     ]);
     all
 }
