@@ -41,16 +41,16 @@ impl Command for Overview {
 
 /// The state of one robot in a line.
 #[derive(Debug, Serialize, JsonSchema)]
-#[expect(clippy::struct_excessive_bools, reason = "the controller reports bits")]
 pub struct OverviewReport {
+    /// Where it is false, all that follows is null.
     reachable: bool,
     /// `teach` or `play`; null if unknown.
     mode: Option<&'static str>,
-    servo_on: bool,
-    running: bool,
-    held: bool,
-    alarm: bool,
-    error: bool,
+    servo_on: Option<bool>,
+    running: Option<bool>,
+    held: Option<bool>,
+    alarm: Option<bool>,
+    error: Option<bool>,
     /// The first robot in base coordinates.
     position: Option<PositionMm>,
     #[serde(skip)]
@@ -71,19 +71,28 @@ impl OverviewReport {
         Self {
             reachable: true,
             mode: super::status::mode(status),
-            servo_on: status.servo_on(),
-            running: status.has(StatusBit::Running),
-            held: status.held(),
-            alarm: status.alarm(),
-            error: status.error(),
+            servo_on: Some(status.servo_on()),
+            running: Some(status.has(StatusBit::Running)),
+            held: Some(status.held()),
+            alarm: Some(status.alarm()),
+            error: Some(status.error()),
             position,
             failure: None,
         }
     }
 
     fn absent(failure: Failure) -> Self {
-        let nothing = ControllerStatus::default();
-        Self { reachable: false, failure: Some(failure), ..Self::of(nothing, None) }
+        Self {
+            reachable: false,
+            mode: None,
+            servo_on: None,
+            running: None,
+            held: None,
+            alarm: None,
+            error: None,
+            position: None,
+            failure: Some(failure),
+        }
     }
 }
 
@@ -96,19 +105,19 @@ impl Report for OverviewReport {
             return View::table(table);
         }
         let state = match (self.held, self.running) {
-            (true, _) => Cell::from("hold").tone(Tone::Warning),
-            (false, true) => Cell::from("running").tone(Tone::Good),
-            (false, false) => "stopped".into(),
+            (Some(true), _) => Cell::from("hold").tone(Tone::Warning),
+            (_, Some(true)) => Cell::from("running").tone(Tone::Good),
+            _ => "stopped".into(),
         };
         let alarm = match (self.alarm, self.error) {
-            (true, _) => Cell::from("alarm").tone(Tone::Bad),
-            (false, true) => Cell::from("error").tone(Tone::Bad),
-            (false, false) => "none".into(),
+            (Some(true), _) => Cell::from("alarm").tone(Tone::Bad),
+            (_, Some(true)) => Cell::from("error").tone(Tone::Bad),
+            _ => "none".into(),
         };
         table.row([
             Cell::from("yes").tone(Tone::Good),
             Cell::maybe(self.mode),
-            Cell::switch(self.servo_on),
+            Cell::maybe(self.servo_on.map(Cell::switch)),
             state,
             alarm,
             Cell::maybe(self.position.as_ref().map(|at| format!("{:.3} {:.3} {:.3}", at.x_mm, at.y_mm, at.z_mm))),
