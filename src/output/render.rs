@@ -1,7 +1,7 @@
 //! Views as tables for people and as CSV for spreadsheets.
 
 use comfy_table::presets::NOTHING;
-use comfy_table::{Attribute, CellAlignment, Color, ContentArrangement};
+use comfy_table::{Attribute, CellAlignment, Color, ColumnConstraint, ContentArrangement};
 
 use super::escape;
 use super::view::{Cell, Section, Table, Tone, View};
@@ -78,8 +78,12 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
             }
         }
     }
-    for column in grid.column_iter_mut() {
+    for (index, column) in grid.column_iter_mut().enumerate() {
         column.set_padding((0, 2));
+        let is_whole = matches!(section, Section::Table(table) if table.rows.iter().any(|row| row[index].is_whole));
+        if is_whole {
+            column.set_constraint(ColumnConstraint::ContentWidth);
+        }
     }
     grid.lines().fold(String::new(), |text, line| text + line.trim_end() + "\n")
 }
@@ -110,6 +114,9 @@ fn painted(line: &Cell, color: bool) -> String {
 
 /// `x (mm)` becomes `x_mm`, and `#` `number`.
 fn column_id(name: &str) -> String {
+    if name == "#" {
+        return "number".to_owned();
+    }
     let words = name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
     let id = words.map(str::to_lowercase).collect::<Vec<_>>().join("_");
     if id.is_empty() { "number".to_owned() } else { id }
@@ -161,6 +168,15 @@ mod tests {
         let view = View::default().and(Section::Lines(lines()));
         assert_eq!(text(&view, 80, false), "-a\\x1b[0m\n b\n");
         assert_eq!(text(&view, 80, true), "\x1b[31m-a\\x1b[0m\x1b[0m\n b\n");
+    }
+
+    #[test]
+    fn what_is_whole_stays_on_a_line() {
+        let mut table = Table::new(&["name", "time"], "");
+        table.row(["word ".repeat(20).into(), Cell::from("2026/03/14 08:00").whole()]);
+        let text = text(&View::table(table), 40, false);
+        assert!(text.contains("2026/03/14 08:00\n"), "{text}");
+        assert!(text.lines().all(|line| line.len() <= 40), "{text}");
     }
 
     #[test]

@@ -23,12 +23,21 @@ pub struct Cell {
     pub is_number: bool,
     /// How it is coloured.
     pub tone: Tone,
+    /// Nothing in its column is broken into lines, such as times.
+    pub is_whole: bool,
 }
 
 impl Cell {
     /// A number with its own formatting, such as `100.000`.
     pub fn number(text: impl Into<String>) -> Self {
-        Self { text: text.into(), is_number: true, tone: Tone::Plain }
+        Self { text: text.into(), is_number: true, ..Self::default() }
+    }
+
+    /// The same cell, never broken into lines.
+    #[must_use]
+    pub fn whole(mut self) -> Self {
+        self.is_whole = true;
+        self
     }
 
     /// The same cell in another tone.

@@ -282,16 +282,15 @@ impl AlarmEntry {
         }
     }
 
-    /// Code, name, sub-code, type, time, board.
-    fn cells(&self) -> [Cell; 6] {
+    /// Code, name, sub-code, time, board. The type is in JSON alone: here it would leave no room for the name.
+    fn cells(&self) -> [Cell; 5] {
         let given = |text: &str| (!text.is_empty()).then(|| Cell::from(text));
         let sub_code = self.sub_code.text.as_deref().filter(|text| !text.trim().is_empty());
         [
             Cell::from(self.code).tone(Tone::Bad),
             self.name.as_str().into(),
             Cell::maybe(given(sub_code.unwrap_or(&self.sub_code.shown))),
-            format!("{} {}", self.kind, self.type_name).into(),
-            self.time.as_str().into(),
+            Cell::from(self.time.as_str()).whole(),
             Cell::maybe(self.board.as_deref().and_then(given)),
         ]
     }
@@ -306,10 +305,10 @@ pub(super) fn in_a_line(alarm: &payload::Alarm, encoding: Encoding, model: Model
 
 impl Report for ActiveAlarms {
     fn view(&self) -> View {
-        let mut table = Table::new(&["slot", "code", "name", "sub-code", "type", "time", "board"], "no alarm");
+        let mut table = Table::new(&["slot", "code", "name", "sub-code", "time", "board"], "no alarm");
         for ActiveAlarm { slot, alarm } in &self.alarms {
-            let [code, name, sub_code, kind, time, board] = alarm.cells();
-            table.row([(*slot).into(), code, name, sub_code, kind, time, board]);
+            let [code, name, sub_code, time, board] = alarm.cells();
+            table.row([(*slot).into(), code, name, sub_code, time, board]);
         }
         View::table(table)
     }
@@ -317,13 +316,11 @@ impl Report for ActiveAlarms {
 
 impl Report for PastAlarms {
     fn view(&self) -> View {
-        let columns = ["class", "#", "code", "name", "sub-code", "type", "time", "board"];
+        let columns = ["class", "#", "code", "name", "sub-code", "time", "board"];
         let mut table = Table::new(&columns, "no alarm");
         for PastAlarm { class, number, alarm } in &self.alarms {
-            let [code, name, sub_code, _, time, board] = alarm.cells();
-            // The words of the type would leave no room for the name.
-            let kind = Cell::from(alarm.kind);
-            table.row([(*class).into(), (*number).into(), code, name, sub_code, kind, time, board]);
+            let [code, name, sub_code, time, board] = alarm.cells();
+            table.row([(*class).into(), (*number).into(), code, name, sub_code, time, board]);
         }
         View::table(table)
     }
@@ -412,8 +409,8 @@ mod tests {
         let csv = render::csv(&alarms.view(), None);
         assert_eq!(
             csv,
-            "slot,code,name,sub_code,type,time,board\n\
-             1,4315,衝突,[R1: S],20 group with low and high logical axes,2026/01/02 03:04,[SV#1]\n"
+            "slot,code,name,sub_code,time,board\n\
+             1,4315,衝突,[R1: S],2026/01/02 03:04,[SV#1]\n"
         );
     }
 
