@@ -134,7 +134,7 @@ impl Backup {
             Found::Backup(earlier) => {
                 let state = if earlier.complete { "a backup" } else { "a backup that is not whole" };
                 let message = format!("{} holds {state} of {}", folder.display(), earlier.robot);
-                Err(Failure::new(Kind::RefusedHere, message)
+                Err(Failure::local(message)
                     .hint("--resume goes on with it, --force makes a new one over it; or choose another folder"))
             }
         }

@@ -185,7 +185,7 @@ mod tests {
         std::fs::write(folder.path().join("B.JBI"), "x").unwrap();
         let files = [FileName::new(*b"A.JBI").unwrap(), FileName::new(*b"B.JBI").unwrap()];
         let failure = targets(Encoding::ShiftJis, &files, folder.path(), false).unwrap_err();
-        assert_eq!(failure.kind.exit(), 7);
+        assert_eq!(failure.kind.exit(), 1);
         assert!(failure.hint.unwrap().contains("--force"));
         let targets = targets(Encoding::ShiftJis, &files, folder.path(), true).unwrap();
         assert_eq!(targets[1].path(), folder.path().join("B.JBI"));

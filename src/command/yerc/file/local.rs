@@ -10,7 +10,7 @@ use std::path::{Component, Path, PathBuf};
 use tempfile::NamedTempFile;
 
 use crate::controller::text::{EncodeError, Encoding};
-use crate::failure::{Failure, Kind};
+use crate::failure::Failure;
 use crate::output::escape;
 
 /// Longest name that the usual file systems take.
@@ -185,7 +185,7 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
 }
 
 fn exists(path: &Path) -> Failure {
-    Failure::new(Kind::RefusedHere, format!("{} exists and was kept", path.display()))
+    Failure::local(format!("{} exists and was kept", path.display()))
         .hint("--force replaces it; or choose another place")
 }
 
@@ -275,6 +275,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::failure::Kind;
 
     const SJIS: Encoding = Encoding::ShiftJis;
 
@@ -350,10 +351,10 @@ mod tests {
         let mut draft = target.begin().unwrap();
         draft.write(b"whole").unwrap();
         draft.commit().unwrap();
-        assert_eq!(Target::new(path.clone(), false).unwrap_err().kind, Kind::RefusedHere);
+        assert_eq!(Target::new(path.clone(), false).unwrap_err().kind, Kind::Local);
         // A file that appears during the transfer is kept as well.
         let late = target.begin().unwrap();
-        assert_eq!(late.commit().unwrap_err().kind, Kind::RefusedHere);
+        assert_eq!(late.commit().unwrap_err().kind, Kind::Local);
         assert_eq!(std::fs::read(&path).unwrap(), b"whole");
 
         let mut draft = Target::new(path.clone(), true).unwrap().begin().unwrap();

@@ -13,7 +13,7 @@ use super::local::{Target, is_plain_file_name};
 use super::name::{exact, unhex};
 use crate::controller::text::hex;
 use crate::controller::yerc::files::FileName;
-use crate::failure::{Failure, Kind};
+use crate::failure::Failure;
 use crate::output::escape;
 
 /// Name of the list in the folder of a backup. No file of a controller has this ending.
@@ -269,7 +269,7 @@ impl Found {
         }
         match entries.next() {
             None => Ok(Self::Nothing),
-            Some(_) => Err(Failure::new(Kind::RefusedHere, format!("{} holds other files", folder.display()))
+            Some(_) => Err(Failure::local(format!("{} holds other files", folder.display()))
                 .hint("a backup takes an empty folder, or makes a new one")),
         }
     }
@@ -278,6 +278,7 @@ impl Found {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::failure::Kind;
 
     fn manifest() -> Manifest {
         let mut manifest =
@@ -353,7 +354,7 @@ mod tests {
         assert!(matches!(Found::look(&folder.path().join("new")).unwrap(), Found::Nothing));
         assert!(matches!(Found::look(folder.path()).unwrap(), Found::Nothing));
         fs::write(folder.path().join("letter.txt"), "x").unwrap();
-        assert_eq!(Found::look(folder.path()).unwrap_err().kind, Kind::RefusedHere);
+        assert_eq!(Found::look(folder.path()).unwrap_err().kind, Kind::Local);
         manifest().write(folder.path()).unwrap();
         assert!(matches!(Found::look(folder.path()).unwrap(), Found::Backup(_)));
     }

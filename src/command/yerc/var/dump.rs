@@ -165,7 +165,8 @@ fn now() -> String {
 }
 
 fn exists(file: &Path) -> Failure {
-    Failure::local(format!("{} exists already", file.display())).hint("--force replaces it; nothing was read")
+    Failure::local(format!("{} exists and was kept", file.display()))
+        .hint("--force replaces it; or choose another name")
 }
 
 /// A dump, or where it went.
