@@ -100,7 +100,7 @@ impl Failure {
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
                 failure.hint("free some space, and repeat the command")
             }
-            ErrorKind::NotFound => failure.hint("check the path; folders are not made silently"),
+            ErrorKind::NotFound => failure.hint("check the path; missing folders are not made"),
             _ => failure,
         }
     }

@@ -81,7 +81,7 @@ impl SimYerc {
         let model = self.model.unwrap_or(Model::Dx200);
         let start = simulated::start(self.state.as_deref(), model, self.fault.as_ref())?;
         if let Some(model) = self.model.filter(|model| *model != start.model()) {
-            let message = format!("the start state is of a {}, not a {model}", start.model());
+            let message = format!("the start state is for model {}, not {model}", start.model());
             return Err(Failure::usage(message).hint("leave --model away, or change the file").into());
         }
         let model = start.model();

@@ -142,7 +142,9 @@ impl Task {
 impl Report for Jobs {
     fn view(&self) -> View {
         let mut table = Table::new(&["task", "job", "line", "step", "override (%)"], "no task");
-        for task in &self.tasks {
+        // Of all tasks only those that exist; one that was asked for says why there is nothing to show.
+        let is_one = self.tasks.len() == 1;
+        for task in self.tasks.iter().filter(|task| is_one || task.refusal.is_none()) {
             let name = if task.number == 0 { "master".to_owned() } else { format!("sub {}", task.number) };
             let job = match &task.refusal {
                 Some(code) => format!("(no such task: {code})").into(),
@@ -443,7 +445,7 @@ mod tests {
         assert!(json.contains(r#""refusal":"0xA001""#), "{json}");
         assert_eq!(
             render::csv(&tasks.view(), None),
-            "task,job,line,step,override\nmaster,\\x85A,3,0,33.33\nsub 1,(no such task: 0xA001),-,-,-\nsub 2,-,0,0,0.00\n"
+            "task,job,line,step,override\nmaster,\\x85A,3,0,33.33\nsub 2,-,0,0,0.00\n"
         );
     }
 

@@ -149,11 +149,12 @@ impl Command for Say {
     async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
         let bytes = context.link.encode("the message", &self.text)?;
         context.link.ask(&query::Say::new(&bytes).map_err(usage)?).await?;
-        Ok(Done::new("the message is on the pendant"))
+        Ok(Done::new(if self.text.is_empty() { "the message is cleared" } else { "the message is on the pendant" }))
     }
 }
 
 /// A query that cannot be built: the operator asked for something that does not exist.
 pub(super) fn usage(error: impl std::fmt::Display) -> Failure {
-    Failure::usage(error.to_string()).hint("`armctl help yerc` and the --help of the command list what there is")
+    Failure::usage(error.to_string())
+        .hint("the --help of the command tells what it takes, `armctl help yerc` which commands there are")
 }

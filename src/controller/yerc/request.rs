@@ -378,7 +378,7 @@ mod tests {
         );
         assert_eq!(
             text(request(0x73, 7, 0, 0x01, &[]), Model::Fs100),
-            "instance 7 is outside executing job read on a fs100; allowed: 1, 2-6"
+            "instance 7 is outside executing job read on a fs100; allowed: 1-6"
         );
         assert_eq!(
             text(request(0x302, 0, 0, 0x33, &[3, 0, 0, 0]), Model::Fs100),

@@ -70,7 +70,7 @@ fn what_cannot_be_meant_is_not_sent() {
     assert!(failed(&["io", "get", "9"]).contains("signal 9 does not exist"));
     assert!(failed(&["io", "get", "5200"]).contains("does not exist on a dx200"));
     assert!(failed(&["io", "set", "10010=on"]).contains("robot user output"));
-    assert!(failed(&["register", "get", "1000"]).contains("0-559, 560-999"));
+    assert!(failed(&["register", "get", "1000"]).contains("allowed: 0-999"));
     assert!(failed(&["register", "set", "560=1"]).contains("0-559"));
     assert!(failed(&["raw", "--file", "--service", "0x32"]).contains("yerc file list"));
     assert!(failed(&["raw", "--command", "0x8D", "--instance", "1", "--service", "1", "--check"]).contains("0x008d"));

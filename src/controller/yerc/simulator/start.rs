@@ -117,7 +117,10 @@ impl Start {
     ///
     /// The error says what is wrong, and in which line.
     pub fn parse(text: &str, mut read: impl FnMut(&str) -> Result<Vec<u8>, String>) -> Result<Self, String> {
-        let entries: Entries = toml::from_str(text).map_err(|error| error.to_string())?;
+        let entries: Entries = toml::from_str(text).map_err(|error| {
+            let line = 1 + error.span().map_or(0, |span| newlines(text, span.start));
+            format!("line {line}: {}", error.message())
+        })?;
         build(&entries, text, &mut read)
     }
 
@@ -313,6 +316,11 @@ fn model<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Model, D::
     String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
 }
 
+/// Lines that end before a place in a text.
+fn newlines(text: &str, place: usize) -> usize {
+    text.bytes().take(place).filter(|&byte| byte == b'\n').count()
+}
+
 /// Says what is wrong with an entry, and where.
 struct Place<'a> {
     text: &'a str,
@@ -320,7 +328,7 @@ struct Place<'a> {
 
 impl Place<'_> {
     fn wrong<T>(&self, entry: &Spanned<T>, what: impl std::fmt::Display) -> String {
-        let line = 1 + self.text.bytes().take(entry.span().start).filter(|&byte| byte == b'\n').count();
+        let line = 1 + newlines(self.text, entry.span().start);
         format!("line {line}: {what}")
     }
 }

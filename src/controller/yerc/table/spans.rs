@@ -79,18 +79,17 @@ impl Instances {
 
     /// The numbers in words, e.g. `1-2, 11-12`.
     pub fn ranges(&self, model: Model, only_writable: bool) -> String {
-        let mut out = String::new();
+        let mut ranges: Vec<(u16, u16)> = Vec::new();
         for span in self.of(model).iter().filter(|span| span.writable || !only_writable) {
-            if !out.is_empty() {
-                out.push_str(", ");
-            }
-            out.push_str(&span.first.to_string());
-            if span.last != span.first {
-                out.push('-');
-                out.push_str(&span.last.to_string());
+            match ranges.last_mut() {
+                Some((_, last)) if last.checked_add(1) == Some(span.first) => *last = span.last,
+                _ => ranges.push((span.first, span.last)),
             }
         }
-        out
+        let words = ranges
+            .into_iter()
+            .map(|(first, last)| if first == last { first.to_string() } else { format!("{first}-{last}") });
+        words.collect::<Vec<_>>().join(", ")
     }
 }
 
