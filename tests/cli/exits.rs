@@ -1,0 +1,263 @@
+//! Exit codes that take a bad peer or a signal: a controller that answers garbage, one that swallows what changes
+//! something, a full disk, Ctrl-C.
+
+#![expect(clippy::needless_raw_string_hashes, reason = "as snapbox writes them")]
+
+use std::io::{BufRead as _, BufReader, Read as _};
+use std::net::UdpSocket;
+use std::process::{Child, Command, Output, Stdio};
+use std::thread;
+
+use serde_json::Value;
+
+use crate::json;
+use crate::transcript::{Desk, Simulator};
+
+/// A controller that answers what `answer` makes of each request; it ends with the process.
+fn peer(answer: impl Fn(&[u8]) -> Option<Vec<u8>> + Send + 'static) -> String {
+    let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let target = format!("udp://{}", socket.local_addr().expect("an address"));
+    thread::spawn(move || {
+        let mut buffer = [0; 2048];
+        while let Ok((length, client)) = socket.recv_from(&mut buffer) {
+            if let Some(bytes) = answer(&buffer[..length]) {
+                socket.send_to(&bytes, client).expect("the client is there");
+            }
+        }
+    });
+    target
+}
+
+/// An answer without data that says "done" to a request.
+fn done(request: &[u8]) -> Vec<u8> {
+    let mut answer = request[..24].to_vec();
+    answer[6..8].copy_from_slice(&[0, 0]);
+    answer[10] = 1;
+    answer[12..16].copy_from_slice(&[0, 0, 0, 0x80]);
+    answer.extend([request[29] | 0x80, 0, 0, 0, 0, 0, 0, 0]);
+    answer
+}
+
+/// The error body on stderr, the only line there, and nothing on stdout.
+fn failure(output: &Output) -> Value {
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    let mut lines = stderr.lines();
+    let envelope = lines.next().expect("a line on stderr");
+    assert_eq!(lines.next(), None, "one line alone: {stderr}");
+    json::shown(envelope);
+    let envelope: Value = serde_json::from_str(envelope).expect("an envelope");
+    assert_eq!(envelope["error"]["exit"].as_i64(), output.status.code().map(i64::from));
+    envelope["error"].clone()
+}
+
+#[test]
+fn five_an_answer_that_makes_no_sense() {
+    let desk = Desk::new();
+    // A status takes eight bytes of data; this one comes without.
+    let target = peer(|request| Some(done(request)));
+    let output = desk.armctl(&["-t", &target, "yerc", "status", "--json"]).output().expect("it runs");
+    assert_eq!(output.status.code(), Some(5), "{output:?}");
+    let error = failure(&output);
+    assert_eq!(error["kind"], "malformed");
+}
+
+#[test]
+fn five_a_host_that_answers_garbage() {
+    let desk = Desk::new();
+    let target = peer(|_| Some(b"HTTP/1.1 400 Bad Request\r\n\r\n".to_vec()));
+    let line = ["-t", &target, "yerc", "status", "--json", "--timeout", "200ms", "--retries", "0"];
+    let output = desk.armctl(&line).output().expect("it runs");
+    let error = failure(&output);
+    snapbox::assert_data_eq!(
+        format!("{} {}\n{}\n", error["exit"], error["kind"], error["message"])
+            .replace(&target, "udp://127.0.0.1:10040"),
+        snapbox::str![[r#"
+5 "malformed"
+"udp://127.0.0.1:10040: no answer of the protocol within 200ms, but 1 truncated"
+
+"#]]
+    );
+}
+
+#[test]
+fn six_a_change_whose_answer_is_lost() {
+    let desk = Desk::new();
+    for change in [&["servo", "off"][..], &["var", "set", "B0=1"], &["hold", "on"], &["job", "select", "MAIN"]] {
+        let target = peer(|_| None);
+        let mut line = vec!["-t", &target, "--json", "--timeout", "100ms", "yerc"];
+        line.extend(change);
+        let output = desk.armctl(&line).output().expect("it runs");
+        assert_eq!(output.status.code(), Some(6), "{change:?}: {output:?}");
+        let error = failure(&output);
+        assert_eq!(error["kind"], "outcome_unknown");
+        assert!(error["hint"].as_str().is_some_and(|hint| hint.contains("yerc")), "names the question: {error}");
+    }
+}
+
+#[test]
+fn six_in_words() {
+    let desk = Desk::new();
+    let target = peer(|_| None);
+    let line = ["-t", &target, "--timeout", "100ms", "yerc", "servo", "off"];
+    let output = desk.armctl(&line).output().expect("it runs");
+    let stderr = String::from_utf8_lossy(&output.stderr).replace(&target, "udp://127.0.0.1:10040");
+    snapbox::assert_data_eq!(
+        stderr,
+        snapbox::str![[r#"
+error: udp://127.0.0.1:10040: sent once, no answer within 100ms: it may or may not have been done
+
+hint: ask before you repeat it: `yerc status`, `yerc job show`, `yerc position` or the matching `get` tell
+
+"#]]
+    );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn one_a_full_disk() {
+    let desk = Desk::new();
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a disk that is full");
+    let output = desk.armctl(&["--sim", "yerc", "status"]).stdout(full).output().expect("it runs");
+    assert_eq!(output.status.code(), Some(1));
+    snapbox::assert_data_eq!(
+        String::from_utf8_lossy(&output.stderr).into_owned(),
+        snapbox::str![[r#"
+error: stdout: no space left on device
+
+hint: free some space, and repeat the command
+
+"#]]
+    );
+}
+
+#[test]
+fn zero_a_reader_that_goes_away_during_a_watch() {
+    let desk = Desk::new();
+    let mut child = spawn(desk.armctl(&["--sim", "yerc", "status", "--watch", "1ms", "-o", "jsonl"]));
+    first_line(&mut child);
+    let status = child.wait().expect("it ends by itself");
+    assert_eq!(status.code(), Some(0), "{}", said(&mut child));
+    assert_eq!(said(&mut child), "");
+}
+
+#[test]
+fn interrupted_during_a_watch() {
+    let desk = Desk::new();
+    let mut child = spawn(desk.armctl(&["--sim", "yerc", "status", "--watch", "1h", "-o", "jsonl"]));
+    let line = first_line(&mut child);
+    json::shown(&line);
+    interrupt(&child, "INT");
+    assert_eq!(child.wait().expect("it ends").code(), Some(130));
+    let error: Value = serde_json::from_str(&said(&mut child)).expect("one line of JSON");
+    assert_eq!(error["error"]["kind"], "interrupted");
+    assert_eq!(error["error"]["exit"], 130);
+}
+
+#[test]
+fn interrupted_during_a_move() {
+    let desk = Desk::new();
+    let simulator = Simulator::start(None);
+    let status = |filter: &str| {
+        let output =
+            desk.armctl(&["-t", &simulator.target, "yerc", "status", "--jq", filter]).output().expect("it runs");
+        String::from_utf8(output.stdout).expect("UTF-8")
+    };
+    let line = ["-t", &simulator.target, "--yes", "yerc", "move", "relative", "--z", "-600", "--speed", "1mm/s"];
+    let mut child = spawn(desk.armctl(&line));
+    // Ten minutes of motion: it is under way as soon as the controller says so.
+    wait(&desk, &simulator, ".data.running");
+    interrupt(&child, "INT");
+    assert_eq!(child.wait().expect("it ends").code(), Some(130));
+    snapbox::assert_data_eq!(
+        said(&mut child),
+        snapbox::str![[r#"
+interrupted: the robot was stopped: HOLD is on; `yerc hold off` releases it
+
+"#]]
+    );
+    assert_eq!(status(".data.hold_sources"), "[\"command\"]\n");
+    // It slows down; then it stands, and lets go only by an order.
+    wait(&desk, &simulator, ".data.running | not");
+    let released = desk.armctl(&["-t", &simulator.target, "--yes", "yerc", "hold", "off"]).output().expect("it runs");
+    assert!(released.status.success());
+    assert_eq!(status("[.data.running, .data.hold_sources]"), "[false,[]]\n", "what was stopped does not go on");
+}
+
+#[test]
+fn interrupted_during_a_move_that_is_left_alone() {
+    let desk = Desk::new();
+    let simulator = Simulator::start(None);
+    let line = [
+        "-t",
+        &simulator.target,
+        "--yes",
+        "--on-interrupt",
+        "leave",
+        "yerc",
+        "move",
+        "relative",
+        "--z",
+        "-600",
+        "--speed",
+        "1mm/s",
+        "--json",
+    ];
+    let mut child = spawn(desk.armctl(&line));
+    wait(&desk, &simulator, ".data.running");
+    interrupt(&child, "INT");
+    assert_eq!(child.wait().expect("it ends").code(), Some(130));
+    let error: Value = serde_json::from_str(&said(&mut child)).expect("one line of JSON");
+    assert_eq!(error["error"]["exit"], 130);
+    let output =
+        desk.armctl(&["-t", &simulator.target, "yerc", "status", "--jq", ".data.running"]).output().expect("it runs");
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "true\n");
+}
+
+#[test]
+fn a_server_says_where_it_is_and_ends_on_a_signal() {
+    let desk = Desk::new();
+    for signal in ["INT", "TERM"] {
+        let mut child = spawn(desk.armctl(&["sim", "yerc", "--bind", "127.0.0.1:0", "--json"]));
+        let line = first_line(&mut child);
+        json::shown(&line);
+        let envelope: Value = serde_json::from_str(&line).expect("an envelope");
+        let target = envelope["data"]["target"].as_str().expect("a URL");
+        assert!(desk.armctl(&["-t", target, "yerc", "status"]).output().expect("it runs").status.success());
+        interrupt(&child, signal);
+        assert_eq!(child.wait().expect("it ends").code(), Some(0), "this is how one ends a server");
+        assert_eq!(said(&mut child), "");
+    }
+}
+
+/// Waits until a filter over the status of a controller is true.
+fn wait(desk: &Desk, simulator: &Simulator, until: &str) {
+    let target = simulator.target.as_str();
+    let line = ["-t", target, "yerc", "status", "--watch", "5ms", "--until", until, "--for", "1m"];
+    let output = desk.armctl(&line).output().expect("it runs");
+    assert!(output.status.success(), "{until}: {output:?}");
+}
+
+fn spawn(mut command: Command) -> Child {
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts")
+}
+
+/// The first line on stdout; nothing is read after it.
+fn first_line(child: &mut Child) -> String {
+    let mut line = String::new();
+    BufReader::new(child.stdout.take().expect("stdout is a pipe")).read_line(&mut line).expect("a line");
+    line
+}
+
+/// What has come on stderr by the end.
+fn said(child: &mut Child) -> String {
+    let mut text = String::new();
+    let Some(mut stderr) = child.stderr.take() else { return text };
+    stderr.read_to_string(&mut text).expect("UTF-8");
+    text
+}
+
+fn interrupt(child: &Child, signal: &str) {
+    let sent = Command::new("kill").args(["-s", signal, &child.id().to_string()]).status().expect("kill runs");
+    assert!(sent.success());
+}

@@ -1,0 +1,102 @@
+//! Every command at the terminal, through the built binary: what it prints, where, and how it ends.
+//!
+//! `NAME.console` files are transcripts; `transcript.rs` says how they read. `SNAPSHOTS=overwrite cargo test --test cli`
+//! writes into them what was printed: type the commands, have the rest written, and read it.
+#![cfg(unix)]
+
+mod exits;
+mod json;
+mod transcript;
+
+use std::collections::BTreeSet;
+
+use clap::CommandFactory as _;
+
+macro_rules! transcripts {
+    ($($name:ident)*) => {
+        $(#[test]
+        fn $name() {
+            transcript::check(stringify!($name));
+        })*
+
+        const TRANSCRIPTS: &[&str] = &[$(stringify!($name)),*];
+    };
+}
+
+transcripts! {
+    alarms
+    backups
+    decode
+    exit_codes
+    explain
+    files
+    help
+    information
+    jobs
+    moves
+    orders
+    positions
+    raw
+    robots
+    signals
+    simulator
+    status
+    usage
+    variables
+}
+
+#[test]
+fn every_transcript_is_run() {
+    assert_eq!(transcript::names(), TRANSCRIPTS, "transcripts are listed above in the order of the alphabet");
+}
+
+/// Commands that print something else than reports: scripts, pages, texts, schemas.
+const PLAIN: [&str; 4] = ["completions", "man", "help", "schema"];
+
+#[test]
+fn every_command_has_transcripts() {
+    let root = armctl::cli::Cli::command();
+    let (mut tables, mut jsons) = (BTreeSet::new(), BTreeSet::new());
+    for line in transcript::commands() {
+        for typed in line.split(['|', ';', '&']) {
+            let words: Vec<&str> = typed.split_whitespace().collect();
+            let path = path(&root, &words);
+            let is_json = ["--json", "json", "jsonl", "--jq"].iter().any(|word| words.contains(word));
+            if is_json {
+                jsons.insert(path)
+            } else {
+                tables.insert(path)
+            };
+        }
+    }
+    let mut leaves = Vec::new();
+    collect_leaves(&root, "", &mut leaves);
+    let missing =
+        |seen: &BTreeSet<String>| leaves.iter().filter(|leaf| !seen.contains(*leaf)).cloned().collect::<Vec<_>>();
+    assert_eq!(missing(&tables), [""; 0], "commands without a transcript");
+    let untold: Vec<String> = missing(&jsons).into_iter().filter(|leaf| !PLAIN.contains(&leaf.as_str())).collect();
+    assert_eq!(untold, [""; 0], "commands without a transcript in JSON");
+}
+
+/// The subcommand that words name, such as `yerc file get`.
+fn path(root: &clap::Command, words: &[&str]) -> String {
+    let mut command = root;
+    let mut path = Vec::new();
+    for word in words {
+        if let Some(sub) = command.get_subcommands().find(|sub| sub.get_name() == *word) {
+            path.push(*word);
+            command = sub;
+        }
+    }
+    path.join(" ")
+}
+
+fn collect_leaves(command: &clap::Command, path: &str, leaves: &mut Vec<String>) {
+    for sub in command.get_subcommands() {
+        let path = format!("{path} {}", sub.get_name());
+        if sub.get_subcommands().next().is_none() {
+            leaves.push(path.trim_start().to_owned());
+        }
+        collect_leaves(sub, &path, leaves);
+    }
+}

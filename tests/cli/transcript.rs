@@ -1,0 +1,185 @@
+//! Runs a transcript: what is typed, and what stdout, stderr and the exit code then are.
+//!
+//! | line | is |
+//! |---|---|
+//! | `$ COMMAND` | typed into `sh`, in a folder that the commands of a transcript share |
+//! | `2> TEXT` | a line on stderr; what comes without a mark is stdout |
+//! | `? N` | the exit code, where it is not 0 |
+//! | `## TEXT` | a comment |
+//!
+//! JSON stands indented; that it came as a single line, in the envelope and as the schema says, is checked here. What
+//! differs from run to run stands as `[…]`. `udp://127.0.0.1:10040` is a simulator of the transcript's own, elsewhere
+//! in truth; its start state is `NAME.toml` beside `NAME.console`, if there is one. What is in `files/` lies in the
+//! folder.
+
+use std::io::{BufRead as _, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+use tempfile::TempDir;
+
+use crate::json;
+
+/// Where transcripts find the simulator.
+const DOCUMENTED: &str = "127.0.0.1:10040";
+
+/// Runs the transcript of this name and compares; `SNAPSHOTS=overwrite` writes what was printed instead.
+pub fn check(name: &str) {
+    let path = folder().join(format!("{name}.console"));
+    let text = std::fs::read_to_string(&path).expect("the transcript is there");
+    let desk = Desk::new();
+    let simulator = text.contains(DOCUMENTED).then(|| {
+        let state = folder().join(format!("{name}.toml"));
+        Simulator::start(state.exists().then_some(state.as_path()))
+    });
+    let mut printed = String::new();
+    for line in text.lines() {
+        if line.starts_with("## ") {
+            if !printed.is_empty() && !printed.lines().last().is_some_and(|last| last.starts_with("## ")) {
+                printed.push('\n');
+            }
+            printed.push_str(&format!("{line}\n"));
+        } else if let Some(command) = line.strip_prefix("$ ") {
+            if !printed.is_empty() && !printed.lines().last().is_some_and(|last| last.starts_with("## ")) {
+                printed.push('\n');
+            }
+            printed.push_str(&format!("{line}\n{}", desk.typed(command, simulator.as_ref())));
+        }
+    }
+    let expected = snapbox::Data::read_from(&path, Some(snapbox::data::DataFormat::Text)).raw();
+    snapbox::Assert::new().action_env("SNAPSHOTS").normalize_paths(false).eq(printed, expected);
+}
+
+/// Every command line of every transcript.
+pub fn commands() -> Vec<String> {
+    let texts = names().into_iter().map(|name| std::fs::read_to_string(folder().join(format!("{name}.console"))));
+    let texts: Vec<String> = texts.collect::<Result<_, _>>().expect("transcripts are readable");
+    texts.iter().flat_map(|text| text.lines()).filter_map(|line| Some(line.strip_prefix("$ ")?.to_owned())).collect()
+}
+
+/// The names of all transcripts.
+pub fn names() -> Vec<String> {
+    let files = std::fs::read_dir(folder()).expect("the folder of the transcripts");
+    let names = files
+        .filter_map(|file| Some(file.expect("an entry").file_name().to_str()?.strip_suffix(".console")?.to_owned()));
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    names
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli")
+}
+
+/// Somebody's place of work: a folder and a home of its own, no variables of ours, no terminal.
+pub struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    /// A desk with the files of `files/` on it.
+    pub fn new() -> Self {
+        let desk = Self { folder: tempfile::tempdir().expect("a folder") };
+        for file in std::fs::read_dir(folder().join("files")).expect("the folder of files") {
+            let file = file.expect("an entry");
+            std::fs::copy(file.path(), desk.path().join(file.file_name())).expect("a file is copied");
+        }
+        desk
+    }
+
+    /// Its folder.
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// A command of the binary.
+    pub fn armctl(&self, arguments: &[&str]) -> Command {
+        let mut command = self.command(env!("CARGO_BIN_EXE_armctl"));
+        command.args(arguments);
+        command
+    }
+
+    fn command(&self, program: &str) -> Command {
+        let binary = Path::new(env!("CARGO_BIN_EXE_armctl"));
+        let tools = binary.parent().expect("the binary is in a folder").to_owned();
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        let path = std::env::join_paths(std::iter::once(tools).chain(std::env::split_paths(&path)));
+        let mut command = Command::new(program);
+        command.env_clear().env("PATH", path.expect("a search path")).current_dir(self.path());
+        command.env("HOME", self.path()).env("XDG_CONFIG_HOME", self.path().join(".config"));
+        command.env("NO_COLOR", "1").env("TERM", "dumb").env("TZ", "UTC").env("LC_ALL", "C");
+        command.stdin(Stdio::null());
+        command
+    }
+
+    /// What stands in the transcript after a command.
+    fn typed(&self, line: &str, simulator: Option<&Simulator>) -> String {
+        let reached = simulator.map_or_else(|| line.to_owned(), |simulator| simulator.reached(line));
+        let output = self.command("sh").args(["-c", &reached]).output().expect("sh runs");
+        let shown = |bytes: Vec<u8>| {
+            let text = String::from_utf8(bytes).expect("what is shown is UTF-8");
+            let text = simulator.map_or_else(|| text.clone(), |simulator| simulator.documented(&text));
+            text.replace(&self.path().display().to_string(), "[FOLDER]")
+        };
+        let stdout = shown(output.stdout);
+        assert!(stdout.is_empty() || stdout.ends_with('\n'), "`{line}` leaves the last line open: {stdout}");
+        let stdout: String = stdout.lines().map(|line| json::shown(line) + "\n").collect();
+        let stderr: String = shown(output.stderr)
+            .lines()
+            .map(|line| format!("2> {}\n", json::shown(line).replace('\n', "\n2> ")))
+            .collect();
+        let code = match output.status.code() {
+            Some(0) => String::new(),
+            Some(code) => format!("? {code}\n"),
+            None => format!("? {}\n", output.status),
+        };
+        stdout + &stderr + &code
+    }
+}
+
+/// `armctl sim yerc` on ports of its own; it ends with the test.
+pub struct Simulator {
+    process: Child,
+    /// The URL to reach it by.
+    pub target: String,
+}
+
+impl Simulator {
+    /// Starts one and waits until it listens.
+    pub fn start(state: Option<&Path>) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.args(["sim", "yerc", "--bind", "127.0.0.1:0", "--jq", ".data.target"]);
+        if let Some(state) = state {
+            command.arg("--state").arg(state);
+        }
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut process = command.spawn().expect("the simulator starts");
+        let mut target = String::new();
+        let stdout = process.stdout.take().expect("stdout is a pipe");
+        BufReader::new(stdout).read_line(&mut target).expect("the simulator says where it is");
+        assert!(target.starts_with("udp://"), "the simulator did not start");
+        Self { process, target: target.trim_end().to_owned() }
+    }
+
+    fn address(&self) -> &str {
+        let address = self.target.strip_prefix("udp://").unwrap_or_default();
+        address.split('?').next().unwrap_or_default()
+    }
+
+    fn reached(&self, command: &str) -> String {
+        command.replace(&format!("udp://{DOCUMENTED}"), &format!("'{}'", self.target))
+    }
+
+    fn documented(&self, output: &str) -> String {
+        let output = output.replace(&self.target, &format!("udp://{DOCUMENTED}"));
+        output.replace(self.address(), DOCUMENTED)
+    }
+}
+
+impl Drop for Simulator {
+    fn drop(&mut self) {
+        // A process that has ended already is as good.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
