@@ -1,5 +1,6 @@
 //! The one loop that every robot command goes through: choose robots, pass the gate, run, report, repeat.
 
+use std::cell::OnceCell;
 use std::future::{Future, poll_fn};
 use std::path::{Path, PathBuf};
 use std::task::Poll;
@@ -11,6 +12,7 @@ use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
+use tokio::sync::watch;
 use tokio::time::Instant;
 
 use super::{Access, AnyCommand, AnyReport, Context, Family, Outcome, Report};
@@ -103,7 +105,7 @@ impl Run {
         Gate::pass_many(risk, &robots, each_named)?;
         if risk == Risk::Motion {
             // From here on Ctrl-C, at a question too, ends in a message and an exit code instead of a killed process.
-            catch_interrupts();
+            drop(catch_interrupts());
             for robot in &robots {
                 self.foresee(command, robot).await.map_err(|failure| Stopped::at(robot, command, failure))?;
             }
@@ -550,15 +552,38 @@ pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failur
     }
 }
 
-/// Makes signals arrive as events; what nobody waits for is dropped.
-fn catch_interrupts() {
-    #[cfg(unix)]
-    drop(tokio::signal::unix::signal(tokio::signal::unix::SignalKind::interrupt()));
+thread_local! {
+    /// The first Ctrl-C or request to end since anybody listened; one that comes between two waits ends the next.
+    static INTERRUPTED: OnceCell<watch::Receiver<Option<&'static str>>> = const { OnceCell::new() };
 }
 
-/// Ends at the next Ctrl-C or request to end; those that come from this call on count, also before it is polled.
-#[cfg(unix)]
+/// Makes signals arrive as events that the next wait sees.
+fn catch_interrupts() -> watch::Receiver<Option<&'static str>> {
+    INTERRUPTED.with(|interrupted| {
+        let listening = || {
+            let (sender, receiver) = watch::channel(None);
+            let signal = signal();
+            tokio::spawn(async move { sender.send_replace(Some(signal.await)) });
+            receiver
+        };
+        interrupted.get_or_init(listening).clone()
+    })
+}
+
+/// Ends at the first Ctrl-C or request to end.
 fn interrupt() -> impl Future<Output = &'static str> {
+    let mut interrupted = catch_interrupts();
+    async move {
+        match interrupted.wait_for(Option::is_some).await.ok().and_then(|name| *name) {
+            Some(name) => name,
+            None => std::future::pending().await,
+        }
+    }
+}
+
+/// The next Ctrl-C or request to end; those that come from this call on count, also before it is polled.
+#[cfg(unix)]
+fn signal() -> impl Future<Output = &'static str> {
     use tokio::signal::unix::{SignalKind, signal};
 
     let signals = signal(SignalKind::interrupt()).and_then(|keys| Ok((keys, signal(SignalKind::terminate())?)));
@@ -572,7 +597,7 @@ fn interrupt() -> impl Future<Output = &'static str> {
 }
 
 #[cfg(not(unix))]
-async fn interrupt() -> &'static str {
+async fn signal() -> &'static str {
     match tokio::signal::ctrl_c().await {
         Ok(()) => "Ctrl-C",
         Err(_) => std::future::pending().await,

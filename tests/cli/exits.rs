@@ -107,7 +107,7 @@ fn six_in_words() {
         snapbox::str![[r#"
 error: udp://127.0.0.1:10040: sent once, no answer within 100ms: it may or may not have been done
 
-hint: ask before you repeat it: `yerc status`, `yerc job show`, `yerc position` or the matching `get` tell
+hint: ask before you repeat it: `yerc status` tells
 
 "#]]
     );
@@ -172,6 +172,7 @@ fn interrupted_during_a_move() {
     snapbox::assert_data_eq!(
         said(&mut child),
         snapbox::str![[r#"
+stopping the robot: HOLD on
 interrupted: the robot was stopped: HOLD is on; `yerc hold off` releases it
 
 "#]]
