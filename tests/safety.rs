@@ -394,3 +394,12 @@ fn ctrl_c_before_the_order_leaves_the_robot_alone() {
     assert_eq!((output.status.code(), controller.changes()), (Some(130), Vec::new()), "{}", stderr(&output));
     assert!(stderr(&output).contains("nothing was sent"), "{}", stderr(&output));
 }
+
+/// A capture file that cannot be begun is told before anything is sent.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_under_a_trace_is_told_before_the_order() {
+    let controller = robot(|_| None);
+    let output = controller.run("servo off --trace /dev/full");
+    assert_eq!((output.status.code(), controller.changes()), (Some(1), Vec::new()), "{}", stderr(&output));
+}
