@@ -100,6 +100,8 @@ impl Failure {
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
                 failure.hint("free some space, and repeat the command")
             }
+            ErrorKind::InvalidData => failure.hint("this is not the kind of file that is wanted here"),
+            ErrorKind::IsADirectory => failure.hint("name a file, not a folder"),
             ErrorKind::NotFound => failure.hint("check the path; missing folders are not made"),
             _ => failure,
         }

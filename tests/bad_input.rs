@@ -1,8 +1,13 @@
 //! Mistakes of the operator and of everything around him, through the built binary: the right exit code, a message that
 //! says what to do, and nothing lost.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+use std::io::{BufRead as _, BufReader};
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
+
+use serde_json::Value;
 
 /// Runs `armctl` in an empty home folder, with stdin closed and no environment of its own.
 fn armctl(home: &Path, words: &str) -> Output {
@@ -61,8 +66,126 @@ fn a_line_that_does_not_parse_fails_in_the_format_it_asks_for() {
     for format in ["--json", "-ojsonl", "--format=json", "-qo json"] {
         let output = armctl(home.path(), &format!("--sim yerc var set B0=256 {format}"));
         fails(&output, 2, &[]);
-        let error: serde_json::Value = serde_json::from_slice(&output.stderr).expect(format);
+        let error: Value = serde_json::from_slice(&output.stderr).expect(format);
         assert_eq!(error["error"]["exit"], 2, "{format}");
         assert!(output.stdout.is_empty(), "{format}");
+    }
+}
+
+/// A simulator on real ports that ends with the test.
+struct Server {
+    process: Child,
+    url: String,
+}
+
+impl Server {
+    fn start(home: &Path) -> Self {
+        let mut process = command(home, "sim yerc --bind 127.0.0.1:0 --json").stdout(Stdio::piped()).spawn().unwrap();
+        let mut line = String::new();
+        BufReader::new(process.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
+        let told: Value = serde_json::from_str(&line).unwrap();
+        Self { process, url: told["data"]["target"].as_str().unwrap().to_owned() }
+    }
+
+    fn data(&self, home: &Path, words: &str) -> Value {
+        let output = armctl(home, &format!("-t {} --json {words}", self.url));
+        succeeds(&output);
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()["data"].take()
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.process.kill().unwrap();
+        self.process.wait().unwrap();
+    }
+}
+
+#[cfg(unix)]
+fn signal(process: &Child, name: &str) {
+    assert!(Command::new("kill").arg(format!("-{name}")).arg(process.id().to_string()).status().unwrap().success());
+}
+
+#[cfg(unix)]
+#[test]
+fn whatever_ends_a_move_holds_the_robot_first() {
+    let home = tempfile::tempdir().unwrap();
+    for name in ["INT", "TERM", "HUP"] {
+        let server = Server::start(home.path());
+        let words = format!("-t {} yerc move pulse joint --pulses 90000,0,0,0,0,0 --speed 1% --yes --json", server.url);
+        let going = command(home.path(), &words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let until = format!("-t {} yerc status --watch 20ms --until .data.running --for 20s", server.url);
+        succeeds(&armctl(home.path(), &until));
+        signal(&going, name);
+        let output = going.wait_with_output().unwrap();
+        fails(&output, 130, &["the robot was stopped: HOLD is on"]);
+        assert!(output.stdout.is_empty());
+        assert_eq!(server.data(home.path(), "yerc status")["hold_sources"], serde_json::json!(["command"]), "{name}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_watch_without_pause_ends_on_the_first_signal() {
+    let home = tempfile::tempdir().unwrap();
+    let mut watch = command(home.path(), "--sim yerc status -o jsonl --watch 1ms")
+        .stderr(Stdio::null())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(watch.stdout.take().unwrap()).lines();
+    lines.next().unwrap().unwrap();
+    signal(&watch, "INT");
+    // Reading on keeps the pipe from filling up; it ends with the process.
+    assert!(lines.all(|line| line.is_ok()));
+    assert_eq!(watch.wait().unwrap().code(), Some(130));
+}
+
+#[test]
+fn one_record_holds_every_run_of_a_watch() {
+    /// Datagrams in a capture file: its blocks of type 6.
+    fn datagrams(record: &[u8]) -> usize {
+        let word = |at: usize| u32::from_le_bytes(record[at..at + 4].try_into().unwrap());
+        let (mut at, mut count) = (0, 0);
+        while at < record.len() {
+            count += usize::from(word(at) == 6);
+            at += usize::try_from(word(at + 4)).unwrap();
+        }
+        count
+    }
+    let home = tempfile::tempdir().unwrap();
+    let recorded = |words: &str| {
+        succeeds(&armctl(home.path(), words));
+        datagrams(&std::fs::read(home.path().join("t.pcapng")).unwrap())
+    };
+    assert_eq!(recorded("--sim yerc status --trace t.pcapng --watch 1ms --count 3"), 6);
+    assert_eq!(recorded("--sim yerc status --trace t.pcapng"), 2, "an older record is replaced");
+    std::fs::write(
+        home.path().join("robots.toml"),
+        "[[robot]]\nname = \"a\"\nfamily = \"yerc\"\ntarget = \"sim:\"\n[[robot]]\nname = \"b\"\nfamily = \"yerc\"\n\
+         target = \"sim:\"\n",
+    )
+    .unwrap();
+    assert_eq!(recorded("--config robots.toml --all yerc status --trace t.pcapng"), 4, "two robots share it");
+}
+
+#[test]
+fn what_the_model_cannot_do_is_told_before_anybody_is_asked() {
+    let home = tempfile::tempdir().unwrap();
+    // Without --yes and without a terminal a motion that could be asked about fails with 7.
+    let line = "yerc move joint --to 1,2,3,4,5,6 --speed 1% --group R8";
+    fails(&armctl(home.path(), &format!("-t udp://127.0.0.1:9?model=fs100 {line}")), 2, &["robot number is 8"]);
+    fails(&armctl(home.path(), &format!("-t udp://127.0.0.1:9?model=dx200 {line}")), 7, &["--yes"]);
+}
+
+#[test]
+fn existing_files_are_kept_with_one_exit_code() {
+    let home = tempfile::tempdir().unwrap();
+    for (name, words) in
+        [("v.json", "yerc var dump v.json"), ("TESTJOB.JBI", "yerc file get TESTJOB.JBI"), ("c", "yerc file cmos c")]
+    {
+        std::fs::write(home.path().join(name), "mine").unwrap();
+        fails(&armctl(home.path(), &format!("--sim {words}")), 7, &["was kept", "--force"]);
+        assert_eq!(std::fs::read(home.path().join(name)).unwrap(), b"mine");
     }
 }

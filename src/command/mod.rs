@@ -5,6 +5,7 @@
 //! completion and schema follow from it.
 
 pub mod common;
+pub mod interrupt;
 pub mod run;
 pub mod yerc;
 

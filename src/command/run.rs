@@ -1,7 +1,6 @@
 //! The one loop that every robot command goes through: choose robots, pass the gate, run, report, repeat.
 
-use std::cell::OnceCell;
-use std::future::{Future, poll_fn};
+use std::future::poll_fn;
 use std::path::{Path, PathBuf};
 use std::task::Poll;
 use std::time::Duration;
@@ -12,9 +11,9 @@ use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
-use tokio::sync::watch;
 use tokio::time::Instant;
 
+use super::interrupt::{catch_interrupts, interruptible};
 use super::{Access, AnyCommand, AnyReport, Context, Family, Outcome, Report};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
@@ -105,19 +104,36 @@ impl Run {
         Gate::pass_many(risk, &robots, each_named)?;
         if risk == Risk::Motion {
             // From here on Ctrl-C, at a question too, ends in a message and an exit code instead of a killed process.
-            drop(catch_interrupts());
+            catch_interrupts();
             for robot in &robots {
                 self.foresee(command, robot).await.map_err(|failure| Stopped::at(robot, command, failure))?;
             }
         }
         for robot in &robots {
-            let passed = self.gate.pass(&self.screen, robot, risk, &command.intent());
+            let passed = self.pass_gate(robot, risk, command.intent()).await;
             passed.map_err(|failure| Stopped::at(robot, command, failure))?;
         }
         self.begin_trace()?;
         match &robots[..] {
             [robot] if !selection.is_plural() => self.one(command, robot).await,
             robots => self.many(command, robots).await,
+        }
+    }
+
+    /// Passes the gate. A question waits for its answer on a thread of its own, so that Ctrl-C is heard meanwhile.
+    async fn pass_gate(&self, robot: &Robot, risk: Risk, intent: String) -> Result<(), Failure> {
+        let (gate, screen) = (self.gate, self.screen);
+        if risk < Risk::Motion {
+            return gate.pass(&screen, robot, risk, &intent);
+        }
+        let robot = robot.clone();
+        let asked = tokio::task::spawn_blocking(move || gate.pass(&screen, &robot, risk, &intent));
+        match interruptible(asked).await {
+            Ok(answered) => answered.map_err(|error| Failure::local(format!("the question failed: {error}")))?,
+            Err(failure) => {
+                screen.ask_note("");
+                Err(Failure { message: format!("{}; nothing was sent", failure.message), ..failure })
+            }
         }
     }
 
@@ -181,7 +197,7 @@ impl Run {
                     }
                     Some(failure)
                 }
-                Err(failure) => return Err(stopped(failure)),
+                Err(failure) => return Err(self.broken_off(robot, command, failure)?),
             };
             if !rounds.next().await.map_err(stopped)? {
                 return match silence {
@@ -190,6 +206,20 @@ impl Run {
                 };
             }
         }
+    }
+
+    /// A failure that ends a watch: in a stream for programs it stands in its place on stdout.
+    fn broken_off<F: Family>(
+        &self,
+        robot: &Robot,
+        command: &dyn AnyCommand<F>,
+        failure: Failure,
+    ) -> Result<Stopped, Failure> {
+        if self.is_for_people() || failure.kind == Kind::Interrupted {
+            return Ok(Stopped::at(robot, command, failure));
+        }
+        self.emit(&timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
+        Ok(Stopped { failure, envelope: None, told: true })
     }
 
     /// Runs on several robots at a time, over a connection each, and reports in the order they were named.
@@ -336,6 +366,11 @@ impl Run {
                 message: format!("{}: left as it is; what was started goes on", interrupt.message),
                 ..interrupt
             }),
+            Err(interrupt) if command.risk() == Risk::Write => Err(Failure {
+                message: format!("{}; what was sent may have been done, in whole or in part", interrupt.message),
+                ..interrupt
+            }
+            .hint("look before you repeat it, with the command that reads what this one writes")),
             Err(interrupt) => Err(interrupt),
         }
     }
@@ -470,7 +505,12 @@ impl<'a> Rounds<'a> {
         let is_over = self.repeat.count.is_some_and(|count| u64::from(self.done) >= count)
             || self.repeat.within.is_some_and(|within| next.duration_since(self.began) > within);
         if !is_over {
-            interruptible(tokio::time::sleep_until(next)).await?;
+            let rest = async {
+                // Even where there is no time to rest, signals are heard.
+                tokio::task::yield_now().await;
+                tokio::time::sleep_until(next).await;
+            };
+            interruptible(rest).await?;
         }
         Ok(!is_over)
     }
@@ -539,67 +579,4 @@ fn timed(envelope: Envelope) -> Envelope {
 
 fn as_value(value: &impl Serialize) -> Result<Value, Failure> {
     serde_json::to_value(value).map_err(|error| Failure::local(format!("report as JSON: {error}")))
-}
-
-/// Waits for `work`, or for Ctrl-C or a request to end.
-pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failure> {
-    // Listens before the work begins: it may send an order the first time it is polled.
-    let interrupt = interrupt();
-    tokio::select! {
-        biased;
-        done = work => Ok(done),
-        name = interrupt => Err(Failure::new(Kind::Interrupted, name)),
-    }
-}
-
-thread_local! {
-    /// The first Ctrl-C or request to end since anybody listened; one that comes between two waits ends the next.
-    static INTERRUPTED: OnceCell<watch::Receiver<Option<&'static str>>> = const { OnceCell::new() };
-}
-
-/// Makes signals arrive as events that the next wait sees.
-fn catch_interrupts() -> watch::Receiver<Option<&'static str>> {
-    INTERRUPTED.with(|interrupted| {
-        let listening = || {
-            let (sender, receiver) = watch::channel(None);
-            let signal = signal();
-            tokio::spawn(async move { sender.send_replace(Some(signal.await)) });
-            receiver
-        };
-        interrupted.get_or_init(listening).clone()
-    })
-}
-
-/// Ends at the first Ctrl-C or request to end.
-fn interrupt() -> impl Future<Output = &'static str> {
-    let mut interrupted = catch_interrupts();
-    async move {
-        match interrupted.wait_for(Option::is_some).await.ok().and_then(|name| *name) {
-            Some(name) => name,
-            None => std::future::pending().await,
-        }
-    }
-}
-
-/// The next Ctrl-C or request to end; those that come from this call on count, also before it is polled.
-#[cfg(unix)]
-fn signal() -> impl Future<Output = &'static str> {
-    use tokio::signal::unix::{SignalKind, signal};
-
-    let signals = signal(SignalKind::interrupt()).and_then(|keys| Ok((keys, signal(SignalKind::terminate())?)));
-    async {
-        let Ok((mut keys, mut terminate)) = signals else { return std::future::pending().await };
-        tokio::select! {
-            _ = keys.recv() => "Ctrl-C",
-            _ = terminate.recv() => "asked to end (SIGTERM)",
-        }
-    }
-}
-
-#[cfg(not(unix))]
-async fn signal() -> &'static str {
-    match tokio::signal::ctrl_c().await {
-        Ok(()) => "Ctrl-C",
-        Err(_) => std::future::pending().await,
-    }
 }

@@ -1,6 +1,6 @@
 //! Questions to a person, on stderr.
 
-use dialoguer::Input;
+use std::io::BufRead as _;
 
 use super::Screen;
 use crate::failure::{Failure, Kind};
@@ -11,27 +11,38 @@ impl Screen {
         Self::stderr(&format!("{}\n", super::escape::lines(text)));
     }
 
-    /// Asks `question` and takes yes or no; an empty answer is no.
+    /// Asks `question` and takes yes or no; an empty answer is no. The terminal stays as it is, so that whatever ends the
+    /// process leaves nothing behind.
     pub fn confirm(&self, question: &str) -> Result<bool, Failure> {
-        let prompt = format!("{question} [y/N]");
-        let answer: String = ask(Input::new().with_prompt(prompt).allow_empty(true))?;
-        Ok(matches!(answer.trim().to_lowercase().as_str(), "y" | "yes"))
-    }
-
-    /// Asks for a word that must be typed as shown.
-    pub fn confirm_word(&self, question: &str, word: &str) -> Result<bool, Failure> {
-        let prompt = format!("{question} Type '{word}' to go on");
-        let answer: String = ask(Input::new().with_prompt(prompt).allow_empty(true))?;
-        Ok(answer.trim() == word)
+        Self::stderr(&format!("{} [y/N] ", super::escape::line(question)));
+        let mut answer = Vec::new();
+        let read = std::io::stdin().lock().read_until(b'\n', &mut answer);
+        if read.map_err(|error| Failure::io("the answer", &error))? == 0 {
+            Self::stderr("\n");
+            return Err(Failure::new(Kind::RefusedHere, "not confirmed: there was no answer; nothing was sent")
+                .hint("answer the question, or use --yes"));
+        }
+        Ok(is_yes(&answer))
     }
 }
 
-fn ask(input: Input<'_, String>) -> Result<String, Failure> {
-    input.interact_text().map_err(|dialoguer::Error::IO(error)| match error.kind() {
-        std::io::ErrorKind::Interrupted => Failure::new(Kind::Interrupted, "nothing was sent"),
-        std::io::ErrorKind::NotConnected | std::io::ErrorKind::UnexpectedEof => {
-            Failure::new(Kind::RefusedHere, "not confirmed").hint("answer the question, or use --yes")
+fn is_yes(answer: &[u8]) -> bool {
+    let answer = answer.trim_ascii();
+    answer.eq_ignore_ascii_case(b"y") || answer.eq_ignore_ascii_case(b"yes")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_yes_is_yes() {
+        for yes in ["y\n", "Y", " yes\r\n", "YES"] {
+            assert!(is_yes(yes.as_bytes()), "{yes:?}");
         }
-        _ => Failure::io("prompt", &error),
-    })
+        for no in ["", "\n", "n", "ye", "yess", "y y", "\x1b[Ay", "ja"] {
+            assert!(!is_yes(no.as_bytes()), "{no:?}");
+        }
+        assert!(!is_yes(b"\xff\n"));
+    }
 }

@@ -9,7 +9,8 @@ use serde::Serialize;
 use tokio::io::{AsyncBufReadExt as _, BufReader, Lines, Stdin};
 
 use crate::command::Report;
-use crate::command::run::{Run, Stopped, interruptible};
+use crate::command::interrupt::interruptible;
+use crate::command::run::{Run, Stopped};
 use crate::command::yerc::simulated::{self, Simulated};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::simulator::Simulator;

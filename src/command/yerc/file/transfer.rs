@@ -130,6 +130,10 @@ pub fn is_job_exists(failure: &Failure) -> bool {
 
 /// A failure that begins with the file it is about.
 pub fn about(name: &str, failure: Failure) -> Failure {
+    // Failures of a local file of the same name have it already.
+    if failure.message.strip_prefix(name).is_some_and(|rest| rest.starts_with([':', ' '])) {
+        return failure;
+    }
     Failure { message: format!("{name}: {}", failure.message), ..failure }
 }
 
