@@ -189,3 +189,29 @@ fn existing_files_are_kept_with_one_exit_code() {
         assert_eq!(std::fs::read(home.path().join(name)).unwrap(), b"mine");
     }
 }
+
+#[test]
+fn control_characters_are_not_sent_to_a_display_or_as_a_name() {
+    let home = tempfile::tempdir().unwrap();
+    for words in [["say", "A\x1b[2J"], ["say", "two\nlines"]] {
+        let output = command(home.path(), "--sim yerc").args(words).output().unwrap();
+        fails(&output, 2, &["control character"]);
+    }
+    let output = command(home.path(), "--sim yerc job select").arg("A\x07B").output().unwrap();
+    fails(&output, 2, &["the job name has a control character in it: \\u{7}"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_behind_stdout_does_not_hide_what_was_done() {
+    let home = tempfile::tempdir().unwrap();
+    let full = || std::fs::File::options().write(true).open("/dev/full").unwrap();
+    let output = command(home.path(), "--sim yerc servo on").stdout(full()).output().unwrap();
+    fails(&output, 1, &["it was done, but not reported", "no space left"]);
+    let output = command(home.path(), "--sim yerc status").stdout(full()).output().unwrap();
+    fails(&output, 1, &["error: stdout: no space left"]);
+    // Of several files one is missing: that is the failure, whatever becomes of the report.
+    let output =
+        command(home.path(), "--sim yerc file get TESTJOB.JBI NOPE.JBI --json").stdout(full()).output().unwrap();
+    fails(&output, 3, &["NOPE.JBI", "0xE29C"]);
+}

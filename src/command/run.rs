@@ -154,11 +154,24 @@ impl Run {
             return self.watch(command, robot).await;
         }
         let report = self.once(command, robot).await.map_err(|failure| Stopped::at(robot, command, failure))?;
-        self.print(robot, command.id(), &*report, Place::Alone)?;
+        let printed = self.print(robot, command.id(), &*report, Place::Alone);
         match report.failure() {
-            None => Ok(()),
-            Some(failure) => Err(Stopped { failure, envelope: None, told: !self.is_for_people() }),
+            // A reader that went away, or a full disk behind stdout, does not turn a failure into something else.
+            Some(failure) => {
+                let told = printed.is_ok() && !self.is_for_people();
+                Err(Stopped { failure, envelope: None, told })
+            }
+            None => Ok(printed.map_err(|failure| self.unprinted(command.risk(), failure))?),
         }
+    }
+
+    /// A failure to report what was done: nobody should do it again for that.
+    fn unprinted(&self, risk: Risk, failure: Failure) -> Failure {
+        if risk == Risk::Read || failure.kind == Kind::PipeClosed || self.gate.dry_run {
+            return failure;
+        }
+        let message = format!("it was done, but not reported: {}", failure.message);
+        Failure { message, ..failure }.hint("look before you repeat it")
     }
 
     /// Repeats a reading command over one connection.
@@ -166,8 +179,9 @@ impl Run {
         let stopped = |failure| Stopped::at(robot, command, failure);
         let mut link = self.connect(command, robot).await.map_err(stopped)?;
         let watched = self.watch_over(command, robot, &mut link).await;
-        F::close(link, &self.screen).await.map_err(stopped)?;
-        watched
+        let closed = F::close(link, &self.screen).await;
+        watched?;
+        closed.map_err(stopped)
     }
 
     async fn watch_over<F: Family>(

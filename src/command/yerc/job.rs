@@ -11,7 +11,7 @@ use tokio::time::Instant;
 use super::Family;
 use super::link::{Link, Refusal};
 use super::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost};
-use super::orders::usage;
+use super::orders::{refuse_controls, usage};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::text::{Encoding, Name};
@@ -175,6 +175,7 @@ const MAX_NAME: usize = 32;
 
 impl Select {
     fn query(&self, name: &str, encoding: Encoding, model: Model) -> Result<SelectJob, Failure> {
+        refuse_controls("the job name", name)?;
         let bytes = encoding.encode_name(name).map_err(|error| {
             Failure::usage(format!("the job name: {error}")).hint("--encoding or the robot's entry sets the encoding")
         })?;

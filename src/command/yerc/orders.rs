@@ -147,9 +147,19 @@ impl Command for Say {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+        refuse_controls("the message", &self.text)?;
         let bytes = context.link.encode("the message", &self.text)?;
         context.link.ask(&query::Say::new(&bytes).map_err(usage)?).await?;
         Ok(Done::new(if self.text.is_empty() { "the message is cleared" } else { "the message is on the pendant" }))
+    }
+}
+
+/// Texts for a display and names of jobs have no control characters: what one would do there is anybody's guess.
+pub(super) fn refuse_controls(what: &str, text: &str) -> Result<(), Failure> {
+    match text.chars().find(|c| c.is_control()) {
+        None => Ok(()),
+        Some(found) => Err(Failure::usage(format!("{what} has a control character in it: {}", found.escape_debug()))
+            .hint("leave it out")),
     }
 }
 
