@@ -16,8 +16,8 @@ impl Screen {
     pub fn confirm(&self, question: &str) -> Result<bool, Failure> {
         Self::stderr(&format!("{} [y/N] ", super::escape::line(question)));
         let mut answer = Vec::new();
-        let read = std::io::stdin().lock().read_until(b'\n', &mut answer);
-        if read.map_err(|error| Failure::io("the answer", &error))? == 0 {
+        // A terminal that cannot be read any more, as it was closed, gives no answer either.
+        if std::io::stdin().lock().read_until(b'\n', &mut answer).unwrap_or(0) == 0 {
             Self::stderr("\n");
             return Err(Failure::new(Kind::RefusedHere, "not confirmed: there was no answer; nothing was sent")
                 .hint("answer the question, or use --yes"));
