@@ -124,7 +124,7 @@ fn a_dump_is_restored_to_the_last_byte() {
     bench.data(&[&["var", "set"], &values[..]].concat());
     let summary = bench.data(&["var", "dump", &first]);
     assert_eq!(summary["variables"], 500 + 3 * 128);
-    assert_eq!(bench.run(&["var", "dump", &first]).unwrap_err().kind.exit(), 7);
+    assert_eq!(bench.run(&["var", "dump", &first]).unwrap_err().kind.exit(), 1);
     let mut other = Bench::new("sim:?model=dx200");
     let restored = other.data(&["var", "restore", &first]);
     assert_eq!(restored["written"].as_u64().unwrap() + restored["left_alone"].as_u64().unwrap(), 884);
