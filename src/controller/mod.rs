@@ -7,6 +7,7 @@
 use std::time::Duration;
 
 pub mod text;
+pub mod toyo;
 pub mod yerc;
 
 /// A moment, as time passed since an origin of the driver's choice. It never runs backwards.

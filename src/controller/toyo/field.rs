@@ -1,0 +1,520 @@
+//! One value on the line: its form, to the character.
+//!
+//! Everything has a fixed width (TO 2-4 to 2-8 print it as templates). What is sent is in that form and in range; what
+//! comes may be wider, narrower, or out of range, as long as it means something.
+
+use std::borrow::Cow;
+use std::fmt;
+
+use thiserror::Error;
+
+/// What stands in one place of a block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Field {
+    /// In snake case: `ax1`, `x`, `station`.
+    pub name: &'static str,
+    /// How it is written.
+    pub form: Form,
+    /// What it is.
+    pub about: &'static str,
+    /// Unit of a number: `mm`, `mm/s`, `s`, `%`, …; empty where it has none.
+    pub unit: &'static str,
+    /// Whether the controller may send asterisks instead (TO 2-8, error history).
+    pub starred: bool,
+}
+
+/// How a value is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// Decimal digits with leading zeros.
+    Number(Number),
+    /// Two hexadecimal digits.
+    Hex,
+    /// One of some words, the longest that fits.
+    Word(&'static [Word]),
+    /// Eight of `0` and `1`, bit 8 first (ambiguity C9).
+    Bits,
+    /// Eight of `0`, `1` and `.`, bit 8 first; a dot leaves its bit alone.
+    Mask,
+    /// Anything without a blank.
+    Token,
+    /// The rest of the block, outer blanks apart.
+    Text,
+}
+
+/// The form of a number. Values count the last decimal: 12.34 is 1234.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Number {
+    /// Whether a sign is always written.
+    pub signed: bool,
+    /// Digits before the point.
+    pub whole: u8,
+    /// Digits after it; without any there is no point.
+    pub decimals: u8,
+    /// Digits that may come beyond those, and are kept (ambiguity R8).
+    pub spare: u8,
+    /// Least value that may be sent.
+    pub least: i32,
+    /// Greatest value that may be sent.
+    pub most: i32,
+}
+
+/// A word with its meaning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Word {
+    /// As on the line.
+    pub text: &'static str,
+    /// In words; the same as `text` where that says it.
+    pub about: &'static str,
+}
+
+/// A value, without its form.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Value {
+    /// In units of the last decimal of its field.
+    Number(i32),
+    /// From two hexadecimal digits.
+    Byte(u8),
+    /// As on the line.
+    Word(&'static str),
+    /// Eight bits; bit 1 of the manual is the least significant.
+    Bits(u8),
+    /// Which bits count, and what they are.
+    Mask(Mask),
+    /// Text that has no form.
+    Text(String),
+    /// Asterisks in place of a value.
+    Stars,
+}
+
+/// Conditions or orders for eight bits; bit 1 of the manual is the least significant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Mask {
+    /// Bits that count.
+    pub care: u8,
+    /// What they are; 0 where a bit does not count.
+    pub bits: u8,
+}
+
+/// Why something is no value of a field.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum FieldError {
+    /// Not in the field's form.
+    #[error("{name}: '{}' is not {form}", found.escape_debug())]
+    Form {
+        /// Name of the field.
+        name: &'static str,
+        /// What stood there.
+        found: String,
+        /// What should.
+        form: String,
+    },
+    /// A number beyond what may be sent.
+    #[error("{name}: {found} is out of range ({form})")]
+    Range {
+        /// Name of the field.
+        name: &'static str,
+        /// The number.
+        found: String,
+        /// What may be.
+        form: String,
+    },
+}
+
+impl Number {
+    /// A whole number of so many digits.
+    pub const fn digits(whole: u8, least: i32, most: i32) -> Self {
+        Self { signed: false, whole, decimals: 0, spare: 0, least, most }
+    }
+
+    /// A number with decimals; the range counts the last decimal.
+    pub const fn fixed(whole: u8, decimals: u8, least: i32, most: i32) -> Self {
+        Self { signed: false, whole, decimals, spare: 0, least, most }
+    }
+
+    /// The same with a sign that is always written.
+    pub const fn signed(whole: u8, decimals: u8, least: i32, most: i32) -> Self {
+        Self { signed: true, whole, decimals, spare: 0, least, most }
+    }
+
+    /// The same, with decimals that may come although they are not sent; values and range count them.
+    #[must_use]
+    pub const fn with_spare(self, spare: u8) -> Self {
+        Self { spare, ..self }
+    }
+
+    /// How many of the units that values count make one.
+    pub const fn scale(self) -> i32 {
+        10_i32.pow(self.decimals as u32 + self.spare as u32)
+    }
+
+    /// Units between two values that can be sent.
+    const fn step(self) -> i32 {
+        10_i32.pow(self.spare as u32)
+    }
+
+    /// A value as people write it: `-12.34`.
+    pub fn plain(self, value: i32) -> String {
+        let sign = if value < 0 { "-" } else { "" };
+        format!("{sign}{}", self.unsigned(value, 0))
+    }
+
+    /// Full width, as on the line; what is too large comes out wider.
+    fn emit(self, value: i32) -> String {
+        let sign = match (self.signed, value < 0) {
+            (_, true) => "-",
+            (true, false) => "+",
+            (false, false) => "",
+        };
+        format!("{sign}{}", self.unsigned(value, self.whole))
+    }
+
+    /// Digits, with so many before the point; spare decimals that are needed take their places.
+    fn unsigned(self, value: i32, whole: u8) -> String {
+        let (scale, step) = (self.scale().unsigned_abs(), self.step().unsigned_abs());
+        let digits = value.unsigned_abs();
+        let (integer, fraction) = (digits / scale, digits % scale);
+        let (whole, decimals, fraction) = if fraction % step == 0 {
+            (whole, self.decimals, fraction / step)
+        } else {
+            (whole.saturating_sub(self.spare), self.decimals + self.spare, fraction)
+        };
+        let (whole, decimals) = (usize::from(whole), usize::from(decimals));
+        if decimals == 0 { format!("{integer:0whole$}") } else { format!("{integer:0whole$}.{fraction:0decimals$}") }
+    }
+
+    /// Digits with or without sign and point. Decimals beyond the form must be zeros: nothing is rounded away.
+    fn parse(self, text: &str) -> Option<i32> {
+        let (sign, digits) = match text.as_bytes().first()? {
+            b'-' => (-1, &text[1..]),
+            b'+' => (1, &text[1..]),
+            _ => (1, text),
+        };
+        let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+        let is_digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
+        if (whole.is_empty() && fraction.is_empty()) || !is_digits(whole) || !is_digits(fraction) {
+            return None;
+        }
+        let decimals = usize::from(self.decimals + self.spare);
+        let (kept, beyond) = fraction.split_at(decimals.min(fraction.len()));
+        if beyond.bytes().any(|digit| digit != b'0') {
+            return None;
+        }
+        let units: i64 = format!("{whole}{kept:0<decimals$}").parse().ok()?;
+        i32::try_from(sign * units).ok()
+    }
+
+    /// The range in words: `-8000.00 to 8000.00`.
+    fn range(self) -> String {
+        if self.least == self.most {
+            format!("only {}", self.plain(self.least))
+        } else {
+            format!("{} to {}", self.plain(self.least), self.plain(self.most))
+        }
+    }
+}
+
+impl Mask {
+    /// All eight bits.
+    pub const fn all(bits: u8) -> Self {
+        Self { care: 0xFF, bits }
+    }
+
+    /// Whether the bits of a port are as this says.
+    pub const fn matches(self, port: u8) -> bool {
+        port & self.care == self.bits
+    }
+
+    /// A port after this has been done to it.
+    pub const fn applied(self, port: u8) -> u8 {
+        port & !self.care | self.bits
+    }
+
+    fn parse(text: &str, may_skip: bool) -> Option<Self> {
+        let mut mask = Self::default();
+        let mut count = 0;
+        for c in text.chars() {
+            let (care, bit) = match c {
+                '0' => (1, 0),
+                '1' => (1, 1),
+                '.' if may_skip => (0, 0),
+                _ => return None,
+            };
+            mask = Self { care: mask.care << 1 | care, bits: mask.bits << 1 | bit };
+            count += 1;
+        }
+        (count == 8).then_some(mask)
+    }
+}
+
+impl fmt::Display for Mask {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        (0..8).rev().try_for_each(|bit| {
+            f.write_str(match (self.care >> bit & 1, self.bits >> bit & 1) {
+                (0, _) => ".",
+                (_, 0) => "0",
+                _ => "1",
+            })
+        })
+    }
+}
+
+impl Field {
+    /// A field without unit.
+    pub const fn new(name: &'static str, form: Form, about: &'static str) -> Self {
+        Self { name, form, about, unit: "", starred: false }
+    }
+
+    /// The same with the unit of its number.
+    #[must_use]
+    pub const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    /// The same, that may be asterisks.
+    #[must_use]
+    pub const fn starred(self) -> Self {
+        Self { starred: true, ..self }
+    }
+
+    /// The same in another place.
+    #[must_use]
+    pub const fn named(self, name: &'static str) -> Self {
+        Self { name, ..self }
+    }
+
+    /// A value as it is sent.
+    pub fn emit(&self, value: &Value) -> Result<String, FieldError> {
+        match (self.form, value) {
+            (Form::Number(number), Value::Number(units)) => {
+                if (number.least..=number.most).contains(units) && units % number.step() == 0 {
+                    Ok(number.emit(*units))
+                } else {
+                    Err(self.out_of_range(number.plain(*units)))
+                }
+            }
+            (Form::Word(words), Value::Word(text)) if words.iter().any(|word| word.text == *text) => {
+                Ok((*text).to_owned())
+            }
+            (Form::Hex, Value::Byte(_)) | (Form::Bits, Value::Bits(_)) | (Form::Mask, Value::Mask(_)) => {
+                Ok(self.written(value))
+            }
+            (Form::Token | Form::Text, Value::Text(text)) if text.bytes().all(|byte| (0x20..0x7F).contains(&byte)) => {
+                Ok(text.clone())
+            }
+            (_, Value::Stars) if self.starred => Ok(self.written(value)),
+            _ => Err(self.misfit(&self.written(value))),
+        }
+    }
+
+    /// A value in its form, whatever its range: what a controller sends, and what is shown of it.
+    pub fn written(&self, value: &Value) -> String {
+        match (value, self.form) {
+            (Value::Number(units), Form::Number(number)) => number.emit(*units),
+            (Value::Number(units), _) => units.to_string(),
+            (Value::Byte(byte), _) => format!("{byte:02X}"),
+            (Value::Word(text), _) => (*text).to_owned(),
+            (Value::Bits(bits), _) => Mask::all(*bits).to_string(),
+            (Value::Mask(mask), _) => mask.to_string(),
+            (Value::Text(text), _) => text.clone(),
+            (Value::Stars, Form::Number(number)) => "*".repeat(number.whole.into()),
+            (Value::Stars, _) => "**".to_owned(),
+        }
+    }
+
+    /// Takes the value off the front of a text, as far as it goes; returns it with what is left.
+    pub fn take<'t>(&self, text: &'t str) -> Result<(Value, &'t str), FieldError> {
+        let len = match self.form {
+            Form::Number(_) => number_len(text),
+            Form::Hex => text.bytes().take(2).take_while(u8::is_ascii_hexdigit).count(),
+            Form::Word(words) => words.iter().map(|word| fitting(word.text, text)).max().unwrap_or(0),
+            Form::Bits | Form::Mask => text.bytes().take(8).take_while(|byte| b"01.".contains(byte)).count(),
+            Form::Token => text.find(' ').unwrap_or(text.len()),
+            Form::Text => text.len(),
+        };
+        let len = if self.starred && len == 0 { text.bytes().take_while(|byte| *byte == b'*').count() } else { len };
+        let (own, rest) = text.split_at(len);
+        let value = self.value(own).ok_or_else(|| self.misfit(shown(text)))?;
+        Ok((value, rest))
+    }
+
+    /// A value that somebody wrote, alone: in form, and in the range that may be sent.
+    pub fn read(&self, text: &str) -> Result<Value, FieldError> {
+        let value = self.value(text).ok_or_else(|| self.misfit(text))?;
+        self.check(&value)?;
+        Ok(value)
+    }
+
+    /// Whether a value may be sent.
+    pub fn check(&self, value: &Value) -> Result<(), FieldError> {
+        self.emit(value).map(|_| ())
+    }
+
+    /// What may stand here, in words: `a number 0000 to 9999`, `J or E`.
+    pub fn expected(&self) -> String {
+        match self.form {
+            Form::Number(number) if self.unit.is_empty() => format!("a number, {}", number.range()),
+            Form::Number(number) => format!("a number, {} {}", number.range(), self.unit),
+            Form::Hex => "two hexadecimal digits".to_owned(),
+            Form::Word(words) => {
+                let texts: Vec<&str> = words.iter().map(|word| word.text.trim_end()).collect();
+                match texts.split_last() {
+                    Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+                    _ => texts.concat(),
+                }
+            }
+            Form::Bits => "eight of 0 and 1".to_owned(),
+            Form::Mask => "eight of 0, 1 and .".to_owned(),
+            Form::Token => "one word".to_owned(),
+            Form::Text => "a text".to_owned(),
+        }
+    }
+
+    /// What a value means, as people read it: `12.5 mm`, `absolute`.
+    pub fn meaning<'v>(&self, value: &'v Value) -> Cow<'v, str> {
+        match (value, self.form) {
+            (Value::Number(units), Form::Number(number)) => {
+                let plain = number.plain(*units);
+                Cow::Owned(if self.unit.is_empty() { plain } else { format!("{plain} {}", self.unit) })
+            }
+            (Value::Word(text), Form::Word(words)) => {
+                let word = words.iter().find(|word| word.text == *text);
+                Cow::Borrowed(word.map_or(*text, |word| word.about))
+            }
+            (Value::Text(text), _) => Cow::Borrowed(text),
+            _ => Cow::Owned(self.written(value)),
+        }
+    }
+
+    fn value(&self, text: &str) -> Option<Value> {
+        if self.starred && !text.is_empty() && text.bytes().all(|byte| byte == b'*') {
+            return Some(Value::Stars);
+        }
+        match self.form {
+            Form::Number(number) => number.parse(text).map(Value::Number),
+            Form::Hex if text.len() == 2 => u8::from_str_radix(text, 16).ok().map(Value::Byte),
+            Form::Hex => None,
+            Form::Word(words) => {
+                let found = words.iter().find(|word| word.text.trim_end() == text.trim_end());
+                found.map(|word| Value::Word(word.text))
+            }
+            Form::Bits => Mask::parse(text, false).map(|mask| Value::Bits(mask.bits)),
+            Form::Mask => Mask::parse(text, true).map(Value::Mask),
+            Form::Token if text.is_empty() || text.contains(' ') => None,
+            Form::Token | Form::Text => Some(Value::Text(text.trim().to_owned())),
+        }
+    }
+
+    fn misfit(&self, found: &str) -> FieldError {
+        FieldError::Form { name: self.name, found: found.to_owned(), form: self.expected() }
+    }
+
+    fn out_of_range(&self, found: String) -> FieldError {
+        FieldError::Range { name: self.name, found, form: self.expected() }
+    }
+}
+
+/// Bytes at the front that are a number.
+fn number_len(text: &str) -> usize {
+    let count = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
+    let sign = usize::from(text.starts_with(['+', '-']));
+    let whole = count(&text[sign..]);
+    let fraction = text[sign + whole..].strip_prefix('.').map_or(0, |rest| 1 + count(rest));
+    if whole + fraction == 0 { 0 } else { sign + whole + fraction }
+}
+
+/// Bytes at the front that are this word; its padding may be missing.
+fn fitting(word: &str, text: &str) -> usize {
+    let bare = word.trim_end();
+    match text.strip_prefix(bare) {
+        None => 0,
+        Some(_) if text.starts_with(word) => word.len(),
+        Some(_) => bare.len(),
+    }
+}
+
+/// The front of a text, for an error.
+fn shown(text: &str) -> &str {
+    let end = text.char_indices().nth(16).map_or(text.len(), |(at, _)| at);
+    let front = &text[..end];
+    front.split_inclusive(' ').next().map_or(front, str::trim_end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const X: Field = Field::new("x", Form::Number(Number::signed(4, 2, -800_000, 800_000)), "X").unit("mm");
+    const STEP: Field = Field::new("step", Form::Number(Number::digits(4, 1, 5000)), "step");
+    const COMPARE: Field = Field::new(
+        "compare",
+        Form::Word(&[
+            Word { text: "= ", about: "equal" },
+            Word { text: "< ", about: "less" },
+            Word { text: "<=", about: "at most" },
+        ]),
+        "comparison",
+    );
+    const PORT: Field = Field::new("data", Form::Mask, "port");
+
+    #[test]
+    fn numbers_are_sent_in_full_width() {
+        assert_eq!(X.emit(&Value::Number(10_000)).unwrap(), "+0100.00");
+        assert_eq!(X.emit(&Value::Number(-5)).unwrap(), "-0000.05");
+        assert_eq!(STEP.emit(&Value::Number(7)).unwrap(), "0007");
+        assert_eq!(
+            X.emit(&Value::Number(800_001)).unwrap_err().to_string(),
+            "x: 8000.01 is out of range (a number, -8000.00 to 8000.00 mm)"
+        );
+    }
+
+    #[test]
+    fn numbers_come_in_any_width() {
+        let take = |text| X.take(text).map(|(value, rest)| (value, rest.to_owned()));
+        assert_eq!(take("+0100.00 Y"), Ok((Value::Number(10_000), " Y".into())));
+        assert_eq!(take("-1.5"), Ok((Value::Number(-150), String::new())));
+        assert_eq!(take("+0000.000"), Ok((Value::Number(0), String::new())));
+        assert!(take("+0000.001").is_err(), "nothing is rounded away");
+        assert!(take("+").is_err());
+        assert!(take("99999999999").is_err());
+        assert_eq!(take("1.2.3"), Ok((Value::Number(120), ".3".into())));
+    }
+
+    #[test]
+    fn a_decimal_too_many_is_kept_where_the_manual_is_of_two_minds() {
+        let number = Number::signed(3, 2, -99_990, 99_990).with_spare(1);
+        let offset = Field::new("ax1", Form::Number(number), "offset");
+        let (value, _) = offset.take("+12.345").unwrap();
+        assert_eq!(value, Value::Number(12_345));
+        assert_eq!(offset.written(&value), "+12.345");
+        assert!(offset.emit(&value).is_err());
+        assert_eq!(offset.emit(&offset.take("-001.50").unwrap().0).unwrap(), "-001.50");
+    }
+
+    #[test]
+    fn comparisons_are_two_characters_wide() {
+        assert_eq!(COMPARE.take("= 0000").unwrap(), (Value::Word("= "), "0000"));
+        assert_eq!(COMPARE.take("=0000").unwrap(), (Value::Word("= "), "0000"));
+        assert_eq!(COMPARE.take("<=0000").unwrap(), (Value::Word("<="), "0000"));
+        assert!(COMPARE.take("!").is_err());
+    }
+
+    #[test]
+    fn a_mask_leaves_bits_alone() {
+        let (value, rest) = PORT.take(".......1 AND").unwrap();
+        assert_eq!((value.clone(), rest), (Value::Mask(Mask { care: 1, bits: 1 }), " AND"));
+        assert_eq!(PORT.emit(&value).unwrap(), ".......1");
+        let mask = Mask::parse("10.10.10", true).unwrap();
+        assert_eq!(mask.applied(0b0111_1111), 0b1011_0110);
+        assert!(mask.matches(0b1001_0010) && !mask.matches(0));
+        assert!(PORT.take("10").is_err());
+    }
+
+    #[test]
+    fn what_somebody_wrote_must_be_in_range() {
+        assert!(STEP.read("5000").is_ok());
+        assert!(matches!(STEP.read("5001"), Err(FieldError::Range { .. })));
+        assert!(matches!(STEP.read("x"), Err(FieldError::Form { .. })));
+        assert_eq!(COMPARE.read("<").unwrap(), Value::Word("< "));
+    }
+}

@@ -1,0 +1,231 @@
+//! A block or a part of one: fixed words with fields between them.
+
+use thiserror::Error;
+
+use super::field::{Field, FieldError, Mask, Value};
+
+/// Text with fields in it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Layout {
+    /// As the manual prints it, with `{}` in the place of each field.
+    pub text: &'static str,
+    /// The fields, in their order.
+    pub fields: &'static [Field],
+}
+
+/// Values in the places of a layout.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Record {
+    layout: Layout,
+    values: Vec<Value>,
+}
+
+/// Why a text does not fit a layout, and where.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{what} at column {}", at + 1)]
+pub struct LayoutError {
+    /// Bytes before the place.
+    pub at: usize,
+    /// What is wrong there.
+    pub what: Misfit,
+}
+
+/// What is wrong in one place of a text.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum Misfit {
+    /// Other words than expected.
+    #[error("'{expected}' is expected")]
+    Words {
+        /// What should stand there.
+        expected: &'static str,
+    },
+    /// No value of the field.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+    /// More than there should be.
+    #[error("'{}' is too much", found.escape_debug())]
+    Rest {
+        /// What is left.
+        found: String,
+    },
+    /// Not as many values as fields.
+    #[error("{found} values for {expected} fields")]
+    Count {
+        /// Fields.
+        expected: usize,
+        /// Values.
+        found: usize,
+    },
+}
+
+impl Layout {
+    /// Only words.
+    pub const fn words(text: &'static str) -> Self {
+        Self { text, fields: &[] }
+    }
+
+    /// Words and fields.
+    pub const fn new(text: &'static str, fields: &'static [Field]) -> Self {
+        Self { text, fields }
+    }
+
+    /// The text with values in it, each in its form and range.
+    pub fn emit(&self, values: &[Value]) -> Result<String, Misfit> {
+        if values.len() != self.fields.len() {
+            return Err(Misfit::Count { expected: self.fields.len(), found: values.len() });
+        }
+        self.join(|index, field| Ok(field.emit(&values[index])?))
+    }
+
+    /// The values in a text. Outer blanks, and more blanks than needed between items, do not matter (ambiguity A7).
+    pub fn parse(&self, text: &str) -> Result<Record, LayoutError> {
+        let mut values = Vec::with_capacity(self.fields.len());
+        let mut rest = text.trim_start_matches(' ');
+        let at = |rest: &str| text.len() - rest.len();
+        let mut words = self.text.split("{}");
+        let mut fields = self.fields.iter();
+        loop {
+            let expected = words.next().unwrap_or_default();
+            rest =
+                pass(expected, rest).map_err(|rest| LayoutError { at: at(rest), what: Misfit::Words { expected } })?;
+            let Some(field) = fields.next() else { break };
+            let taken = field.take(rest);
+            let (value, left) = taken.map_err(|error| LayoutError { at: at(rest), what: error.into() })?;
+            values.push(value);
+            rest = left;
+        }
+        match rest.trim_end_matches(' ') {
+            "" => Ok(Record { layout: *self, values }),
+            found => Err(LayoutError { at: at(rest), what: Misfit::Rest { found: found.to_owned() } }),
+        }
+    }
+
+    /// Values for the fields, which may be out of range: what a controller holds.
+    pub fn record(&self, values: Vec<Value>) -> Result<Record, Misfit> {
+        if values.len() == self.fields.len() {
+            Ok(Record { layout: *self, values })
+        } else {
+            Err(Misfit::Count { expected: self.fields.len(), found: values.len() })
+        }
+    }
+
+    /// Words and fields joined, each field as `write` has it.
+    fn join(&self, mut write: impl FnMut(usize, &Field) -> Result<String, Misfit>) -> Result<String, Misfit> {
+        let mut text = String::with_capacity(self.text.len() + 8 * self.fields.len());
+        for (index, words) in self.text.split("{}").enumerate() {
+            text.push_str(words);
+            if let Some(field) = self.fields.get(index) {
+                text.push_str(&write(index, field)?);
+            }
+        }
+        Ok(text)
+    }
+}
+
+/// What follows the expected words; a blank stands for one or more. On failure, the place where they differ.
+fn pass<'t>(words: &str, mut text: &'t str) -> Result<&'t str, &'t str> {
+    for expected in words.chars() {
+        let rest = text.strip_prefix(expected).ok_or(text)?;
+        text = if expected == ' ' { rest.trim_start_matches(' ') } else { rest };
+    }
+    Ok(text)
+}
+
+impl Record {
+    /// Its layout.
+    pub fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// Its values, in the order of the fields.
+    pub fn values(&self) -> &[Value] {
+        &self.values
+    }
+
+    /// Fields with their values.
+    pub fn pairs(&self) -> impl Iterator<Item = (&'static Field, &Value)> {
+        self.layout.fields.iter().zip(&self.values)
+    }
+
+    /// The value of a field by its name.
+    pub fn value(&self, name: &str) -> Option<&Value> {
+        self.pairs().find(|(field, _)| field.name == name).map(|(_, value)| value)
+    }
+
+    /// A number, in units of its last decimal; `None` if there is no such number.
+    pub fn number(&self, name: &str) -> Option<i32> {
+        if let Value::Number(number) = self.value(name)? { Some(*number) } else { None }
+    }
+
+    /// A word as on the line.
+    pub fn word(&self, name: &str) -> Option<&'static str> {
+        if let Value::Word(word) = self.value(name)? { Some(word) } else { None }
+    }
+
+    /// A byte of two hexadecimal digits.
+    pub fn byte(&self, name: &str) -> Option<u8> {
+        if let Value::Byte(byte) = self.value(name)? { Some(*byte) } else { None }
+    }
+
+    /// The bits of a port.
+    pub fn bits(&self, name: &str) -> Option<u8> {
+        if let Value::Bits(bits) = self.value(name)? { Some(*bits) } else { None }
+    }
+
+    /// Conditions or orders for a port.
+    pub fn mask(&self, name: &str) -> Option<Mask> {
+        if let Value::Mask(mask) = self.value(name)? { Some(*mask) } else { None }
+    }
+
+    /// A text without form.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        if let Value::Text(text) = self.value(name)? { Some(text) } else { None }
+    }
+
+    /// As it is sent: every value in form and range.
+    pub fn emit(&self) -> Result<String, Misfit> {
+        self.layout.emit(&self.values)
+    }
+
+    /// In form, whatever the ranges: what a controller answers.
+    pub fn written(&self) -> String {
+        let write = |index: usize, field: &Field| Ok(field.written(&self.values[index]));
+        self.layout.join(write).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::toyo::field::{Form, Number};
+
+    const TWO: Layout = Layout::new(
+        "MCNT CN{}={}",
+        &[
+            Field::new("counter", Form::Number(Number::digits(2, 1, 99)), "counter"),
+            Field::new("count", Form::Number(Number::digits(4, 0, 9999)), "count"),
+        ],
+    );
+
+    #[test]
+    fn what_is_sent_is_what_is_printed() {
+        let values = [Value::Number(1), Value::Number(0)];
+        assert_eq!(TWO.emit(&values).unwrap(), "MCNT CN01=0000");
+        assert_eq!(TWO.parse("MCNT CN01=0000").unwrap().values(), values);
+        assert_eq!(TWO.emit(&values[..1]), Err(Misfit::Count { expected: 2, found: 1 }));
+    }
+
+    #[test]
+    fn blanks_do_not_matter() {
+        assert_eq!(TWO.parse("  MCNT   CN1=12  ").unwrap().written(), "MCNT CN01=0012");
+    }
+
+    #[test]
+    fn the_place_of_a_mistake_is_told() {
+        let error = |text| TWO.parse(text).unwrap_err().to_string();
+        assert_eq!(error("MCNT XN01=0000"), "'MCNT CN' is expected at column 6");
+        assert_eq!(error("MCNT CN01=x"), "count: 'x' is not a number, 0 to 9999 at column 11");
+        assert_eq!(error("MCNT CN01=0000 R"), "' R' is too much at column 15");
+        assert_eq!(error(""), "'MCNT CN' is expected at column 1");
+    }
+}

@@ -1,0 +1,8 @@
+//! Toyo controllers over RS-232C host communication.
+//!
+//! Sections are those of the manual, as "TO 2-4"; where it errs, the reading chosen is told as an ambiguity.
+
+pub mod field;
+pub mod layout;
+pub mod request;
+pub mod table;

@@ -1,0 +1,392 @@
+//! Blocks of the host and of the controller, in words: `@STAS SNO=0`, `@OK`, `@STAS SNO=0 ST1=22 ST2=00`.
+
+use thiserror::Error;
+
+use super::field::Value;
+use super::layout::{Layout, LayoutError, Misfit, Record};
+use super::table::commands::{Command, Row};
+use super::table::{Instruction, Pallet, Parameter};
+use crate::controller::Risk;
+
+/// Most bytes of a block, `@` and line end included (TO 1-4; ambiguity A1).
+pub const MOST: usize = 128;
+
+/// A block of the host.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Request {
+    row: &'static Row,
+    record: Record,
+}
+
+/// A block of the controller.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Answer {
+    /// `@OK`.
+    Done,
+    /// `@NG`: it cannot, now or at all; there is no code.
+    Refused,
+    /// What was asked for.
+    Data(Record),
+}
+
+/// Why a text is no block of the protocol.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum BlockError {
+    /// Blocks begin with `@`.
+    #[error("a block begins with @")]
+    Start,
+    /// More than a block may be.
+    #[error("{len} characters; a block has {MOST} at most, its line end included")]
+    Long {
+        /// Characters, without line end.
+        len: usize,
+    },
+    /// Characters below 20H, or beyond ASCII.
+    #[error("character {} at column {} is not allowed", char.escape_default(), at + 1)]
+    Character {
+        /// Characters before it.
+        at: usize,
+        /// It.
+        char: char,
+    },
+    /// No such command.
+    #[error("there is no command '{}'", word.escape_debug())]
+    Command {
+        /// The word after `@`.
+        word: String,
+    },
+    /// Of a command, but not in any of its forms.
+    #[error("{0}")]
+    Layout(#[from] LayoutError),
+    /// Values that may not be sent.
+    #[error("{0}")]
+    Values(#[from] Misfit),
+    /// No such parameter, instruction or record.
+    #[error("there is no {what} '{}'", name.escape_debug())]
+    Unknown {
+        /// `parameter`, `instruction` or `record`.
+        what: &'static str,
+        /// Its name.
+        name: String,
+    },
+    /// An answer to something else.
+    #[error("it answers something else: {field} is {found}, not {asked}")]
+    Other {
+        /// Which field differs.
+        field: &'static str,
+        /// In the answer.
+        found: String,
+        /// In the request.
+        asked: String,
+    },
+}
+
+impl Request {
+    /// A request in the first form of a command. Values are in the order of its fields; all must be in range.
+    pub fn new(command: Command, values: Vec<Value>) -> Result<Self, Misfit> {
+        Self::in_form(command, 0, values)
+    }
+
+    /// A request in one of the forms of a command.
+    pub fn in_form(command: Command, form: usize, values: Vec<Value>) -> Result<Self, Misfit> {
+        let row = command.row();
+        let record = row.requests[form].record(values)?;
+        record.emit()?;
+        Ok(Self { row, record })
+    }
+
+    /// A request without values.
+    ///
+    /// # Panics
+    /// If the command has fields, which a test of the callers shows.
+    pub fn bare(command: Command) -> Self {
+        Self::new(command, Vec::new()).expect("a command without fields")
+    }
+
+    /// Reads a parameter, or a row of a table.
+    pub fn read_parameter(parameter: &Parameter, row: Option<i32>) -> Result<Self, Misfit> {
+        let key = parameter.key.emit(&row.map(Value::Number).into_iter().collect::<Vec<_>>())?;
+        Self::new(Command::Rpar, vec![Value::Text(key)])
+    }
+
+    /// Writes a parameter, or a row of a table: all fields of [`Parameter::layout`].
+    pub fn write_parameter(parameter: &Parameter, values: &[Value]) -> Result<Self, Misfit> {
+        Self::new(Command::Wpar, vec![Value::Text(parameter.layout.emit(values)?)])
+    }
+
+    /// Reads a step of the sequential program; 0 is the current one.
+    pub fn read_step(step: i32) -> Result<Self, Misfit> {
+        Self::new(Command::Rstx, vec![Value::Number(step)])
+    }
+
+    /// Writes a step of the sequential program.
+    pub fn write_step(step: i32, instruction: &Record) -> Result<Self, Misfit> {
+        Self::new(Command::Wstx, vec![Value::Number(step), Value::Text(instruction.emit()?)])
+    }
+
+    /// Reads a record of a palletizing program.
+    pub fn read_pallet(program: i32, record: &Pallet) -> Result<Self, Misfit> {
+        Self::new(Command::Rplt, vec![Value::Number(program), Value::Number(record.number.into())])
+    }
+
+    /// Writes a record of a palletizing program.
+    pub fn write_pallet(program: i32, record: &Pallet, values: &[Value]) -> Result<Self, Misfit> {
+        let body = Value::Text(record.layout.emit(values)?);
+        Self::new(Command::Wplt, vec![Value::Number(program), Value::Number(record.number.into()), body])
+    }
+
+    /// A block as it stands on the line, without line end. Nothing is demanded of ranges.
+    pub fn parse(block: &str) -> Result<Self, BlockError> {
+        let text = unwrapped(block)?;
+        let word = text.split(' ').next().unwrap_or_default();
+        let row = Row::named(word).ok_or_else(|| BlockError::Command { word: word.to_owned() })?;
+        // HTSK is read as CTSK.
+        let text = text.replacen(word, row.word, 1);
+        Ok(Self { row, record: fitting(row.requests, &text)? })
+    }
+
+    /// The row of its command.
+    pub fn row(&self) -> &'static Row {
+        self.row
+    }
+
+    /// Its command.
+    pub fn command(&self) -> Command {
+        self.row.command
+    }
+
+    /// Its values.
+    pub fn record(&self) -> &Record {
+        &self.record
+    }
+
+    /// As it stands on the line, without line end.
+    pub fn text(&self) -> String {
+        format!("@{}", self.record.written())
+    }
+
+    /// Whether every value is in its range.
+    pub fn check(&self) -> Result<(), BlockError> {
+        self.record.emit()?;
+        self.content()?.map_or(Ok(()), |content| content.emit().map(|_| ()).map_err(BlockError::from))
+    }
+
+    /// What it does to the world. A JOG that moves no axis stops it.
+    pub fn risk(&self) -> Risk {
+        let moves = |value: &Value| !matches!(value, Value::Word("SP" | "RS"));
+        if self.command() == Command::Jgst && !self.record.values().iter().any(moves) {
+            return Risk::Write;
+        }
+        self.row.risk
+    }
+
+    /// The parameter, instruction or palletizing record in it, of those commands that have one. What a read is about
+    /// has its key only.
+    pub fn content(&self) -> Result<Option<Record>, BlockError> {
+        let text = |name| self.record.text(name).unwrap_or_default();
+        Ok(match self.command() {
+            Command::Wpar => Some(parameter(text("body"))?.layout.parse(text("body"))?),
+            Command::Rpar => Some(parameter(text("key"))?.key.parse(text("key"))?),
+            Command::Wstx => Some(instruction(text("text"))?),
+            Command::Wplt => Some(self.pallet()?.layout.parse(text("body"))?),
+            _ => None,
+        })
+    }
+
+    /// The parameter that WPAR or RPAR is about.
+    pub fn parameter(&self) -> Option<&'static Parameter> {
+        Parameter::of(self.record.text("body").or(self.record.text("key"))?)
+    }
+
+    /// What a block of the controller says to it.
+    pub fn answer(&self, block: &str) -> Result<Answer, BlockError> {
+        let text = unwrapped(block)?;
+        match text {
+            "NG" => return Ok(Answer::Refused),
+            "OK" if self.row.is_order() => return Ok(Answer::Done),
+            _ => {}
+        }
+        let word = text.split(' ').next().unwrap_or_default();
+        if word != self.row.word {
+            let (found, asked) = (word.to_owned(), self.row.word.to_owned());
+            return Err(BlockError::Other { field: "the command", found, asked });
+        }
+        let record = fitting(self.row.answers, text)?;
+        self.same(&record)?;
+        Ok(Answer::Data(record))
+    }
+
+    /// The parameter, instruction or palletizing record in an answer to this.
+    pub fn answered(&self, answer: &Record) -> Result<Option<Record>, BlockError> {
+        let text = |name| answer.text(name).unwrap_or_default();
+        Ok(match self.command() {
+            Command::Rpar => Some(parameter(text("body"))?.layout.parse(text("body"))?),
+            Command::Rstx => Some(instruction(text("text"))?),
+            Command::Rplt => Some(self.pallet()?.layout.parse(text("body"))?),
+            _ => None,
+        })
+    }
+
+    /// Whether an answer is about what was asked: fields of the same name have the same value. RSTX 0000 is answered
+    /// with the number of the current step (ambiguity C4).
+    fn same(&self, answer: &Record) -> Result<(), BlockError> {
+        if self.command() == Command::Rpar {
+            let (key, body) = (self.content()?, self.answered(answer)?);
+            return match (key, body) {
+                (Some(key), Some(body)) if self.parameter() != Parameter::of(&body.written()) => {
+                    let (found, asked) = (body.written(), key.written());
+                    Err(BlockError::Other { field: "the parameter", found, asked })
+                }
+                (Some(key), Some(body)) => agree(&key, &body),
+                _ => Ok(()),
+            };
+        }
+        if self.command() == Command::Rstx && self.record.number("step") == Some(0) {
+            return Ok(());
+        }
+        if self.command() == Command::Mbus && self.record.layout().text.get(..7) != answer.layout().text.get(..7) {
+            let (found, asked) = (answer.written(), self.record.written());
+            return Err(BlockError::Other { field: "the page", found, asked });
+        }
+        agree(&self.record, answer)
+    }
+
+    fn pallet(&self) -> Result<&'static Pallet, BlockError> {
+        let number = self.record.number("record").unwrap_or_default();
+        Pallet::numbered(number).ok_or_else(|| BlockError::Unknown { what: "record", name: number.to_string() })
+    }
+}
+
+impl Answer {
+    /// As it stands on the line, without line end.
+    pub fn text(&self) -> String {
+        match self {
+            Self::Done => "@OK".to_owned(),
+            Self::Refused => "@NG".to_owned(),
+            Self::Data(record) => format!("@{}", record.written()),
+        }
+    }
+}
+
+/// An instruction as it stands in a step: `MOVP a PT=001 CN=00 S V=00 POST`.
+pub fn instruction(text: &str) -> Result<Record, BlockError> {
+    let word = text.split(' ').find(|word| !word.is_empty()).unwrap_or_default();
+    let row = Instruction::named(word);
+    let row = row.ok_or_else(|| BlockError::Unknown { what: "instruction", name: word.to_owned() })?;
+    Ok(row.layout.parse(text)?)
+}
+
+fn parameter(text: &str) -> Result<&'static Parameter, BlockError> {
+    Parameter::of(text).ok_or_else(|| {
+        let name = text.split(' ').next().unwrap_or_default().to_owned();
+        BlockError::Unknown { what: "parameter", name }
+    })
+}
+
+/// Fields that both have must be the same.
+fn agree(request: &Record, answer: &Record) -> Result<(), BlockError> {
+    for (field, asked) in request.pairs() {
+        match answer.value(field.name) {
+            Some(found) if found != asked => {
+                let (found, asked) = (field.written(found), field.written(asked));
+                return Err(BlockError::Other { field: field.name, found, asked });
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// What stands between `@` and the line end.
+fn unwrapped(block: &str) -> Result<&str, BlockError> {
+    let text = block.trim_end_matches(['\r', '\n']);
+    if text.len() + 2 > MOST {
+        return Err(BlockError::Long { len: text.len() });
+    }
+    if let Some((at, char)) = text.char_indices().find(|(_, char)| !matches!(char, ' '..='~')) {
+        return Err(BlockError::Character { at, char });
+    }
+    Ok(text.strip_prefix('@').ok_or(BlockError::Start)?.trim_end_matches(' '))
+}
+
+/// The first form that fits; if none does, why the one does not that fits furthest.
+fn fitting(forms: &[Layout], text: &str) -> Result<Record, LayoutError> {
+    let mut furthest: Option<LayoutError> = None;
+    for form in forms {
+        match form.parse(text) {
+            Ok(record) => return Ok(record),
+            Err(error) if furthest.as_ref().is_none_or(|other| other.at < error.at) => furthest = Some(error),
+            Err(_) => {}
+        }
+    }
+    let none = || LayoutError { at: 0, what: Misfit::Rest { found: text.to_owned() } };
+    // What is told counts from the start of the block, where the `@` is.
+    Err(furthest.map_or_else(none, |error| LayoutError { at: error.at + 1, ..error }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::toyo::table::commands::ROWS;
+
+    fn answer(request: &str, answer: &str) -> Result<Answer, BlockError> {
+        Request::parse(request).unwrap().answer(answer)
+    }
+
+    #[test]
+    fn every_command_without_fields_is_made_bare() {
+        for row in ROWS.iter().filter(|row| row.requests[0].fields.is_empty()) {
+            assert!(Request::bare(row.command).text().starts_with(&format!("@{}", row.word)));
+        }
+    }
+
+    #[test]
+    fn an_answer_to_something_else_is_none() {
+        assert!(answer("@STAS SNO=0", "@STAS SNO=0 ST1=22 ST2=00").is_ok());
+        assert!(matches!(answer("@STAS SNO=0", "@STAS SNO=1 ST1=22 ST2=00"), Err(BlockError::Other { .. })));
+        assert!(matches!(answer("@STAS SNO=0", "@MTSK TASK=01"), Err(BlockError::Other { .. })));
+        assert!(matches!(answer("@STAS SNO=0", "@OK"), Err(BlockError::Other { .. })));
+        assert!(matches!(answer("@RPAR T1 PT=001", "@RPAR T2 V01=0001.0"), Err(BlockError::Other { .. })));
+        let point = "@RPAR T1 PT=002 X=+0000.00 Y=+0000.00 Z=+0000.00 R=+0000.00";
+        assert!(matches!(answer("@RPAR T1 PT=001", point), Err(BlockError::Other { .. })));
+        assert!(answer("@RPAR T1 PT=002", point).is_ok());
+        assert!(matches!(
+            answer("@MBUS C1", "@MBUS C2 ER1=00 ER2=00 ER3=00 MS1=00 MS2=00"),
+            Err(BlockError::Other { .. })
+        ));
+    }
+
+    #[test]
+    fn the_current_step_has_a_number_of_its_own() {
+        assert!(answer("@RSTX 0000", "@RSTX 0017 NOP").is_ok());
+        assert!(answer("@RSTX 0001", "@RSTX 0017 NOP").is_err());
+    }
+
+    #[test]
+    fn anything_may_be_refused() {
+        for request in ["@HOME", "@STAS SNO=0"] {
+            assert_eq!(answer(request, "@NG\r\n"), Ok(Answer::Refused));
+        }
+        assert_eq!(answer("@HOME", "@OK"), Ok(Answer::Done));
+    }
+
+    #[test]
+    fn a_jog_that_moves_nothing_is_a_stop() {
+        let risk = |text| Request::parse(text).unwrap().risk();
+        assert_eq!(risk("@JGST X=SP Y=SP Z=SP R=SP"), Risk::Write);
+        assert_eq!(risk("@JGST X=RS Y=RS Z=RS R=RS"), Risk::Write);
+        assert_eq!(risk("@JGST X=SP Y=-C Z=SP R=SP"), Risk::Motion);
+    }
+
+    #[test]
+    fn what_is_no_block_says_why() {
+        let error = |text: &str| Request::parse(text).unwrap_err().to_string();
+        assert_eq!(error("STAS"), "a block begins with @");
+        assert_eq!(error("@XXXX"), "there is no command 'XXXX'");
+        assert_eq!(error("@STAS SNO=x"), "page: 'x' is not a number, 0 to 4 at column 11");
+        assert_eq!(error("@STAS\tSNO=0"), "character \\t at column 6 is not allowed");
+        assert!(error(&format!("@{}", "A".repeat(130))).starts_with("131 characters"));
+        assert!(Request::parse("@STAS SNO=9").unwrap().check().is_err());
+        assert_eq!(Request::parse("@HTSK TASK=01").unwrap().text(), "@CTSK TASK=01");
+    }
+}

@@ -1,0 +1,28 @@
+//! The protocol as tables: commands, parameters, instructions, palletizing records.
+//!
+//! Encoder, decoder, simulator, `raw`, `decode`, `explain`, help and completion read them; there is no second list.
+
+pub mod commands;
+mod fields;
+pub mod instructions;
+pub mod palletizing;
+pub mod parameters;
+
+pub use commands::{Command, Row};
+pub use instructions::{Instruction, Op};
+pub use palletizing::Pallet;
+pub use parameters::{Group, Parameter};
+
+/// Controllers that some rows are limited to, as the manual names them.
+pub type Models = &'static [&'static str];
+
+/// No limit.
+pub const EVERY: Models = &[];
+/// The newer two-axis synchronous series.
+pub const KCA20: Models = &["KCA-20-M00", "KCA-20-M01"];
+/// The series with torque limits.
+pub const KCA25: Models = &["KCA-25-M10", "KCA-25-M40", "KCA-25-M80"];
+/// Both of them, which also have no EEPROM that wears out (TO 2-1, note 2).
+pub const KCA: Models = &["KCA-20-M00", "KCA-20-M01", "KCA-25-M10", "KCA-25-M40", "KCA-25-M80"];
+/// A version instead of a model (ambiguity R24).
+pub const FROM_3_36: Models = &["version 3.36 or later"];

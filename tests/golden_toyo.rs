@@ -1,0 +1,101 @@
+//! Every request and answer that the Toyo manual prints, both ways, character for character.
+//!
+//! Where the print is wrong (`flags` has `typo`), the file says why and what is right. If this fails, do not change the
+//! test.
+
+use armctl::controller::toyo::request::{Answer, Request};
+use serde::Deserialize;
+
+#[derive(Debug, Deserialize)]
+struct Transcripts {
+    pairs: Vec<Pair>,
+    sessions: Vec<Session>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Pair {
+    section: String,
+    #[serde(rename = "ref")]
+    reference: String,
+    tx: String,
+    rx: String,
+    #[serde(default)]
+    rx_alternatives: Vec<String>,
+    corrected: Option<Blocks>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Session {
+    id: String,
+    steps: Vec<Blocks>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Blocks {
+    tx: String,
+    rx: String,
+}
+
+fn transcripts() -> Transcripts {
+    serde_json::from_str(include_str!("data/toyo-transcripts.json")).expect("the transcripts are well-formed")
+}
+
+/// Demands that a request and its answer are understood whole, and made again as they were.
+fn holds(about: &str, tx: &str, rx: &str) {
+    let request = Request::parse(tx).unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
+    request.check().unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
+    assert_eq!(request.text(), tx, "{about}");
+    if let Some(content) = request.content().unwrap() {
+        let body = content.emit().unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
+        assert!(tx.ends_with(&body), "{about}: {tx}: made anew as {body}");
+    }
+    let answer = request.answer(rx).unwrap_or_else(|error| panic!("{about}: {tx}: {rx}: {error}"));
+    assert_eq!(answer.text().trim_end(), rx.trim_end(), "{about}: {tx}");
+    if let Answer::Data(record) = &answer {
+        let content = request.answered(record).unwrap_or_else(|error| panic!("{about}: {rx}: {error}"));
+        if let Some(content) = content {
+            let body = content.emit().unwrap_or_else(|error| panic!("{about}: {rx}: {error}"));
+            assert!(rx.ends_with(&body), "{about}: {rx}: made anew as {body}");
+        }
+    }
+}
+
+#[test]
+fn every_pair_holds() {
+    let pairs = transcripts().pairs;
+    assert_eq!(pairs.len(), 410);
+    for pair in &pairs {
+        let about = format!("TO {} {}", pair.section, pair.reference);
+        match &pair.corrected {
+            Some(corrected) => holds(&about, &corrected.tx, &corrected.rx),
+            None => holds(&about, &pair.tx, &pair.rx),
+        }
+        for rx in &pair.rx_alternatives {
+            let tx = pair.corrected.as_ref().map_or(&pair.tx, |corrected| &corrected.tx);
+            assert!(Request::parse(tx).unwrap().answer(rx).is_ok(), "{about}: {tx}: {rx}");
+        }
+    }
+}
+
+/// What is printed wrong is not sent; where it only has other blanks or digits, it is still understood.
+#[test]
+fn misprints_are_not_made() {
+    for pair in transcripts().pairs {
+        let Some(corrected) = &pair.corrected else { continue };
+        let made = Request::parse(&corrected.tx).unwrap().text();
+        if pair.tx != corrected.tx {
+            assert_ne!(made, pair.tx, "TO {} {}", pair.section, pair.reference);
+        }
+    }
+}
+
+#[test]
+fn both_sample_sessions_hold() {
+    let sessions = transcripts().sessions;
+    assert_eq!(sessions.iter().map(|session| session.steps.len()).collect::<Vec<_>>(), [13, 13]);
+    for session in &sessions {
+        for step in &session.steps {
+            holds(&format!("TO {}", session.id), &step.tx, &step.rx);
+        }
+    }
+}
