@@ -2,7 +2,9 @@
 //!
 //! Sections are those of the manual, as "TO 2-4"; where it errs, the reading chosen is told as an ambiguity.
 
+pub mod errors;
 pub mod field;
 pub mod layout;
 pub mod request;
+pub mod status;
 pub mod table;

@@ -1,0 +1,230 @@
+//! The 104 error codes (TO 4-1), as STAS SNO=1 and EHTR give them.
+//!
+//! The manual has names only; causes and remedies are what such names mean on such machines.
+
+use std::borrow::Cow;
+
+/// No error. It is not in the table; sample session 3-1 shows it (ambiguity R26).
+pub const NONE: u8 = 0x00;
+
+/// An error code in words.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Explanation {
+    /// The code.
+    pub code: u8,
+    /// Whether it is in the manual's table.
+    pub known: bool,
+    /// What it is called, with the axis it is about.
+    pub name: Cow<'static, str>,
+    /// 1 to 4, where it is about one axis.
+    pub axis: Option<u8>,
+    /// What may have happened.
+    pub cause: &'static str,
+    /// What to do.
+    pub remedy: &'static str,
+}
+
+impl Explanation {
+    /// `0x28: axis 1: beyond the plus soft limit while moving`.
+    pub fn in_a_line(&self) -> String {
+        format!("{:02X}: {}", self.code, self.name)
+    }
+}
+
+/// What a code means; an unknown one is explained as such.
+pub fn explain(code: u8) -> Explanation {
+    let (axis, row) = match code {
+        0x20..=0x5F => {
+            let row = AXIS.iter().find(|(low, ..)| *low == code & 0x0F);
+            (Some(code / 0x10 - 1), row.map(|(_, name, cause, remedy)| (*name, *cause, *remedy)))
+        }
+        0xC0..=0xC7 => {
+            let name =
+                if code & 1 == 0 { "target beyond the plus soft limit" } else { "target beyond the minus soft limit" };
+            (Some((code - 0xC0) / 2 + 1), Some((name, LIMIT_CAUSE, LIMIT_REMEDY)))
+        }
+        _ => {
+            let row = OTHERS.iter().find(|(other, ..)| *other == code);
+            (None, row.map(|(_, name, cause, remedy)| (*name, *cause, *remedy)))
+        }
+    };
+    match (axis, row) {
+        (Some(axis), Some((name, cause, remedy))) => Explanation {
+            code,
+            known: true,
+            name: format!("axis {axis}: {name}").into(),
+            axis: Some(axis),
+            cause,
+            remedy,
+        },
+        (None, Some((name, cause, remedy))) => {
+            Explanation { code, known: true, name: name.into(), axis: None, cause, remedy }
+        }
+        (_, None) => Explanation {
+            code,
+            known: false,
+            name: "not in the manual's table".into(),
+            axis: None,
+            cause: "the controller's software may be newer than the manual",
+            remedy: "look it up in the controller's own manual",
+        },
+    }
+}
+
+/// All codes of the table, ascending.
+pub fn all() -> impl Iterator<Item = Explanation> {
+    (1..=u8::MAX).map(explain).filter(|explanation| explanation.known)
+}
+
+const LIMIT_CAUSE: &str = "the place that was asked for lies outside the soft limits";
+const LIMIT_REMEDY: &str =
+    "correct the coordinates or the offset; `toyo param get soft-limit-plus soft-limit-minus` shows the limits";
+const DRIVE: &str = "cancel the error and try at low speed; if it comes again, check driver, motor and cables";
+const MEMORY: &str = "the stored data are damaged: restore them from a backup; if it comes again, the memory or its battery is at its end";
+const PROGRAM: &str = "`toyo program get` and `toyo program check` show the step; correct the program";
+
+type Text = &'static str;
+
+/// Errors of one axis by the low digit; the high one is the axis plus 1.
+const AXIS: [(u8, Text, Text, Text); 14] = [
+    (0x0, "communication error", "the controller lost contact with the driver of the axis", DRIVE),
+    (0x1, "overspeed", "the axis ran faster than it may", "lower the speed or the gains; check the encoder"),
+    (0x2, "overcurrent", "the motor drew too much current", DRIVE),
+    (0x3, "overload", "the load was too heavy for too long", "free the axis; lower load, speed or acceleration"),
+    (
+        0x4,
+        "overflow",
+        "the axis lags too far behind its orders",
+        "free the axis; lower speed or acceleration, check the brake",
+    ),
+    (
+        0x6,
+        "encoder error",
+        "the encoder gives no sensible signal",
+        "check the encoder cable; then switch the power off and on",
+    ),
+    (0x7, "return to origin failed", "the origin was not found", "check origin sensor, its logic and the way to it"),
+    (0x8, "beyond the plus soft limit while moving", "the axis was about to leave its range", LIMIT_REMEDY),
+    (0x9, "beyond the minus soft limit while moving", "the axis was about to leave its range", LIMIT_REMEDY),
+    (
+        0xA,
+        "overvoltage",
+        "braking fed back more than can be absorbed",
+        "lower speed or deceleration; check the regeneration resistor",
+    ),
+    (0xB, "motor too hot", "the motor is overloaded or not cooled", "let it cool; lower load or duty"),
+    (
+        0xC,
+        "encoder backup lost",
+        "the absolute position was lost, mostly by an empty battery",
+        "change the battery, then return to the origin",
+    ),
+    (
+        0xD,
+        "encoder switching error",
+        "the encoder could not be switched over",
+        "switch the power off and on; check the encoder cable",
+    ),
+    (0xF, "driver error", "the driver reports a fault of its own", DRIVE),
+];
+
+/// Errors without an axis.
+const OTHERS: [(u8, Text, Text, Text); 40] = [
+    (0x12, "watchdog timer", "the controller's software did not answer in time", "switch the power off and on"),
+    (
+        0x13,
+        "emergency stop",
+        "the emergency stop is or was pressed",
+        "make sure that it is safe, release it, then `toyo error cancel`",
+    ),
+    (
+        0x60,
+        "continuous run failed",
+        "the program could not go on where it stopped",
+        "start it from a step: `toyo run sequential STEP`",
+    ),
+    (0x61, "return to origin not done", "the axes do not know where they are", "`toyo home` first"),
+    (0x62, "cannot be executed", "mode or state do not allow it", "`toyo status` shows mode, servo and errors"),
+    (
+        0x63,
+        "task cannot be started",
+        "the task runs already or has no steps",
+        "check the program and parameter E22 (task-steps)",
+    ),
+    (
+        0x64,
+        "synchronized axes: origin not searched",
+        "synchronized axes do not know where they are",
+        "`toyo home --sync AXIS` first",
+    ),
+    (
+        0x65,
+        "synchronized axes: too far apart",
+        "the axes do not keep together",
+        "check the mechanics and parameter P18 (sync-error)",
+    ),
+    (
+        0x66,
+        "synchronized axes: wrong parameter",
+        "parameter E26 is not consistent",
+        "the driven axis must follow its drive axis",
+    ),
+    (0x67, "synchronized axes: origin search failed", "the origin was not found", "check the origin sensors"),
+    (0x90, "identification", "the stored identification is wrong", MEMORY),
+    (0x91, "memory of sequential programs", "stored data are damaged", MEMORY),
+    (0x92, "memory of palletizing programs", "stored data are damaged", MEMORY),
+    (0x93, "memory of parameters", "stored data are damaged", MEMORY),
+    (0x94, "memory of the coordinate table", "stored data are damaged", MEMORY),
+    (0x95, "memory of the speed table", "stored data are damaged", MEMORY),
+    (0x96, "memory of the acceleration table", "stored data are damaged", MEMORY),
+    (0x97, "memory of the MVM table", "stored data are damaged", MEMORY),
+    (0x98, "memory of easy programs", "stored data are damaged", MEMORY),
+    (
+        0x99,
+        "identification of a slave",
+        "a slave station is not what was set up",
+        "check the I/O stations and their cables",
+    ),
+    (0xA0, "instruction not possible", "this controller or this task cannot do the instruction", PROGRAM),
+    (0xA1, "tag undefined", "a jump or call leads to a tag that is not there", PROGRAM),
+    (0xA2, "tag defined twice", "the same tag is there more than once", PROGRAM),
+    (0xA3, "stack overflow", "calls are nested too deep", PROGRAM),
+    (0xA4, "stack underflow", "a return without a call", PROGRAM),
+    (0xA5, "too few points for an arc", "an arc needs three points", PROGRAM),
+    (0xA6, "radius of an arc too large", "the three points lie almost on a line", PROGRAM),
+    (0xA7, "calculation error", "a value left its range", PROGRAM),
+    (0xA8, "parameter error", "a parameter has no sensible value", "`toyo param list` shows them"),
+    (0xB0, "step number", "there is no such step", PROGRAM),
+    (0xB1, "tag number", "there is no such tag number", PROGRAM),
+    (0xB2, "palletizing program number", "there is no such palletizing program", PROGRAM),
+    (0xB3, "counter number", "there is no such counter", PROGRAM),
+    (0xB4, "timer number", "there is no such timer", PROGRAM),
+    (0xB5, "port number", "there is no such port", PROGRAM),
+    (0xB6, "table number", "there is no such row of a table", PROGRAM),
+    (0xB7, "group number", "there is no such MVM group", PROGRAM),
+    (0xB9, "easy program number", "there is no such easy program", PROGRAM),
+    (0xBA, "task number", "there is no such task", PROGRAM),
+    (0xE0, "other error", "the controller does not say more", "read the teach pendant"),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_has_104_codes() {
+        assert_eq!(all().count(), 104);
+        for gap in [0x00, 0x25, 0x2E, 0x5E, 0xB8, 0xC8, 0xFF] {
+            assert!(!explain(gap).known, "{gap:02X}");
+        }
+    }
+
+    #[test]
+    fn codes_name_their_axis() {
+        assert_eq!(explain(0x38).in_a_line(), "38: axis 2: beyond the plus soft limit while moving");
+        // The manual prints "+" for C3 too (ambiguity R25).
+        assert_eq!(explain(0xC3).in_a_line(), "C3: axis 2: target beyond the minus soft limit");
+        assert_eq!(explain(0xC6).axis, Some(4));
+        assert_eq!(explain(0x13).axis, None);
+    }
+}

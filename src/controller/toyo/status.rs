@@ -1,0 +1,225 @@
+//! The five pages of the status (TO 2-2, STAS).
+
+/// What a controller says of itself. Pages are numbered as in `STAS SNO=`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Status {
+    /// Page 0: error, execution, origin.
+    pub state: u8,
+    /// Page 1: error code, 0 for none.
+    pub error: u8,
+    /// Page 2: modes, pendant, host.
+    pub mode: u8,
+    /// Page 3: servo, slave, card.
+    pub equipment: u8,
+    /// Page 4: inputs that matter to a program.
+    pub inputs: u8,
+}
+
+/// A bit of a page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bit {
+    /// Page, 0 to 4.
+    pub page: u8,
+    /// Bit, 0 to 7.
+    pub bit: u8,
+    /// In snake case.
+    pub name: &'static str,
+    /// In words.
+    pub about: &'static str,
+    /// Whether 0 means that it is so.
+    pub is_low: bool,
+}
+
+/// What programs are run by: bits 1 and 0 of page 2.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ProgramKind {
+    /// Sequential mode.
+    Sequential,
+    /// Palletizing mode.
+    Palletizing,
+    /// External point designation mode.
+    ExternalPoint,
+    /// Easy mode.
+    Easy,
+}
+
+/// How programs are run: bits 3 and 2 of page 2.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum RunMode {
+    /// From step to step without a stop.
+    Automatic,
+    /// A step at a time.
+    Step,
+    /// Programs are edited.
+    Program,
+}
+
+macro_rules! bits {
+    ($($(#[$doc:meta])* $name:ident $page:literal.$bit:literal $low:literal $about:literal;)*) => {
+        impl Status {
+            $(
+                $(#[$doc])*
+                pub const fn $name(self) -> bool {
+                    (self.page($page) >> $bit & 1 == 1) != $low
+                }
+            )*
+        }
+
+        /// All single bits that have a meaning.
+        pub const BITS: &[Bit] = &[
+            $(Bit { page: $page, bit: $bit, name: stringify!($name), about: $about, is_low: $low },)*
+        ];
+    };
+}
+
+bits! {
+    /// An error is present; page 1 has its code.
+    has_error 0.0 false "error";
+    /// A command or a program is being executed.
+    executing 0.1 false "in execution";
+    /// A program is paused.
+    paused 0.2 false "paused";
+    /// Axes are on their way to the origin.
+    homing 0.3 false "in return to origin";
+    /// The axes know where they are.
+    homed 0.4 false "return to origin complete";
+    /// The axes are where they should be.
+    in_position 0.5 false "positioning complete";
+    /// Parameter 2 was changed: nothing is executed until the power was off.
+    needs_power_cycle 0.7 false "parameter 2 changed";
+    /// One movement at a time.
+    single_movement 2.4 false "single movement mode";
+    /// The teach pendant has control.
+    pendant_on 2.6 false "teach pendant ON";
+    /// The host has control.
+    host_on 2.7 false "host ON";
+    /// Servo power is on.
+    servo_on 3.0 false "servo ON";
+    /// A slave station does not answer (active low).
+    slave_not_ready 3.4 true "slave not ready";
+    /// A memory card is there.
+    card_inserted 3.5 false "card inserted";
+    /// The card is being read.
+    card_reading 3.6 false "reading card";
+    /// The card is being written.
+    card_writing 3.7 false "writing to card";
+    /// Escape input.
+    escape_input 4.0 false "escape input ON";
+    /// Continuous start input.
+    continuous_input 4.1 false "continuous input ON";
+    /// A program waits for an input.
+    waits_for_input 4.2 false "waits for input";
+    /// Pause input.
+    pause_input 4.3 false "pause input ON";
+    /// Ready output.
+    ready_output 4.4 false "ready output";
+}
+
+impl Status {
+    /// A page by its number; 0 beyond the last.
+    pub const fn page(self, page: u8) -> u8 {
+        match page {
+            0 => self.state,
+            1 => self.error,
+            2 => self.mode,
+            3 => self.equipment,
+            4 => self.inputs,
+            _ => 0,
+        }
+    }
+
+    /// The same with another page; beyond the last, the same.
+    #[must_use]
+    pub const fn with(mut self, page: u8, byte: u8) -> Self {
+        match page {
+            0 => self.state = byte,
+            1 => self.error = byte,
+            2 => self.mode = byte,
+            3 => self.equipment = byte,
+            4 => self.inputs = byte,
+            _ => {}
+        }
+        self
+    }
+
+    /// What programs are run by (bit order: ambiguity R27).
+    pub const fn program_kind(self) -> ProgramKind {
+        match self.mode & 0b11 {
+            0b00 => ProgramKind::Sequential,
+            0b01 => ProgramKind::Palletizing,
+            0b10 => ProgramKind::ExternalPoint,
+            _ => ProgramKind::Easy,
+        }
+    }
+
+    /// How programs are run; `None` for the value that the manual does not list.
+    pub const fn run_mode(self) -> Option<RunMode> {
+        match self.mode >> 2 & 0b11 {
+            0b00 => Some(RunMode::Automatic),
+            0b01 => Some(RunMode::Step),
+            0b10 => Some(RunMode::Program),
+            _ => None,
+        }
+    }
+}
+
+impl ProgramKind {
+    /// Its two bits.
+    pub const fn bits(self) -> u8 {
+        self as u8
+    }
+
+    /// In snake case.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sequential => "sequential",
+            Self::Palletizing => "palletizing",
+            Self::ExternalPoint => "external_point",
+            Self::Easy => "easy",
+        }
+    }
+}
+
+impl RunMode {
+    /// Its two bits, not yet in their place.
+    pub const fn bits(self) -> u8 {
+        self as u8
+    }
+
+    /// In snake case.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Automatic => "automatic",
+            Self::Step => "step",
+            Self::Program => "program",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_example_of_the_manual() {
+        // TO 2-2: 22H is "in execution" and "positioning complete"; TO 3-1 step 11 shows 30H after a return to origin.
+        let status = Status::default().with(0, 0x22);
+        assert!(status.executing() && status.in_position() && !status.homed());
+        let status = Status::default().with(0, 0x30);
+        assert!(!status.executing() && status.in_position() && status.homed());
+    }
+
+    #[test]
+    fn modes_are_two_bits_each() {
+        let status = Status::default().with(2, 0b1000_1011);
+        assert_eq!((status.program_kind(), status.run_mode()), (ProgramKind::Easy, Some(RunMode::Program)));
+        assert!(status.host_on() && !status.pendant_on());
+        assert_eq!(Status::default().with(2, 0b1100).run_mode(), None);
+    }
+
+    #[test]
+    fn a_missing_slave_is_a_bit_that_is_off() {
+        assert!(Status::default().slave_not_ready());
+        assert!(!Status::default().with(3, 0x10).slave_not_ready());
+    }
+}
