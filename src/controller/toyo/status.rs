@@ -55,7 +55,7 @@ pub enum RunMode {
 }
 
 macro_rules! bits {
-    ($($(#[$doc:meta])* $name:ident $page:literal.$bit:literal $low:literal $about:literal;)*) => {
+    ($($(#[$doc:meta])* $name:ident $page:literal / $bit:literal $low:literal $about:literal;)*) => {
         impl Status {
             $(
                 $(#[$doc])*
@@ -74,45 +74,45 @@ macro_rules! bits {
 
 bits! {
     /// An error is present; page 1 has its code.
-    has_error 0.0 false "error";
+    has_error 0 / 0 false "error";
     /// A command or a program is being executed.
-    executing 0.1 false "in execution";
+    executing 0 / 1 false "in execution";
     /// A program is paused.
-    paused 0.2 false "paused";
+    paused 0 / 2 false "paused";
     /// Axes are on their way to the origin.
-    homing 0.3 false "in return to origin";
+    homing 0 / 3 false "in return to origin";
     /// The axes know where they are.
-    homed 0.4 false "return to origin complete";
+    homed 0 / 4 false "return to origin complete";
     /// The axes are where they should be.
-    in_position 0.5 false "positioning complete";
+    in_position 0 / 5 false "positioning complete";
     /// Parameter 2 was changed: nothing is executed until the power was off.
-    needs_power_cycle 0.7 false "parameter 2 changed";
+    needs_power_cycle 0 / 7 false "parameter 2 changed";
     /// One movement at a time.
-    single_movement 2.4 false "single movement mode";
+    single_movement 2 / 4 false "single movement mode";
     /// The teach pendant has control.
-    pendant_on 2.6 false "teach pendant ON";
+    pendant_on 2 / 6 false "teach pendant ON";
     /// The host has control.
-    host_on 2.7 false "host ON";
+    host_on 2 / 7 false "host ON";
     /// Servo power is on.
-    servo_on 3.0 false "servo ON";
+    servo_on 3 / 0 false "servo ON";
     /// A slave station does not answer (active low).
-    slave_not_ready 3.4 true "slave not ready";
+    slave_not_ready 3 / 4 true "slave not ready";
     /// A memory card is there.
-    card_inserted 3.5 false "card inserted";
+    card_inserted 3 / 5 false "card inserted";
     /// The card is being read.
-    card_reading 3.6 false "reading card";
+    card_reading 3 / 6 false "reading card";
     /// The card is being written.
-    card_writing 3.7 false "writing to card";
+    card_writing 3 / 7 false "writing to card";
     /// Escape input.
-    escape_input 4.0 false "escape input ON";
+    escape_input 4 / 0 false "escape input ON";
     /// Continuous start input.
-    continuous_input 4.1 false "continuous input ON";
+    continuous_input 4 / 1 false "continuous input ON";
     /// A program waits for an input.
-    waits_for_input 4.2 false "waits for input";
+    waits_for_input 4 / 2 false "waits for input";
     /// Pause input.
-    pause_input 4.3 false "pause input ON";
+    pause_input 4 / 3 false "pause input ON";
     /// Ready output.
-    ready_output 4.4 false "ready output";
+    ready_output 4 / 4 false "ready output";
 }
 
 impl Status {
