@@ -6,5 +6,6 @@ pub mod errors;
 pub mod field;
 pub mod layout;
 pub mod request;
+pub mod session;
 pub mod status;
 pub mod table;

@@ -1,0 +1,282 @@
+//! The conversation over a line: one request outstanding, one answer to each (TO 1-3).
+//!
+//! A line has no checksum and answers have no number, so what comes too late must not be taken for the answer to the
+//! next request. The session therefore remembers how many answers it is owed, and lets them pass before it sends again.
+
+mod framer;
+
+use std::time::Duration;
+
+pub use self::framer::{Framed, Framer};
+use super::request::{BlockError, Request};
+use crate::controller::{Now, Session, Step};
+
+/// How patient a session is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Policy {
+    /// From the last character sent to the answer; the manual says one second (TO 1-3, ambiguity A3).
+    pub timeout: Duration,
+    /// Repetitions of what may be repeated.
+    pub retries: u32,
+    /// How long one character is on the line.
+    pub character: Duration,
+}
+
+/// What the line was like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counters {
+    /// Requests sent, repetitions included.
+    pub sent: u32,
+    /// Blocks that came, whole or not.
+    pub received: u32,
+    /// Characters that belong to no block.
+    pub noise: u32,
+    /// Blocks with characters missing, changed or too many.
+    pub garbled: u32,
+    /// Blocks that answer something else, or came too late.
+    pub foreign: u32,
+    /// Requests that came back as they were, and are no answer.
+    pub echoes: u32,
+}
+
+/// How an exchange ends.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Ended {
+    /// With this block, which answers the request.
+    Answered(String),
+    /// Nothing that may be repeated was answered.
+    NoAnswer,
+    /// Only blocks came that are no answer: the last one, and why it is none.
+    Unfitting {
+        /// As it came.
+        block: String,
+        /// What is wrong with it.
+        why: String,
+    },
+}
+
+/// One end of a line, for one exchange after the other.
+#[derive(Debug)]
+pub struct Line {
+    policy: Policy,
+    framer: Framer,
+    counters: Counters,
+    state: State,
+    /// Answers that may still come, and until when they are waited for.
+    owed: u32,
+    owed_until: Now,
+    /// Whether the line sends back what is sent.
+    echoes: bool,
+}
+
+#[derive(Debug)]
+enum State {
+    /// Nothing was asked yet, or the last exchange has ended like this.
+    Ended(Option<Ended>),
+    /// Waits until the line owes nothing, then sends.
+    Settling(Exchange),
+    /// Sent; the answer may take until then.
+    Waiting(Exchange, Now),
+}
+
+/// What is asked, and what came of it so far.
+#[derive(Debug)]
+struct Exchange {
+    text: String,
+    /// Answers of a request outside of the table are not checked.
+    request: Option<Request>,
+    repetitions: u32,
+    unfitting: Option<(String, String)>,
+    /// The request itself, as it came back.
+    copy: Option<String>,
+    /// Not before this moment: a line that was noisy gets quiet first.
+    not_before: Now,
+}
+
+/// Silence after a garbled block, before the request is sent again.
+const QUIET: Duration = Duration::from_millis(50);
+
+impl Line {
+    /// A line in peace.
+    pub fn new(policy: Policy) -> Self {
+        Self {
+            policy,
+            framer: Framer::default(),
+            counters: Counters::default(),
+            state: State::Ended(None),
+            owed: 0,
+            owed_until: Now::ZERO,
+            echoes: false,
+        }
+    }
+
+    /// Begins an exchange; what `is_repeatable` is sent again after silence. An exchange that had not ended is given
+    /// up: its answer is let pass.
+    pub fn begin(&mut self, request: &Request, is_repeatable: bool) {
+        self.ask(request.text(), Some(request.clone()), is_repeatable);
+    }
+
+    /// Begins an exchange with a block that is in no table, `@` included; any block answers it.
+    pub fn begin_raw(&mut self, block: &str) {
+        self.ask(block.to_owned(), None, false);
+    }
+
+    fn ask(&mut self, text: String, request: Option<Request>, is_repeatable: bool) {
+        if let State::Waiting(_, deadline) = self.state {
+            self.owed += 1;
+            self.owed_until = deadline;
+        }
+        let repetitions = if is_repeatable { self.policy.retries } else { 0 };
+        let not_before = Now::ZERO;
+        self.state = State::Settling(Exchange { text, request, repetitions, unfitting: None, copy: None, not_before });
+    }
+
+    /// What the line was like so far.
+    pub fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    /// Whether the line sends back what is sent.
+    pub fn echoes(&self) -> bool {
+        self.echoes
+    }
+
+    /// The same line with another patience.
+    pub fn set_policy(&mut self, policy: Policy) {
+        self.policy = policy;
+    }
+
+    fn end(&mut self, ended: Ended) -> Step<Ended> {
+        self.state = State::Ended(Some(ended.clone()));
+        Step::Done(ended)
+    }
+
+    /// The time for an answer is over.
+    fn silence(&mut self, mut exchange: Exchange, deadline: Now) -> Step<Ended> {
+        // Only the request itself came: an answer that looks the same, or the echo of a line without a controller.
+        if let Some(block) = exchange.copy.take().filter(|copy| !self.echoes && exchange.accepts(copy).is_ok()) {
+            self.counters.echoes -= 1;
+            return self.end(Ended::Answered(block));
+        }
+        self.owed += 1;
+        self.owed_until = deadline + self.policy.timeout;
+        if exchange.repetitions > 0 {
+            exchange.repetitions -= 1;
+            self.state = State::Settling(exchange);
+            // A repetition asks the same again: whichever answer comes is an answer to it.
+            return self.send(deadline);
+        }
+        self.end(match exchange.unfitting {
+            Some((block, why)) => Ended::Unfitting { block, why },
+            None => Ended::NoAnswer,
+        })
+    }
+
+    fn send(&mut self, now: Now) -> Step<Ended> {
+        let State::Settling(exchange) = std::mem::replace(&mut self.state, State::Ended(None)) else {
+            return Step::Wait(Now::MAX);
+        };
+        let bytes = format!("{}\r\n", exchange.text).into_bytes();
+        let length = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
+        self.counters.sent += 1;
+        self.framer.clear();
+        let deadline = now + self.policy.character.saturating_mul(length) + self.policy.timeout;
+        self.state = State::Waiting(exchange, deadline);
+        Step::Send(bytes)
+    }
+
+    /// What a block means to an exchange that waits.
+    fn take(&mut self, now: Now, mut exchange: Exchange, deadline: Now, framed: Framed) -> State {
+        self.counters.received += 1;
+        let block = match framed {
+            Framed::Block(block) => block,
+            Framed::Garbled { text, why } => return self.again(now, exchange, deadline, (text, why.to_owned())),
+        };
+        if block == exchange.text && exchange.copy.is_none() {
+            self.counters.echoes += 1;
+            exchange.copy = Some(block);
+            return State::Waiting(exchange, deadline);
+        }
+        match exchange.accepts(&block) {
+            Ok(()) => {
+                self.echoes |= exchange.copy.is_some();
+                // If it was asked several times, the other answers may come as late as that.
+                self.owed_until = deadline;
+                State::Ended(Some(Ended::Answered(block)))
+            }
+            Err(error @ (BlockError::Other { .. } | BlockError::Command { .. })) => {
+                self.counters.foreign += 1;
+                exchange.unfitting = Some((block, error.to_string()));
+                State::Waiting(exchange, deadline)
+            }
+            Err(error) => self.again(now, exchange, deadline, (block, error.to_string())),
+        }
+    }
+
+    /// A garbled block was the answer. What may be repeated is asked again as soon as the line is quiet; the rest waits
+    /// for its time to run out.
+    fn again(&mut self, now: Now, mut exchange: Exchange, deadline: Now, unfitting: (String, String)) -> State {
+        self.counters.garbled += 1;
+        exchange.unfitting = Some(unfitting);
+        if exchange.repetitions == 0 {
+            return State::Waiting(exchange, deadline);
+        }
+        exchange.repetitions -= 1;
+        exchange.not_before = now + QUIET;
+        State::Settling(exchange)
+    }
+}
+
+impl Exchange {
+    fn accepts(&self, block: &str) -> Result<(), BlockError> {
+        self.request.as_ref().map_or(Ok(()), |request| request.answer(block).map(|_| ()))
+    }
+}
+
+impl Session for Line {
+    type Outcome = Ended;
+
+    fn poll(&mut self, now: Now) -> Step<Ended> {
+        match &self.state {
+            State::Ended(Some(ended)) => Step::Done(ended.clone()),
+            State::Ended(None) => Step::Wait(Now::MAX),
+            State::Settling(exchange) => {
+                if now >= self.owed_until {
+                    self.owed = 0;
+                }
+                let settled = if self.owed > 0 { self.owed_until } else { now };
+                let at = settled.max(exchange.not_before);
+                if at > now { Step::Wait(at) } else { self.send(now) }
+            }
+            State::Waiting(_, deadline) if now < *deadline => Step::Wait(*deadline),
+            State::Waiting(..) => match std::mem::replace(&mut self.state, State::Ended(None)) {
+                State::Waiting(exchange, deadline) => self.silence(exchange, deadline.max(now)),
+                _ => Step::Wait(Now::MAX),
+            },
+        }
+    }
+
+    fn handle(&mut self, now: Now, bytes: &[u8]) {
+        for byte in bytes {
+            let (framed, noise) = self.framer.push(*byte);
+            self.counters.noise += noise;
+            let Some(framed) = framed else { continue };
+            self.state = match std::mem::replace(&mut self.state, State::Ended(None)) {
+                State::Waiting(exchange, deadline) => self.take(now, exchange, deadline, framed),
+                state => {
+                    self.counters.foreign += 1;
+                    self.owed = self.owed.saturating_sub(1);
+                    state
+                }
+            };
+        }
+        if let State::Settling(exchange) = &mut self.state
+            && !exchange.not_before.is_zero()
+        {
+            exchange.not_before = now + QUIET;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

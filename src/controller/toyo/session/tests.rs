@@ -1,0 +1,162 @@
+use super::*;
+
+const SECOND: Duration = Duration::from_secs(1);
+const POLICY: Policy = Policy { timeout: SECOND, retries: 2, character: Duration::from_micros(1146) };
+
+fn ms(ms: u64) -> Now {
+    Duration::from_millis(ms)
+}
+
+fn request(text: &str) -> Request {
+    Request::parse(text).unwrap()
+}
+
+/// A line on which a request was just sent.
+fn sent(text: &str, is_repeatable: bool) -> Line {
+    let mut line = Line::new(POLICY);
+    line.begin(&request(text), is_repeatable);
+    assert_eq!(line.poll(Now::ZERO), Step::Send(format!("{text}\r\n").into_bytes()));
+    line
+}
+
+fn answered(block: &str) -> Step<Ended> {
+    Step::Done(Ended::Answered(block.to_owned()))
+}
+
+#[test]
+fn an_answer_in_pieces_ends_the_exchange() {
+    let mut line = sent("@STAS SNO=0", true);
+    line.handle(ms(20), b"@STAS SNO=0 ST1=2");
+    assert!(matches!(line.poll(ms(20)), Step::Wait(_)));
+    line.handle(ms(25), b"2 ST2=00\r");
+    assert_eq!(line.poll(ms(25)), answered("@STAS SNO=0 ST1=22 ST2=00"));
+    line.handle(ms(26), b"\n");
+    assert_eq!(line.counters(), Counters { sent: 1, received: 1, ..Counters::default() });
+}
+
+#[test]
+fn the_time_for_an_answer_begins_after_the_last_character() {
+    let mut line = sent("@HOME", false);
+    // Seven characters of 1.146 ms, then a second.
+    assert_eq!(line.poll(ms(1)), Step::Wait(Duration::from_micros(7 * 1146) + SECOND));
+}
+
+#[test]
+fn reads_are_repeated_and_orders_are_not() {
+    let mut line = sent("@MTSK", true);
+    for _ in 0..2 {
+        let Step::Wait(deadline) = line.poll(ms(1)) else { panic!("it waits") };
+        assert_eq!(line.poll(deadline), Step::Send(b"@MTSK\r\n".to_vec()));
+    }
+    let Step::Wait(deadline) = line.poll(ms(1)) else { panic!("it waits") };
+    assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
+
+    let mut line = sent("@HOME", false);
+    let Step::Wait(deadline) = line.poll(ms(1)) else { panic!("it waits") };
+    assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
+    assert_eq!(line.counters().sent, 1);
+}
+
+#[test]
+fn a_late_ok_is_not_the_answer_to_the_next_order() {
+    let mut line = sent("@MAUT", false);
+    let Step::Wait(deadline) = line.poll(ms(1)) else { panic!("it waits") };
+    assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
+    line.begin(&request("@SVON"), false);
+    let Step::Wait(settled) = line.poll(deadline) else { panic!("it lets the line settle") };
+    assert_eq!(settled, deadline + SECOND);
+    // It comes, and passes; the next order goes out at once.
+    line.handle(deadline + ms(300), b"@OK\r\n");
+    let now = deadline + ms(300);
+    assert_eq!(line.poll(now), Step::Send(b"@SVON\r\n".to_vec()));
+    assert!(matches!(line.poll(now), Step::Wait(_)));
+    line.handle(now + ms(20), b"@NG\r\n");
+    assert_eq!(line.poll(now + ms(20)), answered("@NG"));
+}
+
+#[test]
+fn an_exchange_that_is_given_up_is_still_owed_its_answer() {
+    let mut line = sent("@SPST 0001", false);
+    line.begin(&request("@STOP"), true);
+    assert!(matches!(line.poll(ms(5)), Step::Wait(_)), "the line settles first");
+    line.handle(ms(30), b"@OK\r\n");
+    assert_eq!(line.poll(ms(30)), Step::Send(b"@STOP\r\n".to_vec()));
+}
+
+#[test]
+fn an_answer_to_something_else_is_passed_over() {
+    let mut line = sent("@STAS SNO=1", true);
+    line.handle(ms(10), b"@OK\r\n@STAS SNO=0 ST1=22 ST2=00\r\n@STAS SNO=1 ST1=00 ST2=00\r\n");
+    assert_eq!(line.poll(ms(10)), answered("@STAS SNO=1 ST1=00 ST2=00"));
+    assert_eq!(line.counters().foreign, 2);
+}
+
+#[test]
+fn noise_around_an_answer_does_not_matter() {
+    let mut line = sent("@MTSK", true);
+    line.handle(ms(10), b"\x00\xffx@MT\x80@MTSK TASK=01\r\n");
+    assert_eq!(line.poll(ms(10)), answered("@MTSK TASK=01"));
+    assert!(line.counters().noise > 0);
+}
+
+#[test]
+fn a_garbled_read_is_asked_again_when_the_line_is_quiet() {
+    let mut line = sent("@MTSK", true);
+    line.handle(ms(10), b"@MTSK TA\x80K=01\r\n");
+    assert_eq!(line.poll(ms(10)), Step::Wait(ms(60)));
+    line.handle(ms(40), b"\x80");
+    assert_eq!(line.poll(ms(60)), Step::Wait(ms(90)));
+    assert_eq!(line.poll(ms(90)), Step::Send(b"@MTSK\r\n".to_vec()));
+    line.handle(ms(110), b"@MTSK TASK=01\r\n");
+    assert_eq!(line.poll(ms(110)), answered("@MTSK TASK=01"));
+}
+
+#[test]
+fn a_garbled_answer_to_an_order_leaves_it_open() {
+    let mut line = sent("@SVON", false);
+    line.handle(ms(10), b"@O\x80\r\n");
+    let Step::Wait(deadline) = line.poll(ms(10)) else { panic!("it waits") };
+    assert!(matches!(line.poll(deadline), Step::Done(Ended::Unfitting { .. })));
+}
+
+#[test]
+fn a_line_that_echoes_is_no_controller() {
+    let mut line = sent("@STAS SNO=0", true);
+    line.handle(ms(5), b"@STAS SNO=0\r\n@STAS SNO=0 ST1=00 ST2=00\r\n");
+    assert_eq!(line.poll(ms(5)), answered("@STAS SNO=0 ST1=00 ST2=00"));
+    assert!(line.echoes());
+    // From now on the answer that looks like its request is known from the echo.
+    line.begin(&request("@TYPE AX1 RTYP=000001"), false);
+    assert!(matches!(line.poll(ms(6)), Step::Send(_)));
+    line.handle(ms(7), b"@TYPE AX1 RTYP=000001\r\n");
+    let Step::Wait(deadline) = line.poll(ms(7)) else { panic!("an echo is no answer") };
+    assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
+}
+
+#[test]
+fn an_answer_that_looks_like_its_request_counts_in_the_end() {
+    let mut line = sent("@TYPE AX1 RTYP=000001", false);
+    line.handle(ms(20), b"@TYPE AX1 RTYP=000001\r\n");
+    let Step::Wait(deadline) = line.poll(ms(20)) else { panic!("it may be an echo") };
+    assert_eq!(line.poll(deadline), answered("@TYPE AX1 RTYP=000001"));
+}
+
+#[test]
+fn ten_thousand_characters_without_an_end_are_bounded() {
+    let mut line = sent("@MTSK", false);
+    line.handle(ms(10), &[b'A'; 10_000]);
+    line.handle(ms(10), b"@");
+    line.handle(ms(10), &[b'A'; 10_000]);
+    let Step::Wait(deadline) = line.poll(ms(10)) else { panic!("it waits") };
+    assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
+    assert!(line.counters().noise >= 10_000);
+}
+
+#[test]
+fn whatever_answers_a_raw_block_is_its_answer() {
+    let mut line = Line::new(POLICY);
+    line.begin_raw("@ABCD");
+    assert_eq!(line.poll(Now::ZERO), Step::Send(b"@ABCD\r\n".to_vec()));
+    line.handle(ms(9), b"@ABCD\r\n@ABCD X=1\r\n");
+    assert_eq!(line.poll(ms(9)), answered("@ABCD X=1"));
+}
