@@ -3,7 +3,25 @@
 //! Nothing in here knows a controller's protocol, and no controller knows what is in here.
 
 pub mod fault;
+pub mod line;
+mod port;
+pub mod ports;
+mod pty;
+pub mod serial;
 pub mod server;
 pub mod sim;
+pub mod stream;
+pub mod stream_server;
 pub mod tap;
+pub mod tcp;
+#[cfg(test)]
+mod testing;
 pub mod udp;
+
+use std::fmt::Display;
+use std::io;
+
+/// The error of a byte stream whose other end is gone.
+fn vanished(why: impl Display) -> io::Error {
+    io::Error::new(io::ErrorKind::NotConnected, why.to_string())
+}

@@ -8,11 +8,15 @@ use tokio::time::Instant;
 
 use super::fault::Faults;
 
-/// Something that takes and gives datagrams, such as a simulated controller.
+/// Something that takes and gives datagrams, or pieces of a byte stream, such as a simulated controller. A byte stream
+/// has but channel 0.
 pub trait Peer {
-    /// Takes a datagram that arrived at `now` on a channel.
+    /// Takes a datagram or piece that arrived at `now` on a channel.
     fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]);
-    /// The next datagram that is due at `now`.
+    /// Is told that a character of a serial line arrived at `now` with the wrong parity, which [`Peer::receive`] does
+    /// not get.
+    fn damaged(&mut self, _now: Duration, _channel: usize) {}
+    /// The next datagram or piece that is due at `now`.
     fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)>;
     /// When something may be due.
     fn wake(&self) -> Option<Duration>;

@@ -1,7 +1,4 @@
-//! A seeded injector of datagram faults, without sockets and without a clock.
-//!
-//! It is handed datagrams and says when which bytes arrive, if at all. The same seed and the same datagrams give the same
-//! faults on every machine.
+//! Faults of datagrams.
 //!
 //! What `corrupt` does is limited on purpose. UDP's checksum stops nearly all damage on the way; what still gets through
 //! comes from broken stacks, wrong senders and wrong ports. So a corrupt datagram is cut, extended, zeroed, changed in
@@ -15,7 +12,11 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use fastrand::Rng;
-use thiserror::Error;
+
+use super::{
+    DELAY_FORM, FaultSpecError, Key, SEED_FORM, SHARE_FORM, Setter, Share, between, delay, parse, write_delay,
+    write_shares,
+};
 
 /// Most bytes of noise in place of a datagram.
 const MOST_NOISE: usize = 600;
@@ -26,51 +27,6 @@ const HEAD: usize = 8;
 /// How long a reordered datagram is held back beyond its delay: longer than a quick answer takes, and at most longer
 /// than the usual wait before a repeat, so that it meets both the next exchange and its own repeat.
 const HOLD: RangeInclusive<Duration> = Duration::from_millis(20)..=Duration::from_millis(400);
-/// Longest delay that can be asked for.
-const LONGEST_DELAY: Duration = Duration::from_secs(60);
-
-/// A share of datagrams, in steps of 0.01 %.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
-pub struct Share(u16);
-
-impl Share {
-    /// None.
-    pub const NONE: Self = Self(0);
-    /// Every one.
-    pub const ALL: Self = Self(10_000);
-
-    /// Of 10,000 datagrams, as many as this.
-    pub const fn per_10_000(self) -> u16 {
-        self.0
-    }
-
-    fn hits(self, rng: &mut Rng) -> bool {
-        rng.u16(0..Self::ALL.0) < self.0
-    }
-
-    /// Reads "5%" or "0.25%".
-    fn parse(text: &str) -> Option<Self> {
-        let number = text.strip_suffix('%')?;
-        let (whole, fraction) = number.split_once('.').unwrap_or((number, "0"));
-        let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
-        if !digits(whole) || !digits(fraction) || fraction.len() > 2 {
-            return None;
-        }
-        let hundredths: u16 = format!("{fraction:0<2}").parse().ok()?;
-        let share = whole.parse::<u16>().ok()?.checked_mul(100)?.checked_add(hundredths)?;
-        (share <= Self::ALL.0).then_some(Self(share))
-    }
-}
-
-impl fmt::Display for Share {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.0 / 100, self.0 % 100) {
-            (whole, 0) => write!(f, "{whole}%"),
-            (whole, hundredths) if hundredths % 10 == 0 => write!(f, "{whole}.{}%", hundredths / 10),
-            (whole, hundredths) => write!(f, "{whole}.{hundredths:02}%"),
-        }
-    }
-}
 
 /// Which faults, how often. Written `drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7`, every part
 /// optional.
@@ -107,139 +63,33 @@ impl Default for FaultSpec {
     }
 }
 
-/// Why a text is no [`FaultSpec`].
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum FaultSpecError {
-    /// A part without a value.
-    #[error("'{part}' is not of the form key=value, as in drop=5%")]
-    NoValue {
-        /// The part.
-        part: String,
-    },
-    /// A key there is not.
-    #[error("unknown key '{key}'; there are drop, dup, delay, reorder, corrupt, busy and seed")]
-    UnknownKey {
-        /// The key.
-        key: String,
-    },
-    /// A key given twice.
-    #[error("{key} is given twice")]
-    Twice {
-        /// The key.
-        key: &'static str,
-    },
-    /// A value its key does not take.
-    #[error("{key}: '{value}' is not {form}")]
-    Value {
-        /// The key.
-        key: &'static str,
-        /// The value.
-        value: String,
-        /// What it takes.
-        form: &'static str,
-    },
-}
-
-const SHARE_FORM: &str = "a share of 0% to 100% with at most two decimals, as in 2.5%";
-const DELAY_FORM: &str = "a time or range of up to 60s in us, ms or s, as in 20ms or 0..50ms";
-const SEED_FORM: &str = "a whole number of 0 to 18446744073709551615";
-
-/// Puts the value of a key in its place; `None` if the key does not take it.
-type Setter = fn(&mut FaultSpec, &str) -> Option<()>;
-
 /// Every key with the form of its value.
-const KEYS: [(&str, &str, Setter); 7] = [
-    ("drop", SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.drop = share)),
-    ("dup", SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.dup = share)),
-    ("delay", DELAY_FORM, |spec, text| delay(text).map(|delay| spec.delay = delay)),
-    ("reorder", SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.reorder = share)),
-    ("corrupt", SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.corrupt = share)),
-    ("busy", SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.busy = share)),
-    ("seed", SEED_FORM, |spec, text| text.parse().ok().map(|seed| spec.seed = seed)),
+const KEYS: [Key<FaultSpec>; 7] = [
+    ("drop", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.drop = share))),
+    ("dup", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.dup = share))),
+    ("delay", Setter::Value(DELAY_FORM, |spec, text| delay(text).map(|delay| spec.delay = delay))),
+    ("reorder", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.reorder = share))),
+    ("corrupt", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.corrupt = share))),
+    ("busy", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.busy = share))),
+    ("seed", Setter::Value(SEED_FORM, |spec, text| text.parse().ok().map(|seed| spec.seed = seed))),
 ];
 
 impl FromStr for FaultSpec {
     type Err = FaultSpecError;
 
     fn from_str(text: &str) -> Result<Self, FaultSpecError> {
-        let mut spec = Self::default();
-        let mut seen = [false; KEYS.len()];
-        for part in text.split(',').map(str::trim) {
-            let (name, value) =
-                part.split_once('=').ok_or_else(|| FaultSpecError::NoValue { part: part.to_owned() })?;
-            let (position, &(key, form, set)) = KEYS
-                .iter()
-                .enumerate()
-                .find(|(_, (key, ..))| *key == name)
-                .ok_or_else(|| FaultSpecError::UnknownKey { key: name.to_owned() })?;
-            if std::mem::replace(&mut seen[position], true) {
-                return Err(FaultSpecError::Twice { key });
-            }
-            set(&mut spec, value).ok_or_else(|| FaultSpecError::Value { key, value: value.to_owned(), form })?;
-        }
-        Ok(spec)
+        parse(text, &KEYS)
     }
 }
 
 impl fmt::Display for FaultSpec {
     /// The parts that are not 0, and the seed in any case; reads back as the same value.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let shares = |f: &mut fmt::Formatter<'_>, shares: &[(&str, Share)]| {
-            shares
-                .iter()
-                .filter(|(_, share)| *share != Share::NONE)
-                .try_for_each(|(key, share)| write!(f, "{key}={share},"))
-        };
-        shares(f, &[("drop", self.drop), ("dup", self.dup)])?;
-        let (least, most) = (self.delay.start(), self.delay.end());
-        if least == most && !most.is_zero() {
-            write!(f, "delay={},", Time(*most))?;
-        } else if least != most {
-            write!(f, "delay={}..{},", Time(*least), Time(*most))?;
-        }
-        shares(f, &[("reorder", self.reorder), ("corrupt", self.corrupt), ("busy", self.busy)])?;
+        write_shares(f, &[("drop", self.drop), ("dup", self.dup)])?;
+        write_delay(f, &self.delay)?;
+        write_shares(f, &[("reorder", self.reorder), ("corrupt", self.corrupt), ("busy", self.busy)])?;
         write!(f, "seed={}", self.seed)
     }
-}
-
-/// A time in the largest unit that shows it exactly; finer than microseconds cannot be asked for.
-struct Time(Duration);
-
-impl fmt::Display for Time {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let micros = self.0.as_micros();
-        match UNITS.iter().rev().find(|(_, unit)| micros.is_multiple_of(u128::from(*unit))) {
-            Some((name, unit)) if micros > 0 => write!(f, "{}{name}", micros / u128::from(*unit)),
-            _ => f.write_str("0ms"),
-        }
-    }
-}
-
-/// Units of time in microseconds, small to large.
-const UNITS: [(&str, u64); 3] = [("us", 1), ("ms", 1_000), ("s", 1_000_000)];
-
-/// Reads "20ms", "0..50ms" or "500us..2ms"; a lower end without a unit has that of the upper end.
-fn delay(text: &str) -> Option<RangeInclusive<Duration>> {
-    let Some((least, most)) = text.split_once("..") else {
-        let (number, unit) = number_and_unit(text);
-        let fixed = time(number, unit)?;
-        return Some(fixed..=fixed);
-    };
-    let (most_number, most_unit) = number_and_unit(most);
-    let (least_number, least_unit) = number_and_unit(least);
-    let least = time(least_number, if least_unit.is_empty() { most_unit } else { least_unit })?;
-    let most = time(most_number, most_unit)?;
-    (least <= most).then_some(least..=most)
-}
-
-fn number_and_unit(text: &str) -> (&str, &str) {
-    text.split_at(text.bytes().take_while(u8::is_ascii_digit).count())
-}
-
-fn time(number: &str, unit: &str) -> Option<Duration> {
-    let (_, micros) = UNITS.iter().find(|(name, _)| *name == unit)?;
-    let time = Duration::from_micros(number.parse::<u64>().ok()?.checked_mul(*micros)?);
-    (time <= LONGEST_DELAY).then_some(time)
 }
 
 /// One direction of a faulty link.
@@ -334,13 +184,6 @@ fn noise(rng: &mut Rng, length: usize) -> Vec<u8> {
     let mut bytes = vec![0; length];
     rng.fill(&mut bytes);
     bytes
-}
-
-fn between(rng: &mut Rng, range: &RangeInclusive<Duration>) -> Duration {
-    let micros = |time: &Duration| u64::try_from(time.as_micros()).unwrap_or(u64::MAX);
-    let (least, most) = (micros(range.start()), micros(range.end()));
-    // A spec that was built by hand may have its ends the wrong way round.
-    Duration::from_micros(if least < most { rng.u64(least..=most) } else { least })
 }
 
 #[cfg(test)]

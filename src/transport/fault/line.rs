@@ -1,0 +1,240 @@
+//! Faults of a line that carries characters one after the other.
+
+use std::collections::VecDeque;
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+use std::time::Duration;
+
+use fastrand::Rng;
+
+use super::{
+    DELAY_FORM, FaultSpecError, Key, SEED_FORM, SHARE_FORM, Setter, Share, between, delay, parse, write_delay,
+    write_shares,
+};
+
+/// Which faults, how often. Written `noise=1%,parity=1%,drop=1%,dup=1%,delay=0..50ms,busy=4%,echo,seed=7`, every part
+/// optional. Shares are of characters.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LineFaultSpec {
+    /// Characters that become another one, or that get a random one in front of them.
+    pub noise: Share,
+    /// Characters that arrive with the wrong parity, so that the receiver knows them to be damaged.
+    pub parity: Share,
+    /// Characters that never arrive.
+    pub drop: Share,
+    /// Characters that arrive twice.
+    pub dup: Share,
+    /// How long what is written in one piece is held back. The order is kept.
+    pub delay: RangeInclusive<Duration>,
+    /// Requests that a simulated controller refuses as busy. Only carried here: it takes a protocol to do it.
+    pub busy: Share,
+    /// Whether all that the host sends comes back to it as well, as from some RS-485 adapters and a loop-back plug.
+    pub echo: bool,
+    /// Start of the random sequence.
+    pub seed: u64,
+}
+
+impl Default for LineFaultSpec {
+    /// No faults at all.
+    fn default() -> Self {
+        Self {
+            noise: Share::NONE,
+            parity: Share::NONE,
+            drop: Share::NONE,
+            dup: Share::NONE,
+            delay: Duration::ZERO..=Duration::ZERO,
+            busy: Share::NONE,
+            echo: false,
+            seed: 0,
+        }
+    }
+}
+
+/// Every key with the form of its value.
+const KEYS: [Key<LineFaultSpec>; 8] = [
+    ("noise", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.noise = share))),
+    ("parity", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.parity = share))),
+    ("drop", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.drop = share))),
+    ("dup", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.dup = share))),
+    ("delay", Setter::Value(DELAY_FORM, |spec, text| delay(text).map(|delay| spec.delay = delay))),
+    ("busy", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.busy = share))),
+    ("echo", Setter::Flag(|spec| spec.echo = true)),
+    ("seed", Setter::Value(SEED_FORM, |spec, text| text.parse().ok().map(|seed| spec.seed = seed))),
+];
+
+impl FromStr for LineFaultSpec {
+    type Err = FaultSpecError;
+
+    fn from_str(text: &str) -> Result<Self, FaultSpecError> {
+        parse(text, &KEYS)
+    }
+}
+
+impl fmt::Display for LineFaultSpec {
+    /// The parts that are not 0, and the seed in any case; reads back as the same value.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shares = [("noise", self.noise), ("parity", self.parity), ("drop", self.drop), ("dup", self.dup)];
+        write_shares(f, &shares)?;
+        write_delay(f, &self.delay)?;
+        write_shares(f, &[("busy", self.busy)])?;
+        if self.echo {
+            f.write_str("echo,")?;
+        }
+        write!(f, "seed={}", self.seed)
+    }
+}
+
+/// One direction of a faulty line.
+#[derive(Debug, Clone)]
+pub struct LineFaults {
+    spec: LineFaultSpec,
+    rng: Rng,
+}
+
+/// What becomes of characters that were written in one piece.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Passed {
+    /// How long they are held back.
+    pub delay: Duration,
+    /// The characters that arrive.
+    pub bytes: Vec<u8>,
+    /// Which of them have the wrong parity, in rising order.
+    pub damaged: VecDeque<usize>,
+}
+
+impl LineFaults {
+    /// A direction with the faults of `spec`.
+    pub fn new(spec: LineFaultSpec) -> Self {
+        let rng = Rng::with_seed(spec.seed);
+        Self { spec, rng }
+    }
+
+    /// Both directions of a line, each with a random sequence of its own.
+    pub fn pair(spec: LineFaultSpec) -> (Self, Self) {
+        let there = Self::new(spec);
+        let mut back = there.clone();
+        back.rng = back.rng.fork();
+        (there, back)
+    }
+
+    /// What becomes of characters that are written in one piece.
+    pub fn pass(&mut self, bytes: &[u8]) -> Passed {
+        let delay = between(&mut self.rng, &self.spec.delay);
+        let mut passed = Passed { delay, bytes: Vec::with_capacity(bytes.len()), damaged: VecDeque::new() };
+        for &byte in bytes {
+            if self.hits(self.spec.drop) {
+                continue;
+            }
+            let copies = if self.hits(self.spec.dup) { 2 } else { 1 };
+            for _ in 0..copies {
+                self.arrive(byte, &mut passed);
+            }
+        }
+        passed
+    }
+
+    fn arrive(&mut self, byte: u8, passed: &mut Passed) {
+        let is_noisy = self.hits(self.spec.noise);
+        if is_noisy {
+            passed.bytes.push(self.rng.u8(..));
+        }
+        // Half of the noise is in place of the character.
+        if is_noisy && self.rng.bool() {
+            return;
+        }
+        if self.hits(self.spec.parity) {
+            passed.damaged.push_back(passed.bytes.len());
+        }
+        passed.bytes.push(byte);
+    }
+
+    /// What cannot happen draws nothing, so that a line without faults costs nothing.
+    fn hits(&mut self, share: Share) -> bool {
+        share != Share::NONE && share.hits(&mut self.rng)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spec(text: &str) -> LineFaultSpec {
+        text.parse().unwrap_or_else(|error| panic!("{text}: {error}"))
+    }
+
+    fn pass(text: &str, bytes: &[u8]) -> Passed {
+        LineFaults::new(spec(text)).pass(bytes)
+    }
+
+    #[test]
+    fn every_key_is_read_and_shown_again() {
+        let text = "noise=1%,parity=2%,drop=3%,dup=4%,delay=0ms..50ms,busy=5%,echo,seed=7";
+        let expected = LineFaultSpec {
+            noise: Share(100),
+            parity: Share(200),
+            drop: Share(300),
+            dup: Share(400),
+            delay: Duration::ZERO..=Duration::from_millis(50),
+            busy: Share(500),
+            echo: true,
+            seed: 7,
+        };
+        assert_eq!(spec(text), expected);
+        assert_eq!(expected.to_string(), text);
+        assert_eq!(spec("seed=0"), LineFaultSpec::default());
+    }
+
+    #[test]
+    fn errors_name_the_key_and_the_form() {
+        for (text, message) in [
+            ("echo=on", "echo takes no value, but has 'on'"),
+            ("echo,echo", "echo is given twice"),
+            ("noise", "'noise' is not of the form key=value, as in drop=5%"),
+            ("reorder=1%", "unknown key 'reorder'; there are noise, parity, drop, dup, delay, busy, echo and seed"),
+            ("noise=1", "noise: '1' is not a share of 0% to 100% with at most two decimals, as in 2.5%"),
+        ] {
+            assert_eq!(text.parse::<LineFaultSpec>().unwrap_err().to_string(), message, "{text}");
+        }
+    }
+
+    #[test]
+    fn without_faults_everything_arrives_at_once() {
+        let passed = pass("seed=3", b"@STAS\r\n");
+        assert_eq!(passed, Passed { bytes: b"@STAS\r\n".to_vec(), ..Passed::default() });
+    }
+
+    #[test]
+    fn each_fault_does_what_its_name_says() {
+        assert_eq!(pass("drop=100%", b"abc").bytes, b"");
+        assert_eq!(pass("dup=100%", b"abc").bytes, b"aabbcc");
+        let damaged = pass("parity=100%", b"abc");
+        assert_eq!((damaged.bytes, damaged.damaged), (b"abc".to_vec(), VecDeque::from([0, 1, 2])));
+        assert_eq!(pass("delay=20ms", b"abc").delay, Duration::from_millis(20));
+
+        let noise = pass("noise=100%,seed=1", &[b'x'; 1000]).bytes;
+        let kept = noise.split(|byte| *byte == b'x').count();
+        assert!((450..550).contains(&kept), "about half of the characters stay behind the noise: {kept}");
+        assert!((1450..1550).contains(&noise.len()), "{}", noise.len());
+    }
+
+    #[test]
+    fn the_seed_decides_and_the_directions_differ() {
+        let run = |faults: &mut LineFaults| (0..50).map(|_| faults.pass(&[7; 40])).collect::<Vec<_>>();
+        let text = "noise=5%,parity=5%,drop=5%,dup=5%,delay=0..50ms";
+        let (mut there, mut back) = LineFaults::pair(spec(&format!("{text},seed=1")));
+        let one = run(&mut there);
+        assert!(one == run(&mut LineFaults::new(spec(&format!("{text},seed=1")))), "the same seed, other faults");
+        assert!(one != run(&mut back), "both directions have the same faults");
+        assert!(one != run(&mut LineFaults::new(spec(&format!("{text},seed=2")))), "another seed, the same faults");
+    }
+
+    #[test]
+    fn shares_are_met() {
+        let bytes = vec![0; 100_000];
+        let length = |text: &str| pass(text, &bytes).bytes.len();
+        assert!((89_000..91_000).contains(&length("drop=10%,seed=5")));
+        assert!((109_000..111_000).contains(&length("dup=10%,seed=5")));
+        assert!((9_000..11_000).contains(&pass("parity=10%,seed=5", &bytes).damaged.len()));
+    }
+}

@@ -1,0 +1,221 @@
+//! Seeded injectors of faults, without sockets and without a clock: [`Faults`] of datagrams, [`LineFaults`] of a line
+//! that carries characters.
+//!
+//! They are handed what is sent and say what arrives. The same seed and the same traffic give the same faults on every
+//! machine.
+
+mod datagram;
+mod line;
+
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::time::Duration;
+
+use fastrand::Rng;
+use thiserror::Error;
+
+pub use datagram::{FaultSpec, Faults};
+pub use line::{LineFaultSpec, LineFaults, Passed};
+
+/// Longest delay that can be asked for.
+const LONGEST_DELAY: Duration = Duration::from_secs(60);
+
+/// A share of what is sent, in steps of 0.01 %.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub struct Share(u16);
+
+impl Share {
+    /// None.
+    pub const NONE: Self = Self(0);
+    /// Every one.
+    pub const ALL: Self = Self(10_000);
+
+    /// Of 10,000, as many as this.
+    pub const fn per_10_000(self) -> u16 {
+        self.0
+    }
+
+    fn hits(self, rng: &mut Rng) -> bool {
+        rng.u16(0..Self::ALL.0) < self.0
+    }
+
+    /// Reads "5%" or "0.25%".
+    fn parse(text: &str) -> Option<Self> {
+        let number = text.strip_suffix('%')?;
+        let (whole, fraction) = number.split_once('.').unwrap_or((number, "0"));
+        let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+        if !digits(whole) || !digits(fraction) || fraction.len() > 2 {
+            return None;
+        }
+        let hundredths: u16 = format!("{fraction:0<2}").parse().ok()?;
+        let share = whole.parse::<u16>().ok()?.checked_mul(100)?.checked_add(hundredths)?;
+        (share <= Self::ALL.0).then_some(Self(share))
+    }
+}
+
+impl fmt::Display for Share {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.0 / 100, self.0 % 100) {
+            (whole, 0) => write!(f, "{whole}%"),
+            (whole, hundredths) if hundredths % 10 == 0 => write!(f, "{whole}.{}%", hundredths / 10),
+            (whole, hundredths) => write!(f, "{whole}.{hundredths:02}%"),
+        }
+    }
+}
+
+/// Why a text is no [`FaultSpec`] or [`LineFaultSpec`].
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum FaultSpecError {
+    /// A part without a value.
+    #[error("'{part}' is not of the form key=value, as in drop=5%")]
+    NoValue {
+        /// The part.
+        part: String,
+    },
+    /// A key there is not.
+    #[error("unknown key '{key}'; there are {known}")]
+    UnknownKey {
+        /// The key.
+        key: String,
+        /// Those there are.
+        known: String,
+    },
+    /// A key given twice.
+    #[error("{key} is given twice")]
+    Twice {
+        /// The key.
+        key: &'static str,
+    },
+    /// A value its key does not take.
+    #[error("{key}: '{value}' is not {form}")]
+    Value {
+        /// The key.
+        key: &'static str,
+        /// The value.
+        value: String,
+        /// What it takes.
+        form: &'static str,
+    },
+    /// A value where the key alone says all.
+    #[error("{key} takes no value, but has '{value}'")]
+    NeedlessValue {
+        /// The key.
+        key: &'static str,
+        /// The value.
+        value: String,
+    },
+}
+
+const SHARE_FORM: &str = "a share of 0% to 100% with at most two decimals, as in 2.5%";
+const DELAY_FORM: &str = "a time or range of up to 60s in us, ms or s, as in 20ms or 0..50ms";
+const SEED_FORM: &str = "a whole number of 0 to 18446744073709551615";
+
+/// A part of a specification `S`: its name, and how it is put in its place.
+type Key<S> = (&'static str, Setter<S>);
+
+/// How a part is put in its place.
+enum Setter<S> {
+    /// The form of the value, and what puts it there; `None` if it is not of that form.
+    Value(&'static str, fn(&mut S, &str) -> Option<()>),
+    /// The key alone.
+    Flag(fn(&mut S)),
+}
+
+/// Reads parts between commas, each at most once.
+fn parse<S: Default, const N: usize>(text: &str, keys: &[Key<S>; N]) -> Result<S, FaultSpecError> {
+    let mut spec = S::default();
+    let mut seen = [false; N];
+    for part in text.split(',').map(str::trim) {
+        let (name, value) = part.split_once('=').map_or((part, None), |(name, value)| (name, Some(value)));
+        let Some((position, (key, setter))) = keys.iter().enumerate().find(|(_, (key, _))| *key == name) else {
+            return Err(match value {
+                None => FaultSpecError::NoValue { part: part.to_owned() },
+                Some(_) => FaultSpecError::UnknownKey { key: name.to_owned(), known: known(keys) },
+            });
+        };
+        if std::mem::replace(&mut seen[position], true) {
+            return Err(FaultSpecError::Twice { key });
+        }
+        match (setter, value) {
+            (Setter::Flag(set), None) => set(&mut spec),
+            (Setter::Flag(_), Some(value)) => {
+                return Err(FaultSpecError::NeedlessValue { key, value: value.to_owned() });
+            }
+            (Setter::Value(form, set), Some(value)) => {
+                set(&mut spec, value).ok_or_else(|| FaultSpecError::Value { key, value: value.to_owned(), form })?;
+            }
+            (Setter::Value(..), None) => return Err(FaultSpecError::NoValue { part: part.to_owned() }),
+        }
+    }
+    Ok(spec)
+}
+
+/// The keys as a sentence lists them.
+fn known<S>(keys: &[Key<S>]) -> String {
+    let names: Vec<&str> = keys.iter().map(|(key, _)| *key).collect();
+    let (last, others) = names.split_last().expect("a table of keys has some");
+    format!("{} and {last}", others.join(", "))
+}
+
+/// Writes the shares that are not 0, each with a comma behind it.
+fn write_shares(f: &mut fmt::Formatter<'_>, shares: &[(&str, Share)]) -> fmt::Result {
+    let mut some = shares.iter().filter(|(_, share)| *share != Share::NONE);
+    some.try_for_each(|(key, share)| write!(f, "{key}={share},"))
+}
+
+/// Writes a delay that is not 0, with a comma behind it.
+fn write_delay(f: &mut fmt::Formatter<'_>, delay: &RangeInclusive<Duration>) -> fmt::Result {
+    let (least, most) = (delay.start(), delay.end());
+    match least == most {
+        true if most.is_zero() => Ok(()),
+        true => write!(f, "delay={},", Time(*most)),
+        false => write!(f, "delay={}..{},", Time(*least), Time(*most)),
+    }
+}
+
+/// A time in the largest unit that shows it exactly; finer than microseconds cannot be asked for.
+struct Time(Duration);
+
+impl fmt::Display for Time {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let micros = self.0.as_micros();
+        match UNITS.iter().rev().find(|(_, unit)| micros.is_multiple_of(u128::from(*unit))) {
+            Some((name, unit)) if micros > 0 => write!(f, "{}{name}", micros / u128::from(*unit)),
+            _ => f.write_str("0ms"),
+        }
+    }
+}
+
+/// Units of time in microseconds, small to large.
+const UNITS: [(&str, u64); 3] = [("us", 1), ("ms", 1_000), ("s", 1_000_000)];
+
+/// Reads "20ms", "0..50ms" or "500us..2ms"; a lower end without a unit has that of the upper end.
+fn delay(text: &str) -> Option<RangeInclusive<Duration>> {
+    let Some((least, most)) = text.split_once("..") else {
+        let (number, unit) = number_and_unit(text);
+        let fixed = time(number, unit)?;
+        return Some(fixed..=fixed);
+    };
+    let (most_number, most_unit) = number_and_unit(most);
+    let (least_number, least_unit) = number_and_unit(least);
+    let least = time(least_number, if least_unit.is_empty() { most_unit } else { least_unit })?;
+    let most = time(most_number, most_unit)?;
+    (least <= most).then_some(least..=most)
+}
+
+fn number_and_unit(text: &str) -> (&str, &str) {
+    text.split_at(text.bytes().take_while(u8::is_ascii_digit).count())
+}
+
+fn time(number: &str, unit: &str) -> Option<Duration> {
+    let (_, micros) = UNITS.iter().find(|(name, _)| *name == unit)?;
+    let time = Duration::from_micros(number.parse::<u64>().ok()?.checked_mul(*micros)?);
+    (time <= LONGEST_DELAY).then_some(time)
+}
+
+fn between(rng: &mut Rng, range: &RangeInclusive<Duration>) -> Duration {
+    let micros = |time: &Duration| u64::try_from(time.as_micros()).unwrap_or(u64::MAX);
+    let (least, most) = (micros(range.start()), micros(range.end()));
+    // A spec that was built by hand may have its ends the wrong way round.
+    Duration::from_micros(if least < most { rng.u64(least..=most) } else { least })
+}

@@ -1,0 +1,399 @@
+//! A serial line in this process: characters follow each other at the pace of the line, and may be damaged on the way.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use tokio::time::Instant;
+
+use super::fault::{LineFaultSpec, LineFaults, Passed};
+use super::sim::Peer;
+
+/// How fast characters follow each other on a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pace {
+    /// Bits a second, at least 1.
+    baud: u32,
+    /// Bits of a character, with start, parity and stop bits.
+    bits: u32,
+}
+
+impl Pace {
+    /// A line of `baud` bits a second, whose characters have `bits` bits in all: 11 with 8 data bits, parity and one
+    /// stop bit.
+    pub fn new(baud: u32, bits: u32) -> Self {
+        Self { baud: baud.max(1), bits: bits.max(1) }
+    }
+
+    /// How long `characters` take from the start of the first to the end of the last.
+    pub fn time(self, characters: usize) -> Duration {
+        let nanos = (characters as u128 * u128::from(self.bits) * NANOS).div_ceil(u128::from(self.baud));
+        Duration::from_nanos(u64::try_from(nanos).unwrap_or(u64::MAX))
+    }
+
+    /// How many characters are over within `time`.
+    fn characters(self, time: Duration) -> usize {
+        let characters = time.as_nanos() * u128::from(self.baud) / (u128::from(self.bits) * NANOS);
+        usize::try_from(characters).unwrap_or(usize::MAX)
+    }
+}
+
+const NANOS: u128 = 1_000_000_000;
+
+/// A peer at the other end of a line, on tokio's clock (which tests can halt and turn).
+#[derive(Debug)]
+pub struct InProcessLine<P> {
+    peer: P,
+    wire: Wire,
+    start: Instant,
+}
+
+impl<P: Peer> InProcessLine<P> {
+    /// A peer behind a line; without a pace characters take no time.
+    pub fn new(peer: P, pace: Option<Pace>, faults: Option<LineFaultSpec>) -> Self {
+        Self { peer, wire: Wire::new(pace, faults), start: Instant::now() }
+    }
+
+    /// Sends bytes to the peer; returns at once, while they are on their way.
+    pub fn send(&mut self, bytes: &[u8]) {
+        let now = self.start.elapsed();
+        // What came before these bytes is over, whatever they lead to.
+        self.wire.run(now, &mut self.peer);
+        self.wire.send(now, bytes);
+    }
+
+    /// Waits for bytes of the peer, but not longer than `until`; `None` after silence.
+    pub async fn receive(&mut self, buffer: &mut [u8], until: Instant) -> Option<usize> {
+        loop {
+            let now = self.start.elapsed();
+            self.wire.run(now, &mut self.peer);
+            let taken = self.wire.take(now, buffer);
+            if taken > 0 {
+                return Some(taken);
+            }
+            let now = self.start + now;
+            if now >= until {
+                return None;
+            }
+            let due = self.wire.due(&self.peer).map_or(until, |due| (self.start + due).min(until));
+            tokio::time::sleep_until(due.max(now)).await;
+        }
+    }
+
+    /// Drops what has arrived and was not received; what is still on its way comes.
+    pub fn discard(&mut self) {
+        let now = self.start.elapsed();
+        self.wire.run(now, &mut self.peer);
+        while self.wire.take(now, &mut [0; 256]) > 0 {}
+    }
+}
+
+/// Both directions of a line between a host and a peer, without a clock: it is told the time.
+#[derive(Debug)]
+pub(super) struct Wire {
+    there: Way,
+    back: Way,
+    has_echo: bool,
+    /// When the peer was last looked at.
+    time: Duration,
+}
+
+impl Wire {
+    /// A line that nothing is on.
+    pub(super) fn new(pace: Option<Pace>, faults: Option<LineFaultSpec>) -> Self {
+        let has_echo = faults.as_ref().is_some_and(|spec| spec.echo);
+        let (there, back) = faults.map(LineFaults::pair).unzip();
+        Self { there: Way::new(pace, there), back: Way::new(pace, back), has_echo, time: Duration::ZERO }
+    }
+
+    /// The host writes bytes at `now`.
+    pub(super) fn send(&mut self, now: Duration, bytes: &[u8]) {
+        self.there.put(now, bytes);
+        if self.has_echo {
+            self.back.put(now, bytes);
+        }
+    }
+
+    /// Has everything happen between line and peer that is due up to `now`, at the moment it is due and not when
+    /// somebody looks.
+    pub(super) fn run(&mut self, now: Duration, peer: &mut impl Peer) {
+        loop {
+            let due = earliest(self.there.due(), peer.wake());
+            let at = due.filter(|due| *due > self.time && *due < now).unwrap_or(now);
+            self.time = at;
+            while let Some(piece) = self.there.next(at, usize::MAX) {
+                match piece {
+                    Piece::Whole(bytes) => peer.receive(at, 0, bytes),
+                    Piece::Damaged => peer.damaged(at, 0),
+                }
+            }
+            while let Some((_, bytes)) = peer.transmit(at) {
+                self.back.put(at, &bytes);
+            }
+            if at >= now {
+                return;
+            }
+        }
+    }
+
+    /// What the host has got by `now`. A character with the wrong parity reads as NUL, as from a driver.
+    pub(super) fn take(&mut self, now: Duration, buffer: &mut [u8]) -> usize {
+        let mut taken = 0;
+        while let Some(piece) = self.back.next(now, buffer.len() - taken) {
+            let bytes = match piece {
+                Piece::Whole(bytes) => bytes,
+                Piece::Damaged => &[0],
+            };
+            buffer[taken..taken + bytes.len()].copy_from_slice(bytes);
+            taken += bytes.len();
+        }
+        taken
+    }
+
+    /// When something may happen.
+    pub(super) fn due(&self, peer: &impl Peer) -> Option<Duration> {
+        earliest(earliest(self.there.due(), self.back.due()), peer.wake())
+    }
+
+    /// Loses what is on its way to the host.
+    pub(super) fn lose(&mut self, now: Duration) {
+        self.back.runs.clear();
+        self.back.free = now;
+    }
+}
+
+fn earliest(one: Option<Duration>, other: Option<Duration>) -> Option<Duration> {
+    one.into_iter().chain(other).min()
+}
+
+/// One direction of a line.
+#[derive(Debug)]
+struct Way {
+    pace: Option<Pace>,
+    faults: Option<LineFaults>,
+    /// Characters that were written together, in the order of writing.
+    runs: VecDeque<Run>,
+    /// When the last character is over that was written so far.
+    free: Duration,
+}
+
+/// Characters without a gap.
+#[derive(Debug)]
+struct Run {
+    /// When the first of them begins.
+    start: Duration,
+    passed: Passed,
+    /// How many of them were handed on.
+    taken: usize,
+}
+
+/// Characters that arrived.
+enum Piece<'a> {
+    Whole(&'a [u8]),
+    /// A single one with the wrong parity.
+    Damaged,
+}
+
+impl Way {
+    const fn new(pace: Option<Pace>, faults: Option<LineFaults>) -> Self {
+        Self { pace, faults, runs: VecDeque::new(), free: Duration::ZERO }
+    }
+
+    fn put(&mut self, now: Duration, bytes: &[u8]) {
+        let passed = match &mut self.faults {
+            Some(faults) => faults.pass(bytes),
+            None => Passed { bytes: bytes.to_vec(), ..Passed::default() },
+        };
+        if passed.bytes.is_empty() {
+            return;
+        }
+        let start = now.saturating_add(passed.delay).max(self.free);
+        self.free = start.saturating_add(self.pace.map_or(Duration::ZERO, |pace| pace.time(passed.bytes.len())));
+        self.runs.push_back(Run { start, passed, taken: 0 });
+    }
+
+    /// When the next character is over.
+    fn due(&self) -> Option<Duration> {
+        let run = self.runs.iter().find(|run| run.taken < run.passed.bytes.len())?;
+        Some(run.start.saturating_add(self.pace.map_or(Duration::ZERO, |pace| pace.time(run.taken + 1))))
+    }
+
+    /// The next characters that are over at `now`, at most `most`.
+    fn next(&mut self, now: Duration, most: usize) -> Option<Piece<'_>> {
+        while self.runs.front().is_some_and(|run| run.taken == run.passed.bytes.len()) {
+            self.runs.pop_front();
+        }
+        let pace = self.pace;
+        let Run { start, passed, taken } = self.runs.front_mut()?;
+        let arrived = match (now.checked_sub(*start), pace) {
+            (None, _) => 0,
+            (Some(_), None) => passed.bytes.len(),
+            (Some(time), Some(pace)) => pace.characters(time).min(passed.bytes.len()),
+        };
+        let from = *taken;
+        let end = arrived.min(from.saturating_add(most));
+        if from >= end {
+            return None;
+        }
+        if passed.damaged.front() == Some(&from) {
+            passed.damaged.pop_front();
+            *taken += 1;
+            return Some(Piece::Damaged);
+        }
+        *taken = passed.damaged.front().map_or(end, |damaged| end.min(*damaged));
+        passed.bytes.get(from..*taken).map(Piece::Whole)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::Mirror;
+    use super::*;
+
+    /// 9600 baud, 8 data bits, even parity, 1 stop bit.
+    const USUAL: Pace = Pace { baud: 9600, bits: 11 };
+
+    fn faulty(text: &str) -> InProcessLine<Mirror> {
+        let faults = text.parse().unwrap_or_else(|error| panic!("{text}: {error}"));
+        InProcessLine::new(Mirror::default(), Some(USUAL), Some(faults))
+    }
+
+    /// All that comes until a silence of a minute, with the moment of its last byte.
+    async fn all(line: &mut InProcessLine<Mirror>) -> (Vec<u8>, Duration) {
+        let (start, mut end, mut bytes) = (Instant::now(), Duration::ZERO, Vec::new());
+        let mut buffer = [0; 4096];
+        while let Some(len) = line.receive(&mut buffer, Instant::now() + Duration::from_secs(60)).await {
+            bytes.extend(&buffer[..len]);
+            end = start.elapsed();
+        }
+        (bytes, end)
+    }
+
+    fn just_before(time: Duration) -> Duration {
+        time.saturating_sub(Duration::from_nanos(1))
+    }
+
+    #[test]
+    fn characters_take_their_bits() {
+        assert_eq!(USUAL.time(128), Duration::from_nanos(146_666_667));
+        assert_eq!(USUAL.time(0), Duration::ZERO);
+        for count in 0..2000 {
+            assert_eq!(USUAL.characters(USUAL.time(count)), count);
+            assert_eq!(USUAL.characters(just_before(USUAL.time(count + 1))), count);
+        }
+        assert_eq!(Pace::new(0, 0).time(1), Duration::from_secs(1), "no division by zero");
+    }
+
+    #[test]
+    fn a_line_takes_its_time_there_and_back() {
+        let (mut wire, mut peer) = (Wire::new(Some(USUAL), None), Mirror::default());
+        let mut line = vec![b'x'; 127];
+        line.push(b'\n');
+        wire.send(Duration::ZERO, &line);
+        // Nobody looks for a second: all happened at its time nevertheless.
+        wire.run(Duration::from_secs(1), &mut peer);
+        assert_eq!(peer.heard, [(USUAL.time(128), line)]);
+        let mut buffer = [0; 256];
+        let there = USUAL.time(128);
+        for count in 1..=128 {
+            assert_eq!(wire.take(just_before(there + USUAL.time(count)), &mut buffer), 0);
+            assert_eq!(wire.take(there + USUAL.time(count), &mut buffer), 1);
+        }
+        assert_eq!(wire.due(&peer), None);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn an_exchange_takes_as_long_as_on_the_wire() {
+        let mut line = InProcessLine::new(Mirror::default(), Some(USUAL), None);
+        line.send(&[[b'x'; 127].as_slice(), b"\n"].concat());
+        let (bytes, took) = all(&mut line).await;
+        assert_eq!(bytes.len(), 128);
+        let exact = USUAL.time(256);
+        // Tokio's timers have a resolution of a millisecond.
+        assert!((exact..exact + Duration::from_millis(2)).contains(&took), "{took:?}");
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn without_a_pace_nothing_takes_time() {
+        let mut line = InProcessLine::new(Mirror::default(), None, None);
+        line.send(b"abc\n");
+        assert_eq!(all(&mut line).await, (b"\ncba".to_vec(), Duration::ZERO));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn silence_ends_at_its_time() {
+        let mut line = InProcessLine::new(Mirror::default(), None, None);
+        let until = Instant::now() + Duration::from_millis(1200);
+        assert_eq!(line.receive(&mut [0; 8], until).await, None);
+        assert_eq!(Instant::now(), until);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_million_bytes_come_in_order() {
+        let mut line = InProcessLine::new(Mirror::default(), Some(Pace::new(11_000_000, 11)), None);
+        let sent: Vec<u8> =
+            (0..1_000_000_u32).map(|at| if at == 999_999 { b'\n' } else { b'a' + (at % 26) as u8 }).collect();
+        line.send(&sent);
+        let (mut bytes, took) = all(&mut line).await;
+        bytes.reverse();
+        assert!(bytes == sent);
+        assert!((2000..2010).contains(&took.as_millis()), "{took:?}");
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn what_was_discarded_does_not_come_and_the_rest_does() {
+        let mut line = InProcessLine::new(Mirror::default(), Some(USUAL), None);
+        line.send(b"abc\n");
+        tokio::time::sleep(USUAL.time(6)).await;
+        line.discard();
+        assert_eq!(all(&mut line).await.0, b"ba");
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_damaged_character_is_told_to_the_peer_and_reads_as_nul() {
+        let mut line = faulty("parity=100%");
+        line.send(b"abc\n");
+        assert_eq!(all(&mut line).await.0, b"");
+        assert_eq!((line.peer.damaged, line.peer.heard.len()), (4, 0));
+        line.peer.answers.push_back(b"@OK".to_vec());
+        assert_eq!(all(&mut line).await.0, [0; 3]);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn damage_keeps_its_place_among_the_characters() {
+        let mut line = faulty("parity=30%,seed=4");
+        line.peer.answers.push_back((1..=40).collect());
+        let bytes = all(&mut line).await.0;
+        let expected: Vec<u8> = (1..=40).zip(&bytes).map(|(byte, got)| if *got == 0 { 0 } else { byte }).collect();
+        assert_eq!(bytes, expected);
+        assert!((5..20).contains(&bytes.split(|byte| *byte == 0).count()), "{bytes:?}");
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn delay_holds_a_whole_write_back() {
+        let mut line = faulty("delay=20ms");
+        line.send(b"a\n");
+        let (bytes, took) = all(&mut line).await;
+        assert_eq!((bytes.as_slice(), took.as_millis()), (b"\na".as_slice(), 45));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn an_echo_comes_before_the_answer() {
+        let mut line = faulty("echo");
+        line.send(b"abc\n");
+        assert_eq!(all(&mut line).await.0, b"abc\n\ncba");
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn the_seed_decides_what_arrives() {
+        let run = async |seed: u32| {
+            let mut line = faulty(&format!("noise=5%,parity=5%,drop=5%,dup=5%,delay=0..50ms,seed={seed}"));
+            for _ in 0..20 {
+                line.send(b"@STAS SNO=0\r\n");
+            }
+            let bytes = all(&mut line).await;
+            (bytes, line.peer.heard)
+        };
+        assert_eq!(run(1).await, run(1).await);
+        assert_ne!(run(1).await, run(2).await);
+    }
+}

@@ -1,0 +1,275 @@
+//! A port whose reads and writes run on a thread of tokio's, one at a time.
+//!
+//! No platform but Unix can wait for a serial port in tokio's reactor, and there not without unsafe code. A read gives
+//! up after [`SLICE`], so a write waits that long at most. Every future may be dropped: what was read stays for the next
+//! [`Threaded::receive`], what was begun to be written is written to its end.
+
+use std::collections::VecDeque;
+use std::io;
+use std::time::Duration;
+
+use serialport::{ClearBuffer, SerialPort};
+use tokio::task::JoinHandle;
+use tokio::time::{Instant, timeout_at};
+
+use super::vanished;
+
+/// Longest time that a thread waits for something to read: the timeout that a port must have.
+pub(super) const SLICE: Duration = Duration::from_millis(10);
+/// Most bytes read at a time.
+const PIECE: usize = 1024;
+
+/// A port.
+pub(super) type Port = Box<dyn SerialPort>;
+
+/// A port that is waited for.
+#[derive(Debug)]
+pub(super) struct Threaded {
+    state: State,
+    /// What was read and not yet received.
+    arrived: VecDeque<u8>,
+}
+
+#[derive(Debug)]
+enum State {
+    Idle(Port),
+    /// A thread has the port, and hands it back with what it read.
+    Busy {
+        job: JoinHandle<(Port, io::Result<Vec<u8>>)>,
+        /// Whether what it reads is to be dropped.
+        is_stale: bool,
+    },
+    /// A thread ended without handing the port back.
+    Lost,
+}
+
+impl Threaded {
+    /// A port whose timeout is [`SLICE`].
+    pub(super) fn new(port: Port) -> Self {
+        Self { state: State::Idle(port), arrived: VecDeque::new() }
+    }
+
+    /// Hands bytes to the port.
+    ///
+    /// # Errors
+    /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone, [`TimedOut`](io::ErrorKind::TimedOut) if it
+    /// does not take them within `longest`.
+    pub(super) async fn send(&mut self, bytes: &[u8], longest: Duration) -> io::Result<()> {
+        self.settle().await?;
+        let bytes = bytes.to_vec();
+        self.begin(move |port| write(port, &bytes, longest).map(|()| Vec::new()));
+        self.settle().await
+    }
+
+    /// Waits for bytes, but not longer than `until`; `None` after silence.
+    ///
+    /// # Errors
+    /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone.
+    pub(super) async fn receive(&mut self, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
+        while self.arrived.is_empty() {
+            if matches!(self.state, State::Idle(_)) {
+                self.begin(read);
+            }
+            match timeout_at(until, self.settle()).await {
+                Ok(settled) => settled?,
+                Err(_) => return Ok(None),
+            }
+        }
+        io::Read::read(&mut self.arrived, buffer).map(Some)
+    }
+
+    /// Drops what has arrived and was not received.
+    pub(super) fn discard(&mut self) {
+        self.arrived.clear();
+        match &mut self.state {
+            State::Idle(port) => clear(port.as_ref()),
+            State::Busy { is_stale, .. } => *is_stale = true,
+            State::Lost => {}
+        }
+    }
+
+    /// Gives the port to a thread with something to do.
+    fn begin(&mut self, work: impl FnOnce(&mut Port) -> io::Result<Vec<u8>> + Send + 'static) {
+        self.state = match std::mem::replace(&mut self.state, State::Lost) {
+            State::Idle(mut port) => {
+                let job = tokio::task::spawn_blocking(move || {
+                    let done = work(&mut port);
+                    (port, done)
+                });
+                State::Busy { job, is_stale: false }
+            }
+            state => state,
+        };
+    }
+
+    /// Waits until the port is back.
+    async fn settle(&mut self) -> io::Result<()> {
+        match &mut self.state {
+            State::Idle(_) => Ok(()),
+            State::Lost => Err(vanished("the thread that had it ended")),
+            State::Busy { job, is_stale } => {
+                let done = job.await;
+                let is_stale = *is_stale;
+                let (port, bytes) = done.map_err(|error| {
+                    self.state = State::Lost;
+                    vanished(error)
+                })?;
+                if is_stale {
+                    clear(port.as_ref());
+                }
+                self.state = State::Idle(port);
+                let bytes = bytes?;
+                if !is_stale {
+                    self.arrived.extend(bytes);
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// One read; nothing after a silence of [`SLICE`].
+fn read(port: &mut Port) -> io::Result<Vec<u8>> {
+    let mut bytes = vec![0; PIECE];
+    match port.read(&mut bytes) {
+        Ok(0) => Err(vanished("its end was reached")),
+        Ok(len) => {
+            bytes.truncate(len);
+            Ok(bytes)
+        }
+        Err(error) if is_pause(&error) => Ok(Vec::new()),
+        Err(error) => Err(vanished(error)),
+    }
+}
+
+/// Writes all bytes; fails if that takes longer than `longest`.
+fn write(port: &mut Port, mut bytes: &[u8], longest: Duration) -> io::Result<()> {
+    let start = Instant::now();
+    while !bytes.is_empty() {
+        match port.write(bytes) {
+            Ok(len) => bytes = bytes.get(len..).unwrap_or_default(),
+            Err(error) if is_pause(&error) => {}
+            Err(error) => return Err(vanished(error)),
+        }
+        if !bytes.is_empty() && start.elapsed() > longest {
+            return Err(io::Error::new(io::ErrorKind::TimedOut, "the port takes no bytes"));
+        }
+    }
+    Ok(())
+}
+
+fn is_pause(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted)
+}
+
+fn clear(port: &dyn SerialPort) {
+    // Only a port that is gone cannot be cleared, and the next read or write tells that.
+    let _ = port.clear(ClearBuffer::Input);
+}
+
+#[cfg(test)]
+#[cfg(unix)]
+mod tests {
+    use std::io::{Read as _, Write as _};
+
+    use futures_util::FutureExt as _;
+    use serialport::TTYPort;
+
+    use super::super::testing::soon;
+    use super::*;
+
+    const STUCK: Duration = Duration::from_secs(60);
+
+    /// A pseudo-terminal with the port at its end.
+    fn pair() -> (TTYPort, Threaded) {
+        let (mut master, mut port) = TTYPort::pair().unwrap();
+        master.set_timeout(Duration::from_secs(60)).unwrap();
+        port.set_timeout(SLICE).unwrap();
+        (master, Threaded::new(Box::new(port)))
+    }
+
+    async fn receive(port: &mut Threaded, count: usize) -> Vec<u8> {
+        let (mut bytes, mut buffer) = (Vec::new(), [0; 64]);
+        while bytes.len() < count {
+            let len = port.receive(&mut buffer, soon()).await.unwrap().expect("bytes come");
+            bytes.extend(&buffer[..len]);
+        }
+        bytes
+    }
+
+    #[tokio::test]
+    async fn what_came_too_late_is_there_the_next_time() {
+        let (mut master, mut port) = pair();
+        // The thread is still waiting when this gives up.
+        assert_eq!(port.receive(&mut [0; 8], Instant::now()).await.unwrap(), None);
+        assert!(matches!(port.state, State::Busy { .. }));
+        master.write_all(b"@OK\r\n").unwrap();
+        assert_eq!(receive(&mut port, 5).await, b"@OK\r\n");
+    }
+
+    #[tokio::test]
+    async fn what_has_arrived_can_be_discarded_wherever_it_is() {
+        let (mut master, mut port) = pair();
+        // Half in the driver, half read and not yet received.
+        master.write_all(&[b'x'; 64]).unwrap();
+        assert_eq!(port.receive(&mut [0; 8], soon()).await.unwrap(), Some(8));
+        master.write_all(&[b'x'; 64]).unwrap();
+        wait_for(&mut port, 64).await;
+        port.discard();
+        assert_eq!(port.receive(&mut [0; 8], Instant::now() + SLICE).await.unwrap(), None);
+    }
+
+    #[tokio::test]
+    async fn what_a_thread_is_reading_can_be_discarded() {
+        let (mut master, mut port) = pair();
+        port.begin(read);
+        master.write_all(b"late").unwrap();
+        while matches!(&port.state, State::Busy { job, .. } if !job.is_finished()) {
+            tokio::task::yield_now().await;
+        }
+        port.discard();
+        port.send(b"?", STUCK).await.unwrap();
+        assert!(port.arrived.is_empty(), "{:?}", port.arrived);
+    }
+
+    #[tokio::test]
+    async fn a_send_that_is_dropped_goes_out_whole() {
+        let (mut master, mut port) = pair();
+        // Polled once and then dropped, as when Ctrl-C comes.
+        assert!(port.send(b"@STOP\r\n", STUCK).now_or_never().is_none());
+        let mut got = [0; 7];
+        master.read_exact(&mut got).unwrap();
+        assert_eq!(&got, b"@STOP\r\n");
+    }
+
+    #[tokio::test]
+    async fn a_port_that_vanishes_is_not_connected() {
+        let (master, mut port) = pair();
+        drop(master);
+        let error = port.receive(&mut [0; 8], soon()).await.unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::NotConnected, "{error}");
+        assert_eq!(port.send(b"x", STUCK).await.unwrap_err().kind(), io::ErrorKind::NotConnected);
+        port.discard();
+    }
+
+    #[tokio::test]
+    async fn a_port_that_vanishes_ends_a_wait() {
+        let (master, mut port) = pair();
+        let unplug = async {
+            tokio::task::yield_now().await;
+            drop(master);
+        };
+        let mut buffer = [0; 8];
+        let (received, ()) = tokio::join!(port.receive(&mut buffer, soon()), unplug);
+        assert_eq!(received.unwrap_err().kind(), io::ErrorKind::NotConnected);
+    }
+
+    /// Waits until so many bytes wait in the driver.
+    async fn wait_for(port: &mut Threaded, count: u32) {
+        port.settle().await.unwrap();
+        let State::Idle(port) = &port.state else { panic!("not idle") };
+        while port.bytes_to_read().unwrap() < count {
+            tokio::task::yield_now().await;
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! The serial ports of this machine. None is opened to find them.
+
+use std::collections::HashMap;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serialport::{SerialPortType, UsbPortInfo};
+
+/// A serial port.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PortInfo {
+    /// What it is opened by: `/dev/ttyUSB0`, `COM3`.
+    pub name: String,
+    /// A name that stays the same whatever else is plugged in (Linux).
+    pub stable_name: Option<String>,
+    /// What it is.
+    pub kind: PortKind,
+}
+
+/// What a serial port is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum PortKind {
+    /// A USB adapter.
+    Usb {
+        /// Vendor number of USB.
+        vendor: u16,
+        /// Product number of the vendor.
+        product: u16,
+        /// Name of the maker, as the device tells it.
+        maker: Option<String>,
+        /// Name of the product, as the device tells it.
+        product_name: Option<String>,
+        /// Serial number of the device.
+        serial_number: Option<String>,
+    },
+    /// A card.
+    Pci,
+    /// A Bluetooth link.
+    Bluetooth,
+    /// A port of the board, or one that the system says nothing about.
+    Unknown,
+}
+
+/// Where Linux lists terminals, and where it keeps stable names.
+const TERMINALS: &str = "/sys/class/tty";
+const STABLE_NAMES: &str = "/dev/serial/by-id";
+
+/// All serial ports, by name (`ttyUSB2` before `ttyUSB10`).
+///
+/// # Errors
+/// When the system does not tell.
+pub fn ports() -> io::Result<Vec<PortInfo>> {
+    // The crate takes for granted that this folder is there.
+    if cfg!(target_os = "linux") {
+        std::fs::metadata(TERMINALS)?;
+    }
+    let stable_names = stable_names(Path::new(STABLE_NAMES))?;
+    let found = serialport::available_ports()?.into_iter().filter(|port| has_hardware(&port.port_name));
+    let mut ports: Vec<PortInfo> = found
+        .map(|port| PortInfo {
+            stable_name: stable_names.get(Path::new(&port.port_name)).cloned(),
+            kind: kind(port.port_type),
+            name: port.port_name,
+        })
+        .collect();
+    ports.sort_by_cached_key(|port| order(&port.name));
+    Ok(ports)
+}
+
+fn kind(kind: SerialPortType) -> PortKind {
+    match kind {
+        SerialPortType::UsbPort(UsbPortInfo { vid, pid, serial_number, manufacturer, product, .. }) => {
+            PortKind::Usb { vendor: vid, product: pid, maker: manufacturer, product_name: product, serial_number }
+        }
+        SerialPortType::PciPort => PortKind::Pci,
+        SerialPortType::BluetoothPort => PortKind::Bluetooth,
+        SerialPortType::Unknown => PortKind::Unknown,
+    }
+}
+
+/// Linux has names for ports that a board could have; type 0 says that nothing is there.
+fn has_hardware(name: &str) -> bool {
+    let Some(name) = Path::new(name).file_name() else { return true };
+    let kind = std::fs::read_to_string(Path::new(TERMINALS).join(name).join("type"));
+    kind.map_or(true, |kind| kind.trim() != "0")
+}
+
+/// Where the links of a folder lead, each to its link; the first by name where several lead to one.
+fn stable_names(folder: &Path) -> io::Result<HashMap<PathBuf, String>> {
+    let entries = match std::fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(HashMap::new()),
+        Err(error) => return Err(error),
+    };
+    let mut links: Vec<PathBuf> = entries.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
+    links.sort_unstable_by(|one, other| other.cmp(one));
+    // A link that leads nowhere is of a port that was just unplugged.
+    let leading = links.into_iter().filter_map(|link| Some((link.canonicalize().ok()?, link.to_str()?.to_owned())));
+    Ok(leading.collect())
+}
+
+/// The name with the number at its end apart, so that 10 comes after 2.
+fn order(name: &str) -> (String, u64) {
+    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    (stem.to_owned(), name[stem.len()..].parse().unwrap_or(0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ports_are_in_the_order_of_their_numbers() {
+        let mut names = ["COM10", "/dev/ttyUSB10", "/dev/ttyS0", "COM3", "/dev/ttyUSB2", "/dev/tty.usb"];
+        names.sort_by_cached_key(|name| order(name));
+        assert_eq!(names, ["/dev/tty.usb", "/dev/ttyS0", "/dev/ttyUSB2", "/dev/ttyUSB10", "COM3", "COM10"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn stable_names_lead_to_ports() {
+        let folder = tempfile::tempdir().unwrap();
+        let (port, links) = (folder.path().join("ttyUSB0"), folder.path().join("by-id"));
+        std::fs::write(&port, "").unwrap();
+        assert!(stable_names(&links).unwrap().is_empty(), "no folder, no names");
+        std::fs::create_dir(&links).unwrap();
+        for (link, to) in [("usb-b", "../ttyUSB0"), ("usb-a", "../ttyUSB0"), ("usb-c", "../unplugged")] {
+            std::os::unix::fs::symlink(to, links.join(link)).unwrap();
+        }
+        let names = stable_names(&links).unwrap();
+        let expected = links.join("usb-a").to_str().unwrap().to_owned();
+        assert_eq!(names, HashMap::from([(port.canonicalize().unwrap(), expected)]));
+    }
+
+    #[test]
+    fn listing_opens_nothing_and_names_each_port_once() {
+        let Ok(ports) = ports() else { return };
+        let mut names: Vec<&str> = ports.iter().map(|port| port.name.as_str()).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), ports.len());
+    }
+}

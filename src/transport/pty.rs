@@ -1,0 +1,95 @@
+//! The end of a pseudo-terminal that is not the port: who opens the port talks to it. Unix only.
+
+#[cfg(unix)]
+pub(super) use unix::Pty;
+
+#[cfg(not(unix))]
+pub(super) use elsewhere::Pty;
+
+#[cfg(unix)]
+mod unix {
+    use std::io::{self, Write as _};
+    use std::time::Duration;
+
+    use serialport::{SerialPort as _, TTYPort};
+    use tokio::time::Instant;
+
+    use super::super::port::{SLICE, Threaded};
+
+    /// Most bytes written at a time.
+    const PIECE: usize = 128;
+    /// Bytes that wait to be read beyond which no more are written: less than what the system takes without making
+    /// the writer wait (4096 on Linux, 1024 elsewhere).
+    const MOST_UNREAD: u32 = if cfg!(target_os = "linux") { 3072 } else { 768 };
+    /// How long a read waits before it begins anew; any time would do.
+    const LONG: Duration = Duration::from_secs(3600);
+
+    /// A pseudo-terminal.
+    #[derive(Debug)]
+    pub(in crate::transport) struct Pty {
+        reader: Threaded,
+        /// Writes while a thread has the reader.
+        writer: TTYPort,
+        /// The port, kept open: while nobody had it open, the other end would report its end.
+        port: TTYPort,
+    }
+
+    impl Pty {
+        /// Makes one; returns the path of the port, too.
+        pub(in crate::transport) fn open() -> io::Result<(Self, String)> {
+            let (mut writer, port) = TTYPort::pair()?;
+            let mut reader = writer.try_clone_native()?;
+            reader.set_timeout(SLICE)?;
+            writer.set_timeout(Duration::ZERO)?;
+            let path = port.name().ok_or_else(|| io::Error::other("the pseudo-terminal has no name"))?;
+            Ok((Self { reader: Threaded::new(Box::new(reader)), writer, port }, path))
+        }
+
+        /// Waits for bytes.
+        pub(in crate::transport) async fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            loop {
+                if let Some(len) = self.reader.receive(buffer, Instant::now() + LONG).await? {
+                    return Ok(len);
+                }
+            }
+        }
+
+        /// Writes bytes, without waiting. What nobody reads is lost when it gets much, as on a line.
+        pub(in crate::transport) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+            for piece in bytes.chunks(PIECE) {
+                if self.port.bytes_to_read()? > MOST_UNREAD {
+                    return Ok(());
+                }
+                match self.writer.write_all(piece) {
+                    Err(error) if error.kind() == io::ErrorKind::TimedOut => return Ok(()),
+                    written => written?,
+                }
+            }
+            Ok(())
+        }
+    }
+}
+
+#[cfg(not(unix))]
+mod elsewhere {
+    use std::io;
+
+    /// There is none.
+    #[derive(Debug)]
+    pub(in crate::transport) enum Pty {}
+
+    impl Pty {
+        pub(in crate::transport) fn open() -> io::Result<(Self, String)> {
+            let why = "only Unix has pseudo-terminals; serve on TCP instead";
+            Err(io::Error::new(io::ErrorKind::Unsupported, why))
+        }
+
+        pub(in crate::transport) async fn read(&mut self, _buffer: &mut [u8]) -> io::Result<usize> {
+            match *self {}
+        }
+
+        pub(in crate::transport) fn write(&mut self, _bytes: &[u8]) -> io::Result<()> {
+            match *self {}
+        }
+    }
+}

@@ -1,0 +1,348 @@
+//! Serves a [`Peer`] on a byte stream: the other end of [`serial`](super::serial) and [`tcp`](super::tcp).
+
+use std::io;
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::time::Instant;
+
+use super::fault::LineFaultSpec;
+use super::line::{Pace, Wire};
+use super::pty::Pty;
+use super::sim::Peer;
+
+/// Most bytes read or written at a time.
+const PIECE: usize = 4096;
+/// Most bytes that may wait for a TCP client; one that reads nothing while more come is let go.
+const MOST_UNSENT: usize = 1 << 20;
+
+/// A line with a peer at its end, behind which clients come and go.
+#[derive(Debug)]
+pub struct StreamServer {
+    end: End,
+    wire: Wire,
+    start: Instant,
+}
+
+/// What clients connect to.
+#[derive(Debug)]
+enum End {
+    Tcp(Tcp),
+    Pty(Pty),
+}
+
+/// What clients do.
+enum Event {
+    Sent(usize),
+    /// One left, or came.
+    Changed,
+}
+
+impl StreamServer {
+    /// Listens on TCP like a device server; port 0 lets the system choose. One client at a time has the line: another
+    /// that connects meanwhile is let go at once, so that it knows.
+    pub async fn tcp(
+        address: SocketAddr,
+        pace: Option<Pace>,
+        faults: Option<LineFaultSpec>,
+    ) -> io::Result<(Self, SocketAddr)> {
+        let listener = TcpListener::bind(address).await?;
+        let local = listener.local_addr()?;
+        Ok((Self::new(End::Tcp(Tcp { listener, client: None, unsent: Vec::new() }), pace, faults), local))
+    }
+
+    /// Makes a pseudo-terminal; returns the path of its port, too.
+    ///
+    /// # Errors
+    /// [`Unsupported`](io::ErrorKind::Unsupported) where there are none.
+    pub fn pseudo_terminal(pace: Option<Pace>, faults: Option<LineFaultSpec>) -> io::Result<(Self, String)> {
+        let (pty, path) = Pty::open()?;
+        Ok((Self::new(End::Pty(pty), pace, faults), path))
+    }
+
+    fn new(end: End, pace: Option<Pace>, faults: Option<LineFaultSpec>) -> Self {
+        Self { end, wire: Wire::new(pace, faults), start: Instant::now() }
+    }
+
+    /// Time since the start, the clock of the peer.
+    pub fn now(&self) -> Duration {
+        self.start.elapsed()
+    }
+
+    /// Serves until something arrives or is due, and all that follows from it; call again and again.
+    pub async fn turn(&mut self, peer: &mut impl Peer) -> io::Result<()> {
+        let mut buffer = [0; PIECE];
+        let due = self.wire.due(peer).map(|due| self.start + due);
+        let event = tokio::select! {
+            event = self.end.event(&mut buffer) => Some(event?),
+            () = sleep(due) => None,
+        };
+        let now = self.now();
+        self.wire.run(now, peer);
+        match event {
+            Some(Event::Sent(len)) => self.wire.send(now, &buffer[..len]),
+            // Nobody is there to get it.
+            Some(Event::Changed) => self.wire.lose(now),
+            None => {}
+        }
+        self.wire.run(now, peer);
+        loop {
+            let len = self.wire.take(now, &mut buffer);
+            if len == 0 {
+                return Ok(());
+            }
+            self.end.write(&buffer[..len])?;
+        }
+    }
+}
+
+async fn sleep(until: Option<Instant>) {
+    match until {
+        Some(until) => tokio::time::sleep_until(until).await,
+        None => std::future::pending().await,
+    }
+}
+
+impl End {
+    async fn event(&mut self, buffer: &mut [u8]) -> io::Result<Event> {
+        match self {
+            Self::Tcp(tcp) => tcp.event(buffer).await,
+            Self::Pty(pty) => pty.read(buffer).await.map(Event::Sent),
+        }
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        match self {
+            Self::Tcp(tcp) => {
+                tcp.write(bytes);
+                Ok(())
+            }
+            Self::Pty(pty) => pty.write(bytes),
+        }
+    }
+}
+
+/// A listener and the client that has the line.
+#[derive(Debug)]
+struct Tcp {
+    listener: TcpListener,
+    client: Option<TcpStream>,
+    /// What the client has not taken yet.
+    unsent: Vec<u8>,
+}
+
+impl Tcp {
+    async fn event(&mut self, buffer: &mut [u8]) -> io::Result<Event> {
+        loop {
+            let Some(client) = &mut self.client else {
+                let client = accept(&self.listener).await?;
+                // One that has left already takes no settings.
+                self.client = client.set_nodelay(true).is_ok().then_some(client);
+                return Ok(Event::Changed);
+            };
+            let (mut reading, mut writing) = client.split();
+            tokio::select! {
+                // The client's end comes first: who connects after it has the line.
+                biased;
+                read = reading.read(buffer) => match read {
+                    Ok(len) if len > 0 => return Ok(Event::Sent(len)),
+                    // How it ended does not matter to the next one.
+                    _ => {
+                        self.leave();
+                        return Ok(Event::Changed);
+                    }
+                },
+                written = writing.write(&self.unsent), if !self.unsent.is_empty() => match written {
+                    Ok(len) => drop(self.unsent.drain(..len)),
+                    Err(_) => self.leave(),
+                },
+                second = accept(&self.listener) => drop(second?),
+            }
+        }
+    }
+
+    /// Writes what the client takes at once; the rest waits.
+    fn write(&mut self, bytes: &[u8]) {
+        let Some(client) = &self.client else { return };
+        // A failure shows again in the next read.
+        let written = if self.unsent.is_empty() { client.try_write(bytes).unwrap_or(0) } else { 0 };
+        self.unsent.extend(bytes.get(written..).unwrap_or_default());
+        if self.unsent.len() > MOST_UNSENT {
+            self.leave();
+        }
+    }
+
+    fn leave(&mut self) {
+        self.client = None;
+        self.unsent.clear();
+    }
+}
+
+/// The next client that has not left before it was taken.
+async fn accept(listener: &TcpListener) -> io::Result<TcpStream> {
+    loop {
+        match listener.accept().await {
+            Ok((client, _)) => return Ok(client),
+            Err(error) if matches!(error.kind(), io::ErrorKind::ConnectionAborted | io::ErrorKind::ConnectionReset) => {
+            }
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::future::Future;
+    use std::net::Ipv4Addr;
+
+    use super::super::tcp;
+    use super::super::testing::{Mirror, soon};
+    use super::*;
+
+    /// Serves while the clients do their work.
+    async fn with<T>(server: &mut StreamServer, peer: &mut Mirror, clients: impl Future<Output = T>) -> T {
+        let mut clients = std::pin::pin!(clients);
+        loop {
+            tokio::select! {
+                done = &mut clients => return done,
+                turned = server.turn(peer) => turned.unwrap(),
+            }
+        }
+    }
+
+    async fn on_loopback() -> (StreamServer, u16) {
+        let any = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
+        let (server, address) = StreamServer::tcp(any, None, None).await.unwrap();
+        (server, address.port())
+    }
+
+    async fn connect(port: u16) -> tcp::Tcp {
+        tcp::Tcp::open("127.0.0.1", port, soon()).await.unwrap()
+    }
+
+    /// Sends a line, and receives as many bytes.
+    async fn ask(client: &mut tcp::Tcp, line: &[u8]) -> io::Result<Vec<u8>> {
+        client.send(line).await?;
+        let (mut bytes, mut buffer) = (Vec::new(), [0; PIECE]);
+        while bytes.len() < line.len() {
+            let len = client.receive(&mut buffer, soon()).await?.expect("an answer");
+            bytes.extend(&buffer[..len]);
+        }
+        Ok(bytes)
+    }
+
+    #[tokio::test]
+    async fn clients_on_tcp_have_the_line_one_after_the_other() {
+        let (mut server, port) = on_loopback().await;
+        let clients = async {
+            for _ in 0..50 {
+                let mut client = connect(port).await;
+                assert_eq!(ask(&mut client, b"abc\n").await.unwrap(), b"\ncba");
+            }
+        };
+        with(&mut server, &mut Mirror::default(), clients).await;
+    }
+
+    #[tokio::test]
+    async fn a_second_client_is_let_go_and_the_first_one_stays() {
+        let (mut server, port) = on_loopback().await;
+        let clients = async {
+            let mut first = connect(port).await;
+            assert_eq!(ask(&mut first, b"ab\n").await.unwrap(), b"\nba");
+            let mut second = connect(port).await;
+            let error = second.receive(&mut [0; 8], soon()).await.unwrap_err();
+            assert_eq!(error.kind(), io::ErrorKind::NotConnected);
+            assert_eq!(ask(&mut first, b"cd\n").await.unwrap(), b"\ndc");
+        };
+        with(&mut server, &mut Mirror::default(), clients).await;
+    }
+
+    #[tokio::test]
+    async fn an_answer_on_its_way_to_one_that_left_is_lost() {
+        let (mut server, port) = on_loopback().await;
+        // Eleven seconds a character: the answer is not over before the test is.
+        server.wire = Wire::new(Some(Pace::new(1, 11)), None);
+        let mut peer = Mirror::default();
+        let client = connect(port).await;
+        server.turn(&mut peer).await.unwrap();
+        peer.answers.push_back(b"late".to_vec());
+        server.turn(&mut peer).await.unwrap();
+        assert!(server.wire.due(&peer).is_some());
+        drop(client);
+        server.turn(&mut peer).await.unwrap();
+        assert_eq!(server.wire.due(&peer), None);
+    }
+
+    #[tokio::test]
+    async fn much_comes_whole_to_one_that_reads() {
+        let (mut server, port) = on_loopback().await;
+        let mut line = vec![b'x'; 500_000];
+        line.push(b'\n');
+        let clients = async { ask(&mut connect(port).await, &line).await.unwrap() };
+        let bytes = with(&mut server, &mut Mirror::default(), clients).await;
+        assert!(bytes.iter().rev().eq(&line));
+    }
+
+    #[cfg(unix)]
+    mod pseudo_terminal {
+        use serialport::{DataBits, Parity, StopBits};
+
+        use super::super::super::serial::{Line, Serial};
+        use super::*;
+
+        fn open(path: &str) -> Serial {
+            let path = path.to_owned();
+            let (data_bits, parity, stop_bits) = (DataBits::Eight, Parity::Even, StopBits::One);
+            Serial::open(&Line { path, baud: 9600, data_bits, parity, stop_bits }).unwrap()
+        }
+
+        async fn ask(serial: &mut Serial, line: &[u8], count: usize) -> Vec<u8> {
+            serial.send(line).await.unwrap();
+            let (mut bytes, mut buffer) = (Vec::new(), [0; PIECE]);
+            while bytes.len() < count {
+                let len = serial.receive(&mut buffer, soon()).await.unwrap().expect("an answer");
+                bytes.extend(&buffer[..len]);
+            }
+            bytes
+        }
+
+        #[tokio::test]
+        async fn clients_come_and_go() {
+            let (mut server, path) = StreamServer::pseudo_terminal(None, None).unwrap();
+            let clients = async {
+                for _ in 0..20 {
+                    assert_eq!(ask(&mut open(&path), b"abc\n", 4).await, b"\ncba");
+                }
+            };
+            with(&mut server, &mut Mirror::default(), clients).await;
+        }
+
+        #[tokio::test]
+        async fn faults_are_on_the_line() {
+            let faults = "echo,dup=100%".parse().unwrap();
+            let (mut server, path) = StreamServer::pseudo_terminal(None, Some(faults)).unwrap();
+            let clients = async { ask(&mut open(&path), b"ab\n", 18).await };
+            let bytes = with(&mut server, &mut Mirror::default(), clients).await;
+            assert_eq!(bytes, b"aabb\n\n\n\nbbbbaaaa\n\n");
+        }
+
+        #[tokio::test]
+        async fn what_nobody_reads_does_not_stop_the_server() {
+            let (mut server, path) = StreamServer::pseudo_terminal(None, None).unwrap();
+            let mut peer = Mirror::default();
+            for _ in 0..200 {
+                peer.answers.push_back(vec![b'x'; 1000]);
+                server.wire.run(server.now(), &mut peer);
+                // As if something had been due.
+                let now = server.now();
+                let mut buffer = [0; PIECE];
+                let len = server.wire.take(now, &mut buffer);
+                server.end.write(&buffer[..len]).unwrap();
+            }
+            let clients = async { ask(&mut open(&path), b"abc\n", 4).await };
+            assert!(with(&mut server, &mut peer, clients).await.ends_with(b"\ncba"));
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! A TCP stream to a serial device server, which hands bytes on as they are (no Telnet, no RFC 2217).
+
+use std::io;
+use std::net::SocketAddr;
+
+use thiserror::Error;
+use tokio::io::AsyncReadExt as _;
+use tokio::net::TcpStream;
+use tokio::time::{Instant, timeout_at};
+
+use super::vanished;
+
+/// Why a device server is not reached.
+#[derive(Debug, Error)]
+pub enum ConnectError {
+    /// The name has no address.
+    #[error("the name has no address")]
+    NotFound,
+    /// Nobody listens on the port.
+    #[error("nobody listens there")]
+    Refused,
+    /// No way leads to the host or network.
+    #[error("no way leads there")]
+    Unreachable,
+    /// Nobody answered in time.
+    #[error("no answer")]
+    TimedOut,
+    /// Anything else.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+}
+
+/// A connected stream.
+#[derive(Debug)]
+pub struct Tcp {
+    stream: TcpStream,
+    /// What a dropped [`Tcp::send`] left: the next one sends it first, so that no message is cut.
+    unsent: Vec<u8>,
+}
+
+impl Tcp {
+    /// Connects to the first address of a host that answers, before `until`.
+    ///
+    /// # Errors
+    /// [`ConnectError`] tells why not; of several addresses, the last.
+    pub async fn open(host: &str, port: u16, until: Instant) -> Result<Self, ConnectError> {
+        let stream = timeout_at(until, connect(host, port)).await.unwrap_or(Err(ConnectError::TimedOut))?;
+        stream.set_nodelay(true)?;
+        Ok(Self { stream, unsent: Vec::new() })
+    }
+
+    /// The own address and that of the server.
+    pub fn ends(&self) -> io::Result<(SocketAddr, SocketAddr)> {
+        Ok((self.stream.local_addr()?, self.stream.peer_addr()?))
+    }
+
+    /// Sends bytes.
+    ///
+    /// # Errors
+    /// [`NotConnected`](io::ErrorKind::NotConnected) if the server is gone or has closed the connection.
+    pub async fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.unsent.extend(bytes);
+        while !self.unsent.is_empty() {
+            self.stream.writable().await.map_err(vanished)?;
+            match self.stream.try_write(&self.unsent) {
+                Ok(len) => drop(self.unsent.drain(..len)),
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
+                Err(error) => return Err(vanished(error)),
+            }
+        }
+        Ok(())
+    }
+
+    /// Waits for bytes, but not longer than `until`; `None` after silence.
+    ///
+    /// # Errors
+    /// [`NotConnected`](io::ErrorKind::NotConnected) if the server is gone or has closed the connection.
+    pub async fn receive(&mut self, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
+        match timeout_at(until, self.stream.read(buffer)).await {
+            Err(_) => Ok(None),
+            Ok(Ok(0)) => Err(vanished("the server closed the connection")),
+            Ok(Ok(len)) => Ok(Some(len)),
+            Ok(Err(error)) => Err(vanished(error)),
+        }
+    }
+
+    /// Drops what has arrived and was not received.
+    pub fn discard(&mut self) {
+        // A failure shows again in the next read.
+        while self.stream.try_read(&mut [0; 1024]).is_ok_and(|len| len > 0) {}
+    }
+}
+
+async fn connect(host: &str, port: u16) -> Result<TcpStream, ConnectError> {
+    let addresses = tokio::net::lookup_host((host, port)).await.map_err(|_| ConnectError::NotFound)?;
+    let mut failed = ConnectError::NotFound;
+    for address in addresses {
+        match TcpStream::connect(address).await {
+            Ok(stream) => return Ok(stream),
+            Err(error) => failed = connect_error(error),
+        }
+    }
+    Err(failed)
+}
+
+fn connect_error(error: io::Error) -> ConnectError {
+    use io::ErrorKind::{ConnectionRefused, HostUnreachable, NetworkUnreachable, TimedOut};
+
+    match error.kind() {
+        ConnectionRefused => ConnectError::Refused,
+        HostUnreachable | NetworkUnreachable => ConnectError::Unreachable,
+        TimedOut => ConnectError::TimedOut,
+        _ => ConnectError::Io(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tokio::io::AsyncWriteExt as _;
+    use tokio::net::TcpListener;
+
+    use super::super::testing::soon;
+    use super::*;
+
+    async fn pair() -> (Tcp, TcpStream) {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let port = listener.local_addr().unwrap().port();
+        let (tcp, accepted) = tokio::join!(Tcp::open("127.0.0.1", port, soon()), listener.accept());
+        (tcp.unwrap(), accepted.unwrap().0)
+    }
+
+    #[tokio::test]
+    async fn bytes_go_both_ways() {
+        let (mut tcp, mut server) = pair().await;
+        assert!(tcp.stream.nodelay().unwrap());
+        tcp.send(b"@STAS\r\n").await.unwrap();
+        let mut buffer = [0; 64];
+        assert_eq!(server.read(&mut buffer).await.unwrap(), 7);
+        server.write_all(b"@OK\r\n").await.unwrap();
+        assert_eq!(tcp.receive(&mut buffer, soon()).await.unwrap(), Some(5));
+        assert_eq!(tcp.receive(&mut buffer, Instant::now()).await.unwrap(), None);
+        assert_eq!(tcp.ends().unwrap(), (server.peer_addr().unwrap(), server.local_addr().unwrap()));
+    }
+
+    #[tokio::test]
+    async fn what_has_arrived_can_be_discarded() {
+        let (mut tcp, mut server) = pair().await;
+        server.write_all(&[b'x'; 5000]).await.unwrap();
+        let mut buffer = [0; 64];
+        assert_eq!(tcp.receive(&mut buffer, soon()).await.unwrap(), Some(64));
+        // Bytes may still be on their way over the loopback.
+        let mut left = 5000 - 64;
+        while left > 0 {
+            tcp.stream.readable().await.unwrap();
+            left -= tcp.stream.peek(&mut [0; 5000]).await.unwrap().min(left);
+            tcp.discard();
+        }
+        assert_eq!(tcp.receive(&mut buffer, Instant::now()).await.unwrap(), None);
+    }
+
+    #[tokio::test]
+    async fn a_server_that_leaves_is_gone() {
+        let (mut tcp, server) = pair().await;
+        drop(server);
+        let error = tcp.receive(&mut [0; 8], soon()).await.unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::NotConnected);
+        // What discards does not fail, nor hide it.
+        tcp.discard();
+        assert_eq!(tcp.receive(&mut [0; 8], soon()).await.unwrap_err().kind(), io::ErrorKind::NotConnected);
+    }
+
+    #[tokio::test]
+    async fn a_port_nobody_listens_on_refuses() {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let port = listener.local_addr().unwrap().port();
+        drop(listener);
+        assert!(matches!(Tcp::open("127.0.0.1", port, soon()).await, Err(ConnectError::Refused)));
+    }
+
+    #[tokio::test]
+    async fn a_name_without_address_is_not_found() {
+        assert!(matches!(Tcp::open("no host", 4001, soon()).await, Err(ConnectError::NotFound)));
+    }
+
+    #[test]
+    fn failures_are_told_apart() {
+        use io::ErrorKind::{ConnectionRefused, HostUnreachable, NetworkUnreachable, Other, TimedOut};
+
+        let texts = [ConnectionRefused, HostUnreachable, NetworkUnreachable, TimedOut, Other]
+            .map(|kind| connect_error(io::Error::new(kind, "other")).to_string());
+        assert_eq!(texts, ["nobody listens there", "no way leads there", "no way leads there", "no answer", "other"]);
+    }
+}

@@ -1,0 +1,49 @@
+//! What tests of transports share.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use tokio::time::Instant;
+
+use super::sim::Peer;
+
+/// Later than anything takes that does not fail.
+pub fn soon() -> Instant {
+    Instant::now() + Duration::from_secs(60)
+}
+
+/// Answers each line with itself, backwards and without delay, and keeps what it heard, and when.
+#[derive(Debug, Default)]
+pub struct Mirror {
+    pub line: Vec<u8>,
+    pub heard: Vec<(Duration, Vec<u8>)>,
+    pub damaged: usize,
+    pub answers: VecDeque<Vec<u8>>,
+}
+
+impl Peer for Mirror {
+    fn receive(&mut self, now: Duration, _channel: usize, bytes: &[u8]) {
+        for byte in bytes {
+            self.line.push(*byte);
+            if *byte == b'\n' {
+                let mut line = std::mem::take(&mut self.line);
+                self.heard.push((now, line.clone()));
+                line.reverse();
+                self.answers.push_back(line);
+            }
+        }
+    }
+
+    fn damaged(&mut self, _now: Duration, _channel: usize) {
+        self.damaged += 1;
+    }
+
+    fn transmit(&mut self, _now: Duration) -> Option<(usize, Vec<u8>)> {
+        self.answers.pop_front().map(|answer| (0, answer))
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        // What is due is due at once.
+        (!self.answers.is_empty()).then_some(Duration::ZERO)
+    }
+}
