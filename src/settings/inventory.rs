@@ -160,11 +160,13 @@ impl Inventory {
                 }
             };
             let Some(family) = named.or(target.family()) else {
-                return Err(at(span, "this URL does not tell the family").hint("add family = \"yerc\""));
+                return Err(
+                    at(span, "this URL does not tell the family").hint("add family = \"yerc\" or family = \"toyo\"")
+                );
             };
-            if !target.reaches(family) {
-                return Err(at(span, &format!("{family} is not reached over {}:", target.scheme()))
-                    .hint("check target and family against each other"));
+            target.check(family).map_err(|why| at(span, &why).hint("check target and family against each other"))?;
+            if let Some(model) = raw.model.as_ref().filter(|_| family != Family::Yerc) {
+                return Err(at(model.span(), &format!("a {family} robot has no model")).hint("leave `model` away"));
             }
             robots.push(Entry {
                 name: robot.clone(),
@@ -322,6 +324,13 @@ mod tests {
             ("[[robot]]\nname = \"a b\"\ntarget = \"udp://h\"\n", "robots.toml:2:8", "letters"),
             ("default = \"z\"\n", "robots.toml:1:11", "default"),
             ("[[robot]\n", "robots.toml:1:", "inventory"),
+            ("[[robot]]\nname = \"a\"\ntarget = \"serial://dev/tty\"\n", "robots.toml:3:10", "serial:///dev"),
+            ("[[robot]]\nname = \"a\"\ntarget = \"tcp://h:1\"\nmodel = \"fs100\"\n", "robots.toml:4:9", "`model`"),
+            (
+                "[[robot]]\nname = \"a\"\ntarget = \"sim:?axes=2\"\nfamily = \"yerc\"\n",
+                "robots.toml:4:10: 'axes'",
+                "against each other",
+            ),
             (
                 "[[robot]]\nname=\"a\"\ntarget=\"udp://h\"\n[[robot]]\nname=\"a\"\ntarget=\"udp://h\"\n",
                 ":5:6",

@@ -71,7 +71,7 @@ pub struct Robot {
     pub encoding: Setting<Encoding>,
     /// Read commands only.
     pub read_only: Setting<bool>,
-    /// Controller model (yerc).
+    /// Controller model; means something for yerc alone.
     pub model: Setting<Model>,
     /// Free words to choose by.
     pub tags: Vec<String>,
@@ -185,10 +185,9 @@ impl Sources {
             return Err(Failure::usage(format!("target '{target}' does not tell the family"))
                 .hint("name the family: `armctl yerc …`"));
         };
-        if !target.reaches(family) {
-            return Err(Failure::usage(format!("{family} is not reached over {}:", target.scheme()))
-                .hint("`armctl help targets` lists the URLs of each family"));
-        }
+        target
+            .check(family)
+            .map_err(|why| Failure::usage(why).hint("`armctl help targets` lists the URLs of each family"))?;
         let name = target.short_name();
         Ok(self.robot(name, family, Setting { value: target, origin }, &Options::default(), Vec::new()))
     }
@@ -310,6 +309,20 @@ mod tests {
         let selection = Selection { robots: vec!["s".into()], ..Selection::default() };
         let failure = sources(selection).robots(Some(Family::Yerc)).unwrap_err();
         assert!(failure.message.contains("toyo"), "{failure:?}");
+    }
+
+    #[test]
+    fn a_parameter_of_another_family_is_refused_wherever_the_url_stands() {
+        let target = || Some("sim:?axes=2".parse().unwrap());
+        for selection in [
+            Selection { target: target(), ..Selection::default() },
+            Selection { environment: target(), ..Selection::default() },
+        ] {
+            let sources = Sources { selection, ..Sources::default() };
+            let failure = sources.robots(Some(Family::Yerc)).unwrap_err();
+            assert_eq!(failure.message, "'axes' in a sim: URL is for toyo, not for yerc");
+            assert_eq!(sources.robots(Some(Family::Toyo)).unwrap()[0].name, "sim");
+        }
     }
 
     #[test]

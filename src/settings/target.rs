@@ -1,8 +1,11 @@
 //! Target URLs: where a robot is, and over which transport.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::str::FromStr;
+
+use serialport::{DataBits, Parity, StopBits};
 
 use crate::controller::yerc::Model;
 use crate::failure::Failure;
@@ -70,11 +73,15 @@ pub struct Target {
 pub enum Place {
     /// `udp://HOST[:10040][?file_port=10041&model=fs100|dx200&move_words=25|26]`.
     Udp(Udp),
-    /// `sim:[?model=…&state=FILE&fault=…]`: the built-in simulator of the family, in this process.
+    /// `serial:///dev/ttyUSB0[?baud=9600&parity=even|odd|none&data_bits=7|8&stop_bits=1|2]`, `serial://COM3`.
+    Serial(Serial),
+    /// `tcp://HOST:PORT[?baud=9600]`.
+    Tcp(Tcp),
+    /// `sim:[?model=…&axes=…&baud=…&state=FILE&fault=…]`: the built-in simulator of the family, in this process.
     Sim(Sim),
     /// A URL of a family that this version has no link for yet.
     Other {
-        /// `eip`, `serial` or `tcp`.
+        /// `eip`.
         scheme: String,
     },
 }
@@ -101,11 +108,42 @@ pub struct YercTraits {
     pub move_words: Option<u8>,
 }
 
+/// A serial port of this machine. Unless given, it is set as a Toyo controller is (TO 1-2): 9600 baud, 8 data bits, even
+/// parity, 1 stop bit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Serial {
+    /// `/dev/ttyUSB0`, `COM3`.
+    pub path: String,
+    /// Bits a second.
+    pub baud: u32,
+    /// Data bits of a character.
+    pub data_bits: DataBits,
+    /// Parity bit of a character.
+    pub parity: Parity,
+    /// Stop bits of a character.
+    pub stop_bits: StopBits,
+}
+
+/// A serial line behind a device server on the network.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Tcp {
+    /// Name or address.
+    pub host: String,
+    /// Port of the line.
+    pub port: u16,
+    /// Bits a second of the line, which tell how long characters take; the device server has the setting.
+    pub baud: u32,
+}
+
 /// The built-in simulator.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Sim {
     /// Controller model.
     pub traits: YercTraits,
+    /// Axes of a toyo controller, 1 to 4.
+    pub axes: Option<u8>,
+    /// Bits a second of the line to a toyo controller; without them it takes no time.
+    pub baud: Option<u32>,
     /// A file with the start state.
     pub state: Option<PathBuf>,
     /// Faults on the line, in the form of `armctl sim --fault`.
@@ -116,6 +154,10 @@ pub struct Sim {
 const ROBOT_PORT: u16 = 10040;
 /// Port of the file server.
 const FILE_PORT: u16 = 10041;
+/// Speed of a serial line (TO 1-2).
+const BAUD: u32 = 9600;
+/// Speeds that ports can have.
+const BAUDS: RangeInclusive<u32> = 50..=4_000_000;
 
 impl Target {
     /// The simulator with its built-in start state.
@@ -137,15 +179,19 @@ impl Target {
     pub fn scheme(&self) -> &str {
         match &self.place {
             Place::Udp(_) => "udp",
+            Place::Serial(_) => "serial",
+            Place::Tcp(_) => "tcp",
             Place::Sim(_) => "sim",
             Place::Other { scheme } => scheme,
         }
     }
 
-    /// A short name for messages where no inventory gives one: the host, or `sim`.
+    /// A short name for messages where no inventory gives one: the host, the port without its folder, or `sim`.
     pub fn short_name(&self) -> String {
         match &self.place {
             Place::Udp(udp) => udp.host.clone(),
+            Place::Serial(serial) => serial.path.rsplit('/').next().unwrap_or_default().to_owned(),
+            Place::Tcp(tcp) => tcp.host.clone(),
             Place::Sim(_) => "sim".to_owned(),
             Place::Other { .. } => self.url.clone(),
         }
@@ -156,7 +202,7 @@ impl Target {
         match &self.place {
             Place::Udp(udp) => udp.traits,
             Place::Sim(sim) => sim.traits,
-            Place::Other { .. } => YercTraits::default(),
+            Place::Serial(_) | Place::Tcp(_) | Place::Other { .. } => YercTraits::default(),
         }
     }
 
@@ -167,9 +213,18 @@ impl Target {
         if fitting.next().is_some() { None } else { first }
     }
 
-    /// Whether `family` can be reached over this URL.
-    pub fn reaches(&self, family: Family) -> bool {
-        family.schemes().contains(&self.scheme())
+    /// Whether `family` can be reached over this URL, and all that stands in it is for that family.
+    ///
+    /// # Errors
+    /// What does not fit.
+    pub fn check(&self, family: Family) -> Result<(), String> {
+        if !family.schemes().contains(&self.scheme()) {
+            return Err(format!("{family} is not reached over {}:", self.scheme()));
+        }
+        match &self.place {
+            Place::Sim(sim) => sim.check(family),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -183,21 +238,22 @@ impl FromStr for Target {
     type Err = Failure;
 
     fn from_str(url: &str) -> Result<Self, Failure> {
-        let wrong = |why: String| {
-            Failure::usage(format!("target '{url}': {why}")).hint(
-                "write udp://HOST[:10040][?file_port=10041&model=dx200] for a controller, or sim: for the simulator",
-            )
-        };
-        let (scheme, rest) =
-            url.split_once(':').ok_or_else(|| wrong("there is no scheme such as udp:// in it".into()))?;
+        let (scheme, rest) = url.split_once(':').unwrap_or(("", url));
+        let wrong = |why: String| Failure::usage(format!("target '{url}': {why}")).hint(hint(scheme));
+        if scheme.is_empty() {
+            return Err(wrong("there is no scheme such as udp:// in it".into()));
+        }
         let (place, query) = rest.split_once('?').unwrap_or((rest, ""));
         let mut query = Query::parse(query).map_err(wrong)?;
         let place = match scheme {
-            "udp" => Place::Udp(udp(place, &mut query).map_err(wrong)?),
-            "sim" => Place::Sim(sim(place, &mut query).map_err(wrong)?),
-            "eip" | "serial" | "tcp" => Place::Other { scheme: scheme.to_owned() },
-            _ => return Err(wrong(format!("unknown scheme '{scheme}'"))),
+            "udp" => udp(place, &mut query).map(Place::Udp),
+            "serial" => serial(place, &mut query).map(Place::Serial),
+            "tcp" => tcp(place, &mut query).map(Place::Tcp),
+            "sim" => sim(place, &mut query).map(Place::Sim),
+            "eip" => Ok(Place::Other { scheme: scheme.to_owned() }),
+            _ => Err(format!("unknown scheme '{scheme}'")),
         };
+        let place = place.map_err(wrong)?;
         if !matches!(place, Place::Other { .. }) {
             query.finish().map_err(wrong)?;
         }
@@ -205,9 +261,26 @@ impl FromStr for Target {
     }
 }
 
+/// The form of a URL of the scheme, or of every scheme.
+fn hint(scheme: &str) -> String {
+    match FORMS.iter().find(|(known, _)| *known == scheme) {
+        Some((_, form)) => format!("write {form}; `armctl help targets` explains it"),
+        None => "write udp://HOST, serial:///dev/ttyUSB0, serial://COM3 or tcp://HOST:PORT for a controller, or sim: \
+                 for the simulator; `armctl help targets` explains them"
+            .to_owned(),
+    }
+}
+
+/// What URLs look like.
+const FORMS: [(&str, &str); 4] = [
+    ("udp", "udp://HOST[:10040][?file_port=10041&model=dx200]"),
+    ("serial", "serial:///dev/ttyUSB0[?baud=9600&parity=even&data_bits=8&stop_bits=1], or serial://COM3"),
+    ("tcp", "tcp://HOST:PORT[?baud=9600]"),
+    ("sim", "sim:[?state=FILE&fault=drop=5%25]"),
+];
+
 fn udp(place: &str, query: &mut Query) -> Result<Udp, String> {
-    let authority = place.strip_prefix("//").ok_or("two slashes are missing after udp:")?;
-    let authority = authority.strip_suffix('/').unwrap_or(authority);
+    let authority = authority("udp", place)?;
     let (host, port) = host_and_port(authority)?;
     let port = match port {
         Some(port) => self::port("port", port)?,
@@ -220,11 +293,88 @@ fn udp(place: &str, query: &mut Query) -> Result<Udp, String> {
     Ok(Udp { host, port, file_port, traits: traits(query)? })
 }
 
+fn serial(place: &str, query: &mut Query) -> Result<Serial, String> {
+    let path = place.strip_prefix("//").ok_or("two slashes are missing after serial:")?;
+    let path = percent_decoded(path)?;
+    if path.is_empty() {
+        return Err("the port is missing".to_owned());
+    }
+    if path.contains('/') && !path.starts_with('/') {
+        return Err(format!("'{path}' is no port; a path starts with a third slash"));
+    }
+    Ok(Serial {
+        path,
+        baud: baud(query)?.unwrap_or(BAUD),
+        data_bits: choice(query, "data_bits", [("8", DataBits::Eight), ("7", DataBits::Seven)])?,
+        parity: choice(query, "parity", [("even", Parity::Even), ("odd", Parity::Odd), ("none", Parity::None)])?,
+        stop_bits: choice(query, "stop_bits", [("1", StopBits::One), ("2", StopBits::Two)])?,
+    })
+}
+
+fn tcp(place: &str, query: &mut Query) -> Result<Tcp, String> {
+    let (host, port) = host_and_port(authority("tcp", place)?)?;
+    let port = self::port("port", port.ok_or("the port is missing; device servers have no usual one")?)?;
+    Ok(Tcp { host, port, baud: baud(query)?.unwrap_or(BAUD) })
+}
+
 fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
     if !place.is_empty() {
         return Err(format!("'{place}' after sim: means nothing; parameters start with ?"));
     }
-    Ok(Sim { traits: traits(query)?, state: query.take("state").map(PathBuf::from), fault: query.take("fault") })
+    let axes = match query.take("axes") {
+        None => None,
+        Some(text) => match text.parse() {
+            Ok(axes @ 1..=4) => Some(axes),
+            _ => return Err(format!("axes is a number from 1 to 4, not '{text}'")),
+        },
+    };
+    Ok(Sim {
+        traits: traits(query)?,
+        axes,
+        baud: baud(query)?,
+        state: query.take("state").map(PathBuf::from),
+        fault: query.take("fault"),
+    })
+}
+
+impl Sim {
+    /// A parameter of another family is a mistake, not decoration.
+    fn check(&self, family: Family) -> Result<(), String> {
+        let given = [
+            ("model", self.traits.model.is_some(), Family::Yerc),
+            ("move_words", self.traits.move_words.is_some(), Family::Yerc),
+            ("axes", self.axes.is_some(), Family::Toyo),
+            ("baud", self.baud.is_some(), Family::Toyo),
+        ];
+        match given.iter().find(|(_, is_given, owner)| *is_given && *owner != family) {
+            Some((key, _, owner)) => Err(format!("'{key}' in a sim: URL is for {owner}, not for {family}")),
+            None => Ok(()),
+        }
+    }
+}
+
+/// What stands between the slashes and the parameters.
+fn authority<'a>(scheme: &str, place: &'a str) -> Result<&'a str, String> {
+    let authority = place.strip_prefix("//").ok_or_else(|| format!("two slashes are missing after {scheme}:"))?;
+    Ok(authority.strip_suffix('/').unwrap_or(authority))
+}
+
+/// One of some words, the first of which is the usual one.
+fn choice<T: Copy, const N: usize>(query: &mut Query, key: &str, known: [(&str, T); N]) -> Result<T, String> {
+    let Some(given) = query.take(key) else { return Ok(known[0].1) };
+    let found = known.iter().find(|(word, _)| *word == given);
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let words = known.map(|(word, _)| word).join(" or ");
+        format!("{key} is {words}, not '{given}'")
+    })
+}
+
+fn baud(query: &mut Query) -> Result<Option<u32>, String> {
+    let Some(text) = query.take("baud") else { return Ok(None) };
+    match text.parse() {
+        Ok(baud) if BAUDS.contains(&baud) => Ok(Some(baud)),
+        _ => Err(format!("baud is a number from {} to {}, not '{text}'", BAUDS.start(), BAUDS.end())),
+    }
 }
 
 fn traits(query: &mut Query) -> Result<YercTraits, String> {
@@ -352,10 +502,90 @@ mod tests {
             ("udp://h?model=fs100&model=dx200", "twice"),
             ("sim:dx200", "means nothing"),
             ("sim:?fault=%4", "damaged"),
+            ("sim:?axes=5", "axes is a number from 1 to 4"),
+            ("sim:?baud=fast", "50 to 4000000"),
+            ("serial:COM3", "slashes"),
+            ("serial://", "port is missing"),
+            ("serial://dev/ttyUSB0", "third slash"),
+            ("serial://COM3?baud=0", "50 to 4000000, not '0'"),
+            ("serial://COM3?baud=5000000", "50 to 4000000"),
+            ("serial://COM3?parity=mark", "parity is even or odd or none, not 'mark'"),
+            ("serial://COM3?data_bits=5", "data_bits is 8 or 7, not '5'"),
+            ("serial://COM3?stop_bits=1.5", "stop_bits is 1 or 2, not '1.5'"),
+            ("serial://COM3?flow=rts", "unknown parameter 'flow'"),
+            ("tcp:h:1", "slashes"),
+            ("tcp://h", "port is missing"),
+            ("tcp://:4001", "host is missing"),
+            ("tcp://h:0", "1 to 65535"),
+            ("tcp://h:4001?parity=odd", "unknown parameter 'parity'"),
         ] {
             let failure = url.parse::<Target>().unwrap_err();
             assert!(failure.message.contains(part), "{url}: {}", failure.message);
-            assert!(failure.hint.is_some());
+            let (scheme, hint) = (url.split(':').next().unwrap(), failure.hint.unwrap());
+            assert!(hint.contains(&format!("write {scheme}:")) || hint.contains("udp://HOST, serial:///"), "{hint}");
+        }
+    }
+
+    #[test]
+    fn everything_a_serial_url_can_say() {
+        let usual = Serial {
+            path: "/dev/ttyUSB0".to_owned(),
+            baud: 9600,
+            data_bits: DataBits::Eight,
+            parity: Parity::Even,
+            stop_bits: StopBits::One,
+        };
+        assert_eq!(target("serial:///dev/ttyUSB0").place, Place::Serial(usual.clone()));
+        assert_eq!(
+            target("serial:///dev/ttyUSB0?baud=9600&parity=even&data_bits=8&stop_bits=1").place,
+            Place::Serial(usual.clone())
+        );
+        let other = Serial {
+            path: "COM3".to_owned(),
+            baud: 38_400,
+            data_bits: DataBits::Seven,
+            parity: Parity::None,
+            stop_bits: StopBits::Two,
+        };
+        assert_eq!(target("serial://COM3?stop_bits=2&parity=none&baud=38400&data_bits=7").place, Place::Serial(other));
+        let odd = Serial { path: "/dev/a b".to_owned(), parity: Parity::Odd, ..usual };
+        assert_eq!(target("serial:///dev/a%20b?parity=odd").place, Place::Serial(odd));
+    }
+
+    #[test]
+    fn everything_a_tcp_url_can_say() {
+        let tcp = |host: &str, port, baud| Place::Tcp(Tcp { host: host.to_owned(), port, baud });
+        assert_eq!(target("tcp://moxa:4001").place, tcp("moxa", 4001, 9600));
+        assert_eq!(target("tcp://[::1]:4001/?baud=19200").place, tcp("::1", 4001, 19_200));
+    }
+
+    #[test]
+    fn a_simulator_takes_what_its_family_knows() {
+        for (url, family, why) in [
+            ("sim:?axes=2&baud=9600&state=a.toml&fault=echo", Family::Toyo, None),
+            ("sim:?model=fs100&move_words=25&state=a.toml", Family::Yerc, None),
+            ("sim:", Family::Yrcx, None),
+            ("sim:?axes=2", Family::Yerc, Some("'axes' in a sim: URL is for toyo, not for yerc")),
+            ("sim:?baud=9600", Family::Yerc, Some("'baud' in a sim: URL is for toyo, not for yerc")),
+            ("sim:?model=fs100", Family::Toyo, Some("'model' in a sim: URL is for yerc, not for toyo")),
+            ("sim:?move_words=25", Family::Toyo, Some("'move_words' in a sim: URL is for yerc, not for toyo")),
+            ("tcp://h:1", Family::Yerc, Some("yerc is not reached over tcp:")),
+            ("udp://h", Family::Toyo, Some("toyo is not reached over udp:")),
+        ] {
+            assert_eq!(target(url).check(family).err().as_deref(), why, "{url}");
+        }
+    }
+
+    #[test]
+    fn short_names_are_short() {
+        for (url, name) in [
+            ("udp://10.0.0.2:10040", "10.0.0.2"),
+            ("serial:///dev/serial/by-id/usb-FTDI-if00?baud=19200", "usb-FTDI-if00"),
+            ("serial://COM3", "COM3"),
+            ("tcp://moxa:4001", "moxa"),
+            ("sim:?axes=2", "sim"),
+        ] {
+            assert_eq!(target(url).short_name(), name);
         }
     }
 
@@ -363,6 +593,7 @@ mod tests {
     fn a_scheme_tells_the_family_where_only_one_uses_it() {
         assert_eq!(target("udp://h").family(), Some(Family::Yerc));
         assert_eq!(target("sim:").family(), None);
-        assert!(target("serial:///dev/ttyUSB0").reaches(Family::Toyo));
+        assert_eq!(target("serial:///dev/ttyUSB0").family(), Some(Family::Toyo));
+        assert_eq!(target("tcp://h:4001").family(), Some(Family::Toyo));
     }
 }

@@ -87,14 +87,16 @@ impl Show {
     fn run(&self, run: &Run) -> Result<(), Stopped> {
         let entry = known(&run.sources.inventory, &self.name)?;
         let robot = run.sources.resolved(entry, None)?;
-        let settings = vec![
-            row("target", &robot.target, ToString::to_string),
-            row("model", &robot.model, ToString::to_string),
+        let mut settings = vec![row("target", &robot.target, ToString::to_string)];
+        if robot.family == Family::Yerc {
+            settings.push(row("model", &robot.model, ToString::to_string));
+        }
+        settings.extend([
             row("read_only", &robot.read_only, ToString::to_string),
             row("encoding", &robot.encoding, ToString::to_string),
             row("timeout", &robot.timeout, |timeout| duration::display(*timeout)),
             row("retries", &robot.retries, ToString::to_string),
-        ];
+        ]);
         let family = robot.family.name();
         run.local(
             "robots.show",
@@ -124,11 +126,9 @@ impl Add {
             let failure = Failure::usage(format!("'{}' does not tell the family", self.url));
             return Err(failure.hint("add --family yerc").into());
         };
-        if !self.url.reaches(family) {
-            return Err(Failure::usage(format!("{family} is not reached over {}:", self.url.scheme()))
-                .hint("`armctl help targets` lists the URLs of each family")
-                .into());
-        }
+        self.url
+            .check(family)
+            .map_err(|why| Failure::usage(why).hint("`armctl help targets` lists the URLs of each family"))?;
         let file = edit(run, |document| {
             let mut robot = toml_edit::Table::new();
             robot["name"] = value(&self.name);

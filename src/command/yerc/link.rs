@@ -121,8 +121,9 @@ impl Family for Yerc {
                 let controller = Simulated(Simulator::new(start));
                 Transport::Sim(Box::new(InProcess::new(controller, faults.map(Faults::pair))))
             }
-            Place::Other { scheme } => {
-                return Err(Failure::usage(format!("yerc is not reached over {scheme}:")).hint("use udp:// or sim:"));
+            Place::Serial(_) | Place::Tcp(_) | Place::Other { .. } => {
+                let message = format!("yerc is not reached over {}:", robot.target.value.scheme());
+                return Err(Failure::usage(message).hint("use udp:// or sim:"));
             }
         };
         let timeout = robot.timeout.value;
