@@ -5,6 +5,8 @@
 pub mod errors;
 pub mod field;
 pub mod layout;
+pub(crate) mod nearest;
+pub mod program;
 pub mod request;
 pub mod session;
 pub mod status;

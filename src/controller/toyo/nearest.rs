@@ -1,0 +1,24 @@
+//! What a mistyped word was meant to be.
+
+/// The nearest of `known` to a word, if it is near enough to be meant. Case does not matter.
+pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
+    // Nothing is learnt from comparing long words, and it takes time.
+    if word.len() > 64 {
+        return None;
+    }
+    let word = word.to_lowercase();
+    let scored = known.into_iter().map(|other| (strsim::jaro_winkler(&word, &other.to_lowercase()), other));
+    scored.filter(|(score, _)| *score > 0.75).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, other)| other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_words_are_found_and_far_ones_are_not() {
+        assert_eq!(nearest("jpm", ["JMP", "OUT"]), Some("JMP"));
+        assert_eq!(nearest("xyz", ["JMP", "OUT"]), None);
+        assert_eq!(nearest(&"J".repeat(65), ["JMP"]), None);
+    }
+}

@@ -1,0 +1,272 @@
+//! One instruction as a person writes it: short numbers, any case, labels for tags.
+
+use super::findings::{Findings, Place};
+use crate::controller::toyo::field::{Field, FieldError, Form, Value};
+use crate::controller::toyo::nearest::nearest;
+use crate::controller::toyo::table::instructions::INSTRUCTIONS;
+use crate::controller::toyo::table::{Instruction, Op};
+
+/// What stands in the place of a tag.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Target {
+    Number(i32),
+    Label(String),
+}
+
+/// A tag that an instruction names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct TagUse {
+    /// Which of its values.
+    pub index: usize,
+    pub target: Target,
+    pub at: Place,
+}
+
+/// An instruction whose tags are still to be found.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Draft {
+    pub instruction: &'static Instruction,
+    pub values: Vec<Value>,
+    pub tags: Vec<TagUse>,
+    /// Where it begins.
+    pub at: Place,
+}
+
+impl Draft {
+    /// In the place of an instruction that has errors, so that steps still count.
+    pub fn empty(at: Place) -> Self {
+        Self { instruction: Op::Nop.row(), values: Vec::new(), tags: Vec::new(), at }
+    }
+
+    /// A TAG step.
+    pub fn tag(target: Target, at: Place) -> Self {
+        let tags = vec![TagUse { index: 0, target, at }];
+        Self { instruction: Op::Tag.row(), values: vec![Value::Number(0)], tags, at }
+    }
+}
+
+/// Text of a line, from a place on.
+pub(super) struct Cursor<'t> {
+    line: &'t str,
+    number: usize,
+    at: usize,
+}
+
+/// Whether a field names a tag that must be there.
+fn is_tag(field: &Field) -> bool {
+    matches!(field.name, "tag" | "then" | "else")
+}
+
+/// Whether a word can be a label: a letter or `_`, then also digits and `-`.
+pub(super) fn is_label(word: &str) -> bool {
+    word.starts_with(|c: char| c.is_alphabetic() || c == '_')
+        && word.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-')
+}
+
+/// Reads one instruction, from the cursor to the end of the code; errors are told. `None` if there are some.
+pub(super) fn read(cursor: &mut Cursor<'_>, findings: &mut Findings) -> Option<Draft> {
+    let before = findings.errors();
+    let at = cursor.place();
+    let word = cursor.word();
+    let Some(row) = INSTRUCTIONS.iter().find(|row| row.word.eq_ignore_ascii_case(word)) else {
+        let near = nearest(word, INSTRUCTIONS.iter().map(|row| row.word));
+        let message = format!("there is no instruction '{}'", shown(word));
+        findings.error(at, message, near.map(|near| format!("did you mean {near}?")));
+        return None;
+    };
+    let mut draft = Draft { instruction: row, values: Vec::new(), tags: Vec::new(), at };
+    let mut keys = row.layout.text[row.word.len()..].split("{}");
+    let form = || Some(format!("it is written {}", form_of(row)));
+    cursor
+        .pass(keys.next().unwrap_or_default())
+        .map_err(|missing| findings.error(cursor.place(), missing, form()))
+        .ok()?;
+    for (index, field) in row.layout.fields.iter().enumerate() {
+        let at = cursor.place();
+        let text = cursor.value(field);
+        if text.is_empty() {
+            let label = if is_tag(field) { ", or a label" } else { "" };
+            findings.error(at, format!("{} is missing: {}{label}", field.name, field.expected()), form());
+            return None;
+        }
+        if is_tag(field) {
+            match target(field, text) {
+                Ok(target) => draft.tags.push(TagUse { index, target, at }),
+                Err(message) => findings.error(at, message, None),
+            }
+            draft.values.push(Value::Number(0));
+        } else {
+            match value(field, text) {
+                Ok(value) => draft.values.push(value),
+                Err(error) => findings.error(at, error.to_string(), None),
+            }
+        }
+        let key = keys.next().unwrap_or_default();
+        cursor.pass(key).map_err(|missing| findings.error(cursor.place(), missing, form())).ok()?;
+    }
+    if !cursor.rest().is_empty() {
+        findings.error(cursor.place(), format!("'{}' is too much", shown(cursor.rest())), form());
+    }
+    pass_fixed(&mut draft, findings);
+    (findings.errors() == before).then_some(draft)
+}
+
+/// RSMV passes, whatever is printed (ambiguity R4).
+fn pass_fixed(draft: &mut Draft, findings: &mut Findings) {
+    if draft.instruction.op != Op::Rsmv {
+        return;
+    }
+    for value in &mut draft.values {
+        if *value == Value::Word("POST") {
+            findings.warning(draft.at, "RSMV never stops at its place: POST is taken as PASS", None);
+            *value = Value::Word("PASS");
+        }
+    }
+}
+
+/// A tag by its number or a label.
+fn target(field: &Field, text: &str) -> Result<Target, String> {
+    if is_label(text) {
+        return Ok(Target::Label(text.to_owned()));
+    }
+    match field.read(text) {
+        Ok(Value::Number(number)) => Ok(Target::Number(number)),
+        Ok(_) | Err(FieldError::Form { .. }) => {
+            Err(format!("{}: '{}' is no tag (001 to 999) and no label", field.name, shown(text)))
+        }
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn value(field: &Field, text: &str) -> Result<Value, FieldError> {
+    if let Form::Word(words) = field.form {
+        let mut same = words.iter().filter(|word| word.text.trim_end().eq_ignore_ascii_case(text));
+        if let (Some(word), None) = (same.next(), same.next()) {
+            return Ok(Value::Word(word.text));
+        }
+    }
+    field.read(text).map_err(|error| match error {
+        FieldError::Form { name, found, form } => FieldError::Form { name, found: shown(&found).to_owned(), form },
+        FieldError::Range { .. } => error,
+    })
+}
+
+/// How an instruction is written: `JMPC TAG=<tag> CN<counter><compare><count>`.
+pub(super) fn form_of(row: &Instruction) -> String {
+    let mut fields = row.layout.fields.iter();
+    let mut form = String::new();
+    for (index, words) in row.layout.text.split("{}").enumerate() {
+        if index > 0 {
+            form.push_str(&fields.next().map_or(String::new(), |field| match field.form {
+                Form::Word([one, other]) => format!("{}|{}", one.text, other.text),
+                _ => format!("<{}>", field.name),
+            }));
+        }
+        form.push_str(words);
+    }
+    form
+}
+
+/// The front of what was written, for a message.
+pub(super) fn shown(text: &str) -> &str {
+    text.char_indices().nth(20).map_or(text, |(end, _)| &text[..end])
+}
+
+const BLANKS: [char; 2] = [' ', '\t'];
+
+impl<'t> Cursor<'t> {
+    /// At a place of a line, counted in bytes. The line ends where its code does.
+    pub fn new(line: &'t str, number: usize, at: usize) -> Self {
+        let mut cursor = Self { line, number, at };
+        cursor.skip();
+        cursor
+    }
+
+    /// What is left, without blanks around.
+    pub fn rest(&self) -> &'t str {
+        self.line[self.at..].trim_matches(BLANKS)
+    }
+
+    pub fn place(&self) -> Place {
+        Place { line: self.number, column: self.line[..self.at].chars().count() + 1 }
+    }
+
+    /// Takes what stands before the next colon, and the colon; nothing where there is none.
+    pub fn before_colon(&mut self) -> Option<&'t str> {
+        let taken = self.line[self.at..].split_once(':')?.0;
+        self.take(taken.len());
+        self.take(1);
+        Some(taken)
+    }
+
+    /// Takes a word up to the next blank, and the blanks behind it.
+    pub fn word(&mut self) -> &'t str {
+        self.until(&BLANKS)
+    }
+
+    /// Takes the text of a field: a comparison, the eight characters of a port, or what has no blank or comparison in it.
+    fn value(&mut self, field: &Field) -> &'t str {
+        match field.form {
+            Form::Word(words) if words.iter().all(|word| word.text.starts_with(['=', '<', '>'])) => {
+                let rest = &self.line[self.at..];
+                let end = rest.find(|c| !matches!(c, '=' | '<' | '>')).unwrap_or(rest.len());
+                self.take(end)
+            }
+            _ => self.until(&[' ', '\t', '=', '<', '>']),
+        }
+    }
+
+    fn until(&mut self, ends: &[char]) -> &'t str {
+        let rest = &self.line[self.at..];
+        self.take(rest.find(ends).unwrap_or(rest.len()))
+    }
+
+    fn take(&mut self, len: usize) -> &'t str {
+        let taken = &self.line[self.at..self.at + len];
+        self.at += len;
+        self.skip();
+        taken
+    }
+
+    fn skip(&mut self) {
+        let rest = &self.line[self.at..];
+        self.at += rest.len() - rest.trim_start_matches(BLANKS).len();
+    }
+
+    /// Passes the words of a form, in any case; blanks stand where they like. Stays where something else stands.
+    fn pass(&mut self, words: &str) -> Result<(), String> {
+        let start = self.at;
+        for expected in words.chars().filter(|c| *c != ' ') {
+            match self.line[self.at..].chars().next() {
+                Some(found) if found.eq_ignore_ascii_case(&expected) => {
+                    self.at += found.len_utf8();
+                    if expected == '=' {
+                        self.skip();
+                    }
+                }
+                // Before the sign of equality, too.
+                Some(' ' | '\t') if expected == '=' => {
+                    self.skip();
+                    if !self.line[self.at..].starts_with('=') {
+                        return self.not(start, words);
+                    }
+                    self.take(1);
+                }
+                _ => return self.not(start, words),
+            }
+        }
+        self.skip();
+        Ok(())
+    }
+
+    fn not(&mut self, start: usize, words: &str) -> Result<(), String> {
+        self.at = start;
+        let found = self.rest();
+        let words = words.trim();
+        if found.is_empty() {
+            return Err(format!("{words} is missing"));
+        }
+        let found = found.split(BLANKS).next().unwrap_or_default();
+        Err(format!("{words} is expected, not '{}'", shown(found)))
+    }
+}

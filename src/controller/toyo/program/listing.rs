@@ -1,0 +1,98 @@
+//! A program of a controller as text, which [`check`](super::check) reads back.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::table::{Op, Parameter};
+
+/// Rows of tables, by the id of the table and their number; those that are there are explained in comments.
+pub type Rows = BTreeMap<(&'static str, i32), Record>;
+
+/// A program as text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Listing {
+    /// A step a line, with line ends.
+    pub text: String,
+    /// NOPs at the end that are left out.
+    pub left_out: usize,
+}
+
+/// Fields of instructions that name a row of a table, with its id.
+const TABLES: [(&str, &str); 5] =
+    [("point", "T1"), ("speed", "T2"), ("ramp", "T3"), ("group", "T4.S1"), ("table", "T5")];
+
+/// The rows of tables that instructions name, for [`listing`].
+pub fn uses(steps: &[Record]) -> BTreeSet<(&'static str, i32)> {
+    steps.iter().flat_map(rows_of).map(|(_, key)| key).collect()
+}
+
+/// The text of steps, the first of which is step 1. `numbered` puts step numbers before them.
+pub fn listing(steps: &[Record], numbered: bool, rows: &Rows) -> Listing {
+    let is_nop = |record: &Record| record.layout() == Op::Nop.row().layout;
+    let end = steps.iter().rposition(|record| !is_nop(record)).map_or(steps.len().min(1), |last| last + 1);
+    let (shown, left_out) = (&steps[..end], steps.len() - end);
+    let texts: Vec<String> = shown.iter().map(Record::written).collect();
+    let width = texts.iter().map(String::len).max().unwrap_or_default();
+    let tags = tags(shown);
+    let mut text = String::new();
+    for (index, (record, own)) in shown.iter().zip(&texts).enumerate() {
+        if numbered {
+            let _ = write!(text, "{:04}  ", index + 1);
+        }
+        text.push_str(own);
+        let comments = comments(record, &tags, rows);
+        if !comments.is_empty() {
+            let _ = write!(text, "{:pad$}  # {}", "", comments.join("; "), pad = width - own.len());
+        }
+        text.push('\n');
+    }
+    if left_out > 0 {
+        let _ = writeln!(text, "# {left_out} NOP up to the end of the program are left out");
+    }
+    Listing { text, left_out }
+}
+
+/// What an instruction names, as people know it.
+fn comments(record: &Record, tags: &BTreeMap<i32, usize>, rows: &Rows) -> Vec<String> {
+    let jumps = record.layout() != Op::Tag.row().layout;
+    let named = record.pairs().filter(|(field, _)| jumps && matches!(field.name, "tag" | "then" | "else"));
+    let steps = named.filter_map(|(field, _)| {
+        let tag = record.number(field.name)?;
+        Some(format!("{} {tag:03} is step {}", field.name, tags.get(&tag)?))
+    });
+    let rows = rows_of(record).filter_map(|(name, key)| {
+        let row = rows.get(&key)?;
+        Some(format!("{name} {}: {}", key.1, values_of(key.0, row)))
+    });
+    steps.chain(rows).collect()
+}
+
+/// The rows of tables that an instruction names. Row 0 is none.
+fn rows_of(record: &Record) -> impl Iterator<Item = (&'static str, (&'static str, i32))> {
+    TABLES.iter().filter_map(|(name, id)| {
+        let row = record.number(name).filter(|row| *row > 0)?;
+        Some((*name, (*id, row)))
+    })
+}
+
+/// The values of a row, its number apart.
+fn values_of(id: &str, row: &Record) -> String {
+    let own = Parameter::named(id).map_or(0, |parameter| parameter.key.fields.len());
+    let values = row.pairs().skip(own).map(|(field, value)| {
+        let meaning = field.meaning(value);
+        if row.pairs().count() == own + 1 { meaning.into_owned() } else { format!("{} {meaning}", field.name) }
+    });
+    values.collect::<Vec<_>>().join(", ")
+}
+
+/// The step of every tag, the first where it is there twice.
+fn tags(steps: &[Record]) -> BTreeMap<i32, usize> {
+    let mut tags = BTreeMap::new();
+    for (index, record) in steps.iter().enumerate().filter(|(_, record)| record.layout() == Op::Tag.row().layout) {
+        if let Some(tag) = record.number("tag") {
+            tags.entry(tag).or_insert(index + 1);
+        }
+    }
+    tags
+}

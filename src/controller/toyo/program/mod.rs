@@ -1,0 +1,101 @@
+//! Sequential programs as text: one instruction a line, labels in place of tag numbers, comments.
+//!
+//! ```text
+//! # Brings parts to the tray.
+//!       SPD V=5
+//! next: MOVP a PT=1 CN=0 S V=0 POST
+//!       JMPI TAG=next STN=0 PN1=.......1    ; while the gripper is full
+//! done=20:                                  ; a label with a tag number of its own
+//!       END
+//! ```
+//!
+//! A file is the program of one task; its first instruction is step 1. A label makes a TAG step, and stands wherever an
+//! instruction names a tag. Numbers may be short, words and keys in any case. Every instruction may begin with its step
+//! number, as lists of controllers have it.
+
+mod findings;
+mod flow;
+mod instruction;
+mod listing;
+mod reader;
+mod source;
+mod tags;
+#[cfg(test)]
+mod tests;
+
+pub use findings::{Finding, Severity};
+pub use listing::{Listing, Rows, listing, uses};
+
+use super::layout::Record;
+use super::table::Instruction;
+
+/// Most steps that the tasks have together (TO 2-4, E22).
+pub const MOST_STEPS: usize = 5000;
+
+/// A program that can be sent.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Program {
+    /// In their order; the first is step 1.
+    pub steps: Vec<Step>,
+    /// In the order of their steps.
+    pub labels: Vec<Label>,
+}
+
+/// A step of a program. All its values are in range.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Step {
+    /// Its row in the table.
+    pub instruction: &'static Instruction,
+    /// Its values.
+    pub record: Record,
+    /// Line of the file, from 1.
+    pub line: usize,
+}
+
+/// A name for a tag.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Label {
+    /// As written where it is defined.
+    pub name: String,
+    /// Number of the tag, 1 to 999.
+    pub tag: i32,
+    /// Its TAG step, from 1.
+    pub step: usize,
+    /// Line of the file, from 1.
+    pub line: usize,
+}
+
+/// What became of a text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Checked {
+    /// The program, unless a finding is an error.
+    pub program: Option<Program>,
+    /// What there is to say, in the order of the text.
+    pub findings: Vec<Finding>,
+}
+
+impl Step {
+    /// As it is sent after WSTX and its number, to the character: `MOVP a PT=001 CN=00 S V=00 POST`.
+    pub fn text(&self) -> String {
+        self.record.written()
+    }
+}
+
+impl Checked {
+    /// The findings that keep the text from being a program.
+    pub fn errors(&self) -> impl Iterator<Item = &Finding> {
+        self.findings.iter().filter(|finding| finding.severity == Severity::Error)
+    }
+}
+
+/// Reads the text of a program for a task with so many steps (TO 2-4, E22).
+pub fn check(text: &[u8], room: usize) -> Checked {
+    let mut findings = findings::Findings::default();
+    let read = reader::read(text, room, &mut findings);
+    let program = tags::resolve(read, &mut findings);
+    if findings.errors() == 0 {
+        flow::check(&program, &mut findings);
+    }
+    let program = (findings.errors() == 0).then_some(program.program);
+    Checked { program, findings: findings.sorted() }
+}

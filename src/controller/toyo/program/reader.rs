@@ -1,0 +1,160 @@
+//! The lines of a file: step numbers, labels, instructions, comments.
+
+use super::MOST_STEPS;
+use super::findings::{Findings, Place};
+use super::instruction::{Cursor, Draft, TagUse, Target, is_label, read as read_instruction, shown};
+use super::source;
+use crate::controller::toyo::table::Op;
+
+/// What the lines of a file say.
+#[derive(Debug, Default)]
+pub(super) struct Read {
+    pub steps: Vec<Draft>,
+    pub labels: Vec<Defined>,
+}
+
+/// A label where it is defined.
+#[derive(Debug)]
+pub(super) struct Defined {
+    pub name: String,
+    /// The number that it was given.
+    pub tag: Option<i32>,
+    /// Its TAG step, from 0.
+    pub step: usize,
+    pub at: Place,
+}
+
+/// Reads the lines, for a task that has room for so many steps.
+pub(super) fn read(text: &[u8], room: usize, findings: &mut Findings) -> Read {
+    let room = room.min(MOST_STEPS);
+    let lines = source::lines(text, findings);
+    let mut reader = Reader { read: Read::default(), first: None, findings };
+    for (index, line) in lines.iter().enumerate() {
+        if reader.findings.is_full() {
+            break;
+        }
+        let before = reader.read.steps.len();
+        reader.line(line, index + 1);
+        let after = reader.read.steps.len();
+        if before <= room && room < after {
+            let at = reader.read.steps[room].at;
+            let message = format!("step {} is one too many: the task has room for {room}", room + 1);
+            reader.findings.error(at, message, Some("the machine parameter E22 (task-steps) says how many".to_owned()));
+        }
+        // Beyond all that any task can have, there is nothing to learn.
+        if after > MOST_STEPS {
+            break;
+        }
+    }
+    if reader.read.steps.is_empty() && reader.findings.errors() == 0 {
+        reader.findings.error(Place { line: 1, column: 1 }, "there is no instruction in the file", None);
+    }
+    reader.read
+}
+
+struct Reader<'f> {
+    read: Read,
+    /// The number of the first step, as the file has it.
+    first: Option<usize>,
+    findings: &'f mut Findings,
+}
+
+impl Reader<'_> {
+    fn line(&mut self, line: &str, number: usize) {
+        let code = line.find(['#', ';']).map_or(line, |end| &line[..end]);
+        let mut cursor = Cursor::new(code, number, 0);
+        if cursor.rest().is_empty() || !self.is_clean(code, number) {
+            return;
+        }
+        let steps = self.read.steps.len();
+        let numbered = cursor.rest().starts_with(|c: char| c.is_ascii_digit());
+        if numbered {
+            self.step_number(&mut cursor);
+        }
+        loop {
+            let at = cursor.place();
+            let Some(text) = cursor.before_colon() else { break };
+            self.label(text, at);
+        }
+        if cursor.rest().is_empty() {
+            if steps == self.read.steps.len() {
+                self.findings.error(cursor.place(), "there is no instruction behind the step number", None);
+            }
+            return;
+        }
+        let at = cursor.place();
+        let draft = read_instruction(&mut cursor, self.findings).unwrap_or_else(|| Draft::empty(at));
+        if let (Op::Tag, [TagUse { target: Target::Label(name), .. }]) = (draft.instruction.op, &draft.tags[..]) {
+            self.read.labels.push(Defined { name: name.clone(), tag: None, step: self.read.steps.len(), at });
+        }
+        self.read.steps.push(draft);
+    }
+
+    /// Whether all characters of the code may be there; a file that is not UTF-8 was told already.
+    fn is_clean(&mut self, code: &str, line: usize) -> bool {
+        let Some((column, wrong)) = code.chars().enumerate().find(|(_, c)| is_wrong(*c)) else { return true };
+        if wrong != char::REPLACEMENT_CHARACTER {
+            let hint = narrow(wrong).map(|narrow| format!("it is a wide character: write '{narrow}'"));
+            let message = format!("character '{}' cannot be here", wrong.escape_default());
+            self.findings.error(Place { line, column: column + 1 }, message, hint);
+        }
+        false
+    }
+
+    /// Numbers run on from the first one, whatever it is.
+    fn step_number(&mut self, cursor: &mut Cursor<'_>) {
+        let at = cursor.place();
+        let text = cursor.word();
+        let steps = self.read.steps.len();
+        let Ok(number) = text.parse::<usize>() else {
+            self.findings.error(at, format!("'{}' is no step number", shown(text)), None);
+            return;
+        };
+        let expected = *self.first.get_or_insert(number.saturating_sub(steps)) + steps;
+        if number != expected {
+            let message = format!("step number {number} is expected to be {expected:04}: they run on by one");
+            self.findings.error(at, message, Some("instructions need no step numbers".to_owned()));
+            // What follows is measured by this one.
+            self.first = Some(number.saturating_sub(steps));
+        } else if self.first != Some(1) && steps == 0 {
+            let message = format!("the file counts from {number}; its first instruction is step 1 nevertheless");
+            self.findings.warning(at, message, None);
+        }
+    }
+
+    /// `name` or `name = 010`, behind which a colon was.
+    fn label(&mut self, text: &str, at: Place) {
+        let (name, tag) = match text.split_once('=') {
+            Some((name, tag)) => (name.trim(), Some(tag.trim())),
+            None => (text.trim(), None),
+        };
+        let step = self.read.steps.len();
+        if !is_label(name) {
+            let message = format!("'{}' is no label", shown(name));
+            let hint = "a label begins with a letter, and has letters, digits, _ and - in it";
+            self.findings.error(at, message, Some(hint.to_owned()));
+            return;
+        }
+        let number = tag.map(|tag| tag.parse().ok().filter(|tag| (1..=999).contains(tag)));
+        if number == Some(None) {
+            let message = format!("the tag of label {name} is a number, 1 to 999");
+            self.findings.error(at, message, None);
+        }
+        self.read.labels.push(Defined { name: name.to_owned(), tag: number.flatten(), step, at });
+        self.read.steps.push(Draft::tag(Target::Label(name.to_owned()), at));
+    }
+}
+
+/// Control characters, what is not UTF-8, and wide forms of ASCII.
+fn is_wrong(c: char) -> bool {
+    (c.is_control() && c != '\t') || c == char::REPLACEMENT_CHARACTER || narrow(c).is_some()
+}
+
+/// The ASCII character that a wide one stands for, as Japanese keyboards have them.
+fn narrow(c: char) -> Option<char> {
+    match c {
+        '\u{3000}' => Some(' '),
+        '\u{FF01}'..='\u{FF5E}' => char::from_u32(u32::from(c) - 0xFEE0),
+        _ => None,
+    }
+}

@@ -1,0 +1,64 @@
+//! The lines of a file: its bytes as text, and what is wrong with them.
+
+use std::borrow::Cow;
+
+use super::findings::{Findings, Place};
+
+const START: Place = Place { line: 1, column: 1 };
+
+/// The lines of a text without their ends. Where it is not UTF-8, the replacement character stands; that was told then.
+pub(super) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, str>> {
+    if text.starts_with(&[0xFF, 0xFE]) || text.starts_with(&[0xFE, 0xFF]) {
+        findings.error(START, "the file is UTF-16", Some("save it as UTF-8".to_owned()));
+        return Vec::new();
+    }
+    let text = match text.strip_prefix("\u{FEFF}".as_bytes()) {
+        Some(rest) => {
+            findings.note(START, "the file begins with a byte order mark, which is passed over");
+            rest
+        }
+        None => text,
+    };
+    let mut lines = Vec::new();
+    let (mut ends_told, mut bad): (bool, Option<(Place, u8)>) = (false, None);
+    let mut bad_lines = 0;
+    for (index, bytes) in text.split(|byte| *byte == b'\n').enumerate() {
+        let number = index + 1;
+        let bytes = match bytes.strip_suffix(b"\r") {
+            Some(bytes) => {
+                if !ends_told {
+                    findings.note(place(number, bytes), "lines end in CR LF, of which the CR is passed over");
+                    ends_told = true;
+                }
+                bytes
+            }
+            None => bytes,
+        };
+        if let Some(at) = bytes.iter().position(|byte| *byte == 0) {
+            let hint = "this is no text file, or one in UTF-16: save it as UTF-8";
+            findings.error(place(number, &bytes[..at]), "there is a NUL; the rest is not read", Some(hint.to_owned()));
+            break;
+        }
+        if let Err(error) = std::str::from_utf8(bytes) {
+            let (before, from) = bytes.split_at(error.valid_up_to());
+            bad_lines += 1;
+            bad = bad.or(Some((place(number, before), from.first().copied().unwrap_or_default())));
+        }
+        lines.push(String::from_utf8_lossy(bytes));
+    }
+    if let Some((at, byte)) = bad {
+        let more = if bad_lines > 1 {
+            format!("; there is more such text, in {bad_lines} lines in all")
+        } else {
+            String::new()
+        };
+        let hint = Some("save the file as UTF-8".to_owned());
+        findings.error(at, format!("byte {byte:02X} is not UTF-8{more}"), hint);
+    }
+    lines
+}
+
+/// The place behind the front of a line.
+fn place(line: usize, front: &[u8]) -> Place {
+    Place { line, column: String::from_utf8_lossy(front).chars().count() + 1 }
+}

@@ -1,0 +1,190 @@
+//! Which tag a label is, and whether every tag that is named is there, once.
+
+use std::collections::HashMap;
+
+use super::findings::{Findings, Place};
+use super::instruction::{Draft, Target};
+use super::reader::{Defined, Read};
+use super::{Label, Program, Step};
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::nearest::nearest;
+use crate::controller::toyo::table::Op;
+
+/// A program with the places of its steps.
+pub(super) struct Resolved {
+    pub program: Program,
+    pub places: Vec<Place>,
+}
+
+/// Greatest number of a tag.
+const MOST: usize = 999;
+
+/// Gives labels their tags, and steps the tags of their labels. Errors are told; the program counts only without any.
+pub(super) fn resolve(read: Read, findings: &mut Findings) -> Resolved {
+    let mut tags = Tags::default();
+    tags.collect(&read.labels, findings);
+    tags.number(&read, findings);
+    tags.places(&read.steps, findings);
+    let places = read.steps.iter().map(|draft| draft.at).collect();
+    let steps = read.steps.into_iter().filter_map(|draft| tags.step(draft, findings)).collect();
+    if findings.errors() == 0 {
+        tags.idle(findings);
+    }
+    let labels = tags.list.into_iter().map(Known::label).collect();
+    Resolved { program: Program { steps, labels }, places }
+}
+
+#[derive(Default)]
+struct Tags {
+    /// In the order of the text.
+    list: Vec<Known>,
+    /// By name in lower case.
+    by_name: HashMap<String, usize>,
+    /// Where each tag is; there is no tag 0.
+    defined: Vec<Option<Place>>,
+}
+
+struct Known {
+    name: String,
+    at: Place,
+    step: usize,
+    tag: i32,
+    given: bool,
+    used: bool,
+}
+
+impl Known {
+    fn label(self) -> Label {
+        Label { name: self.name, tag: self.tag, step: self.step + 1, line: self.at.line }
+    }
+}
+
+impl Tags {
+    /// Every label, once.
+    fn collect(&mut self, labels: &[Defined], findings: &mut Findings) {
+        for label in labels {
+            let other = self.by_name.insert(label.name.to_lowercase(), self.list.len());
+            if let Some(other) = other {
+                let first = &self.list[other];
+                let message = format!("label {} is there already, in line {}", label.name, first.at.line);
+                findings.error(label.at, message, None);
+                self.by_name.insert(label.name.to_lowercase(), other);
+                continue;
+            }
+            self.list.push(Known {
+                name: label.name.clone(),
+                at: label.at,
+                step: label.step,
+                tag: label.tag.unwrap_or_default(),
+                given: label.tag.is_some(),
+                used: false,
+            });
+        }
+    }
+
+    /// Numbers the labels that have none: from 1 on, past all numbers that the file names.
+    fn number(&mut self, read: &Read, findings: &mut Findings) {
+        let mut taken = vec![false; MOST + 1];
+        let uses = read.steps.iter().flat_map(|draft| &draft.tags);
+        let named = uses.filter_map(|used| if let Target::Number(tag) = used.target { Some(tag) } else { None });
+        let given = self.list.iter().filter(|known| known.given).map(|known| known.tag);
+        for tag in named.chain(given) {
+            if let Some(taken) = usize::try_from(tag).ok().and_then(|tag| taken.get_mut(tag)) {
+                *taken = true;
+            }
+        }
+        let mut free = (1_i32..).zip(&taken[1..]).filter(|(_, taken)| !**taken).map(|(tag, _)| tag);
+        for known in self.list.iter_mut().filter(|known| !known.given) {
+            if let Some(tag) = free.next() {
+                known.tag = tag;
+            } else {
+                let message = format!("there is no tag left for label {}; there are {MOST}", known.name);
+                findings.error(known.at, message, None);
+                return;
+            }
+        }
+    }
+
+    /// Where tags are, each once.
+    fn places(&mut self, steps: &[Draft], findings: &mut Findings) {
+        self.defined = vec![None; MOST + 1];
+        for draft in steps.iter().filter(|draft| draft.instruction.op == Op::Tag) {
+            let Some(used) = draft.tags.first() else { continue };
+            let Some(tag) = self.tag(&used.target) else { continue };
+            // A label that is there twice was told.
+            if self.known(&used.target).is_some_and(|known| known.at != draft.at) {
+                continue;
+            }
+            let Some(place) = usize::try_from(tag).ok().and_then(|tag| self.defined.get_mut(tag)) else { continue };
+            match place {
+                Some(first) => {
+                    let message = format!("tag {tag:03} is there already, in line {}", first.line);
+                    findings.error(used.at, message, Some("a controller stops with error A2".to_owned()));
+                }
+                None => *place = Some(draft.at),
+            }
+        }
+    }
+
+    /// The step with its tags. A label that is not there is told here.
+    fn step(&mut self, draft: Draft, findings: &mut Findings) -> Option<Step> {
+        let Draft { instruction, mut values, tags, at } = draft;
+        for used in tags {
+            let Some(tag) = self.tag(&used.target) else {
+                if let Target::Label(name) = &used.target {
+                    let known = self.list.iter().map(|known| known.name.as_str());
+                    let near = if findings.is_full() { None } else { nearest(name, known) };
+                    let hint = near.map(|near| format!("did you mean {near}?"));
+                    findings.error(used.at, format!("there is no label '{name}'"), hint);
+                }
+                continue;
+            };
+            if instruction.op != Op::Tag {
+                self.jump(tag, &used.target, used.at, findings);
+            }
+            if let Some(value) = values.get_mut(used.index) {
+                *value = Value::Number(tag);
+            }
+        }
+        Some(Step { instruction, record: instruction.layout.record(values).ok()?, line: at.line })
+    }
+
+    fn jump(&mut self, tag: i32, target: &Target, at: Place, findings: &mut Findings) {
+        match target {
+            Target::Label(name) => {
+                if let Some(index) = self.by_name.get(&name.to_lowercase()) {
+                    self.list[*index].used = true;
+                }
+            }
+            Target::Number(_) => {
+                // No label has this number unless it was given, and those may be idle.
+                let is_there =
+                    usize::try_from(tag).ok().and_then(|tag| self.defined.get(tag)).is_some_and(Option::is_some);
+                if !is_there {
+                    let hint = Some("a controller stops with error A1".to_owned());
+                    findings.error(at, format!("there is no tag {tag:03} in the program"), hint);
+                }
+            }
+        }
+    }
+
+    fn tag(&self, target: &Target) -> Option<i32> {
+        match target {
+            Target::Number(tag) => Some(*tag),
+            Target::Label(_) => self.known(target).map(|known| known.tag),
+        }
+    }
+
+    fn known(&self, target: &Target) -> Option<&Known> {
+        let Target::Label(name) = target else { return None };
+        self.by_name.get(&name.to_lowercase()).map(|index| &self.list[*index])
+    }
+
+    /// Labels that nothing names. One with a number of its own may be named from elsewhere.
+    fn idle(&self, findings: &mut Findings) {
+        for known in self.list.iter().filter(|known| !known.used && !known.given) {
+            let hint = format!("if something outside names its tag, give it one: {}=10:", known.name);
+            findings.warning(known.at, format!("nothing jumps to label {}", known.name), Some(hint));
+        }
+    }
+}

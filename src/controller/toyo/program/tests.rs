@@ -1,0 +1,316 @@
+use super::*;
+use crate::controller::toyo::request;
+use crate::controller::toyo::table::instructions::INSTRUCTIONS;
+
+fn texts(text: &str) -> Vec<String> {
+    let checked = check(text.as_bytes(), MOST_STEPS);
+    let program = checked.program.unwrap_or_else(|| panic!("{text}: {:?}", checked.findings));
+    program.steps.iter().map(Step::text).collect()
+}
+
+fn findings(text: impl AsRef<[u8]>) -> Vec<String> {
+    check(text.as_ref(), MOST_STEPS).findings.iter().map(ToString::to_string).collect()
+}
+
+/// The only finding of a text that has END behind it.
+fn finding(line: &str) -> String {
+    let found = findings(format!("{line}\nEND\n"));
+    assert_eq!(found.len(), 1, "{found:?}");
+    found.into_iter().next().unwrap()
+}
+
+#[test]
+fn short_forms_become_the_forms_of_the_line() {
+    for (short, whole) in [
+        ("MOVP a PT=1 CN=0 S V=0 POST", "MOVP a PT=001 CN=00 S V=00 POST"),
+        ("movp A pt=1 cn=0 s v=0 post", "MOVP a PT=001 CN=00 S V=00 POST"),
+        ("mov i x=1 y=-2.5 z=+0 r=0 T V=10 pass", "MOV i X=+0001.00 Y=-0002.50 Z=+0000.00 R=+0000.00 T V=10 PASS"),
+        ("CWIT CN1=5", "CWIT CN01= 0005"),
+        ("CWIT CN01 <= 5", "CWIT CN01<=0005"),
+        ("CWIT CN1 > 5", "CWIT CN01> 0005"),
+        ("IN STN = 0 PN1 = .......1 and", "IN STN=0 PN01=.......1 AND"),
+        ("\tOUTS TA=0 STN=0 PN1=1....... X >= -5", "OUTS TA=0 STN=0 PN01=1....... X>=-0005.00"),
+        ("CNT+ CN1=1", "CNT+ CN01=0001"),
+        ("TIM TM=1.5", "TIM TM=001.5"),
+        ("SVOF all", "SVOF ALL"),
+        ("TLMV x TT=8 TM=1 TE=on LE=OFF AE=off DD=ON", "TLMV X TT=08 TM=001.0 TE=ON LE=OFF AE=OFF DD=ON"),
+    ] {
+        assert_eq!(texts(&format!("{short}\nEND"))[0], whole);
+    }
+}
+
+#[test]
+fn the_sample_of_the_manual_is_read() {
+    let sample = "SPD V=05\nMOVP a PT=001 CN=00 S V=00 POST\nOUT STN=0 PN01=.......1\nEND\n";
+    assert_eq!(texts(sample).join("\n") + "\n", sample);
+    let numbered: String = sample.lines().enumerate().map(|(at, line)| format!("{:04} {line}\n", at + 1)).collect();
+    assert_eq!(texts(&numbered), texts(sample));
+}
+
+#[test]
+fn labels_become_free_tags_in_their_order() {
+    let text = "
+        # TAG 1 is taken by a jump, 2 by a label.
+        start:  NOP
+        calc=2: mid:  NOP
+        JMPC TAG=Mid CN1=5      ; any case
+        LOOP GRP=1 THEN=start ELSE=last
+        TAG TAG=3
+        tag tag=last
+        CAL TAG=1
+        END
+        TAG TAG=1
+        RET
+    ";
+    let checked = check(text.as_bytes(), 20);
+    let program = checked.program.unwrap();
+    assert_eq!(checked.findings, []);
+    let texts: Vec<_> = program.steps.iter().map(Step::text).collect();
+    assert_eq!(
+        texts,
+        [
+            "TAG TAG=004",
+            "NOP",
+            "TAG TAG=002",
+            "TAG TAG=005",
+            "NOP",
+            "JMPC TAG=005 CN01= 0005",
+            "LOOP GRP=01 THEN=004 ELSE=006",
+            "TAG TAG=003",
+            "TAG TAG=006",
+            "CAL TAG=001",
+            "END",
+            "TAG TAG=001",
+            "RET",
+        ]
+    );
+    let labels: Vec<_> = program.labels.iter().map(|label| (label.name.as_str(), label.tag, label.step)).collect();
+    assert_eq!(labels, [("start", 4, 1), ("calc", 2, 3), ("mid", 5, 4), ("last", 6, 9)]);
+    assert_eq!(program.steps[8].line, 8);
+}
+
+#[test]
+fn mistakes_are_told_with_their_place_and_what_was_meant() {
+    for (line, expected) in [
+        ("MOVE a", "line 1, column 1: error: there is no instruction 'MOVE' (did you mean MOV?)"),
+        ("  xyzzy", "line 1, column 3: error: there is no instruction 'xyzzy'"),
+        (
+            "MOVP a PT=1000 CN=0 S V=0 POST",
+            "line 1, column 11: error: point: 1000 is out of range (a number, 0 to 999)",
+        ),
+        (
+            "MOVP a XT=1 CN=0 S V=0 POST",
+            "line 1, column 8: error: PT= is expected, not 'XT=1' \
+             (it is written MOVP a|i PT=<point> CN=<counter> S|T V=<speed> POST|PASS)",
+        ),
+        ("CNT CN1", "line 1, column 8: error: = is missing (it is written CNT CN<counter>=<count>)"),
+        (
+            "CNT CN1=",
+            "line 1, column 9: error: count is missing: a number, 0 to 9999 (it is written CNT CN<counter>=<count>)",
+        ),
+        ("HOME now", "line 1, column 6: error: 'now' is too much (it is written HOME)"),
+        ("SVON W", "line 1, column 6: error: axes: 'W' is not ALL, X, Y, Z or R"),
+        ("OUT STN=0 PN1=.......2", "line 1, column 15: error: data: '.......2' is not eight of 0, 1 and ."),
+        (
+            "JMP TAG=",
+            "line 1, column 9: error: tag is missing: a number, 1 to 999, or a label (it is written JMP TAG=<tag>)",
+        ),
+        ("JMP TAG=7", "line 1, column 9: error: there is no tag 007 in the program (a controller stops with error A1)"),
+        ("JMP TAG=7x", "line 1, column 9: error: tag: '7x' is no tag (001 to 999) and no label"),
+        ("JMP TAG=1000", "line 1, column 9: error: tag: 1000 is out of range (a number, 1 to 999)"),
+        ("pick: JMP TAG=pikc", "line 1, column 15: error: there is no label 'pikc' (did you mean pick?)"),
+        ("1st: NOP", "line 1, column 1: error: '1st:' is no step number"),
+        (
+            "to do: NOP",
+            "line 1, column 1: error: 'to do' is no label \
+             (a label begins with a letter, and has letters, digits, _ and - in it)",
+        ),
+        ("a=1000: JMP TAG=a", "line 1, column 1: error: the tag of label a is a number, 1 to 999"),
+        ("a: JMP TAG=a\nA: NOP", "line 2, column 1: error: label A is there already, in line 1"),
+        (
+            "TAG TAG=5\nb=5: NOP",
+            "line 2, column 1: error: tag 005 is there already, in line 1 (a controller stops with error A2)",
+        ),
+        ("0001", "line 1, column 5: error: there is no instruction behind the step number"),
+        (
+            "0001 NOP\n0003 NOP",
+            "line 2, column 1: error: step number 3 is expected to be 0002: they run on by one \
+             (instructions need no step numbers)",
+        ),
+        (
+            "RSMV a X=0 Y=0 Z=0 R=0 S V=0 POST",
+            "line 1, column 1: warning: RSMV never stops at its place: POST is taken as PASS",
+        ),
+        ("0005 NOP", "line 1, column 1: warning: the file counts from 5; its first instruction is step 1 nevertheless"),
+        ("ｍOV", "line 1, column 1: error: character '\\u{ff4d}' cannot be here (it is a wide character: write 'm')"),
+        ("NOP \u{b}", "line 1, column 5: error: character '\\u{b}' cannot be here"),
+    ] {
+        assert_eq!(finding(line), expected);
+    }
+}
+
+#[test]
+fn all_mistakes_are_told_in_the_order_of_the_text() {
+    let text = "JMP TAG=nowhere\nACC A=21\nMOV a X=9000 Y=0 Z=0 R=0 Q V=11 POST\nEMD\n";
+    let found = findings(text);
+    let places: Vec<_> = found.iter().map(|finding| finding.split(": ").next().unwrap().to_owned()).collect();
+    assert_eq!(
+        places,
+        [
+            "line 1, column 9",
+            "line 2, column 7",
+            "line 3, column 9",
+            "line 3, column 26",
+            "line 3, column 30",
+            "line 4, column 1"
+        ],
+        "{found:?}"
+    );
+    assert!(check(text.as_bytes(), 10).program.is_none());
+    let endless = findings("EMD\n".repeat(1000));
+    assert_eq!(endless.len(), 100);
+    assert!(endless[99].contains("more errors"));
+}
+
+#[test]
+fn what_only_looks_wrong_is_no_error() {
+    assert_eq!(findings("a: NOP\nJMP TAG=a"), [] as [&str; 0]);
+    assert_eq!(
+        findings("a: END\n"),
+        ["line 1, column 1: warning: nothing jumps to label a \
+             (if something outside names its tag, give it one: a=10:)",]
+    );
+    assert_eq!(
+        findings("a=5: SPD V=1\n"),
+        ["line 1, column 6: warning: the program does not end: SPD is its last instruction (add END)"]
+    );
+    assert_eq!(
+        findings("END\nNOP\nOUT STN=0 PN1=1.......\nTAG TAG=1\nRET"),
+        ["line 3, column 1: warning: nothing reaches this step: END before it never goes on here"]
+    );
+    assert_eq!(
+        findings("DEC D=1\nDEC D=2\nBRAC CN=1 OFS=10\nPSEL"),
+        [
+            "line 1, column 1: note: only KCA-25-M10, KCA-25-M40, KCA-25-M80 have DEC",
+            "line 3, column 1: note: where BRAC jumps to depends on counters and inputs, and is not checked; \
+             2 steps do so",
+        ]
+    );
+}
+
+#[test]
+fn a_program_must_fit() {
+    let text = "NOP\nHOME\nhere: END\n";
+    let found = |room| {
+        let checked = check(text.as_bytes(), room);
+        checked.errors().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert_eq!(found(4), [] as [&str; 0]);
+    assert_eq!(
+        found(3),
+        ["line 3, column 7: error: step 4 is one too many: the task has room for 3 \
+             (the machine parameter E22 (task-steps) says how many)",]
+    );
+    assert_eq!(found(0).len(), 1);
+    let much = check("NOP\n".repeat(20_000).as_bytes(), usize::MAX);
+    assert_eq!(much.errors().count(), 1);
+}
+
+#[test]
+fn bytes_that_are_no_text_are_told() {
+    for (bytes, expected) in [
+        (
+            &b"END # \xE9t\xE9\nNOP # \xFF"[..],
+            "line 1, column 7: error: byte E9 is not UTF-8; there is more such text, in 2 lines in all (save the file as UTF-8)",
+        ),
+        (b"NO\xE9", "line 1, column 3: error: byte E9 is not UTF-8 (save the file as UTF-8)"),
+        (
+            b"NOP\nE\0N\0D\0",
+            "line 2, column 2: error: there is a NUL; the rest is not read (this is no text file, or one in UTF-16: save it as UTF-8)",
+        ),
+        (b"\xFF\xFEE\0", "line 1, column 1: error: the file is UTF-16 (save it as UTF-8)"),
+        (b"\xEF\xBB\xBFEND", "line 1, column 1: note: the file begins with a byte order mark, which is passed over"),
+        (b"HOME\r\nEND\r\n", "line 1, column 5: note: lines end in CR LF, of which the CR is passed over"),
+        (b"HOME\rEND", "line 1, column 5: error: character '\\r' cannot be here"),
+        (b"", "line 1, column 1: error: there is no instruction in the file"),
+        (b"# nothing\n", "line 1, column 1: error: there is no instruction in the file"),
+    ] {
+        assert_eq!(findings(bytes), [expected]);
+    }
+}
+
+#[test]
+fn a_listing_reads_back() {
+    let steps: Vec<Record> = INSTRUCTIONS
+        .iter()
+        .map(|row| {
+            let values = row.layout.fields.iter().map(least);
+            row.layout.record(values.collect()).unwrap()
+        })
+        .chain(["END", "NOP", "NOP"].map(|text| request::instruction(text).unwrap()))
+        .collect();
+    for numbered in [false, true] {
+        let listing = listing(&steps, numbered, &Rows::new());
+        assert_eq!(listing.left_out, 2);
+        let program = check(listing.text.as_bytes(), MOST_STEPS).program.unwrap();
+        assert_eq!(program.steps.len(), steps.len() - 2);
+        let same = program.steps.iter().zip(&steps).filter(|(step, record)| step.record == **record).count();
+        // But for RSMV, which passes.
+        assert_eq!(same, program.steps.len() - 1);
+    }
+}
+
+/// A value that a field may have.
+fn least(field: &crate::controller::toyo::field::Field) -> crate::controller::toyo::field::Value {
+    use crate::controller::toyo::field::{Form, Mask, Value};
+    match field.form {
+        Form::Number(number) => Value::Number(number.least),
+        Form::Word(words) => Value::Word(words[0].text),
+        _ => Value::Mask(Mask::default()),
+    }
+}
+
+#[test]
+fn a_listing_explains_what_it_names() {
+    let steps = ["SPD V=05", "MOVP a PT=001 CN=00 S V=00 POST", "JMP TAG=003", "TAG TAG=003", "END"]
+        .map(|text| request::instruction(text).unwrap());
+    assert_eq!(uses(&steps).into_iter().collect::<Vec<_>>(), [("T1", 1), ("T2", 5)]);
+    let mut rows = Rows::new();
+    for (id, row, text) in
+        [("T1", 1, "T1 PT=001 X=+0100.00 Y=+0020.00 Z=+0000.00 R=+0000.00"), ("T2", 5, "T2 V05=0250.0")]
+    {
+        rows.insert(
+            (id, row),
+            crate::controller::toyo::table::Parameter::named(id).unwrap().layout.parse(text).unwrap(),
+        );
+    }
+    assert_eq!(
+        listing(&steps, true, &rows).text,
+        "\
+0001  SPD V=05                         # speed 5: 250.0 mm/s
+0002  MOVP a PT=001 CN=00 S V=00 POST  # point 1: x 100.00 mm, y 20.00 mm, z 0.00 mm, r 0.00 mm
+0003  JMP TAG=003                      # tag 003 is step 4
+0004  TAG TAG=003
+0005  END
+"
+    );
+    let nops = ["NOP", "NOP"].map(|text| request::instruction(text).unwrap());
+    let empty = listing(&nops, false, &rows);
+    assert_eq!((empty.text.lines().next(), empty.left_out), (Some("NOP"), 1));
+    assert_eq!(listing(&[], false, &rows).text, "");
+}
+
+#[test]
+fn five_thousand_steps_are_read_whole() {
+    let mut text = String::new();
+    for step in 0..999 {
+        text.push_str(&format!("label{step}: MOV a X={step} Y=0 Z=0 R=0 S V=1 POST\nJMPC TAG=label{step} CN1>=5\n"));
+    }
+    text.push_str(&"JMP TAG=label998\nNOP\n".repeat(1001));
+    text.push_str("END\n");
+    let checked = check(text.as_bytes(), 5000);
+    assert_eq!(checked.errors().count(), 0, "{:?}", checked.errors().next());
+    assert_eq!(checked.program.unwrap().steps.len(), 5000);
+    let much = text.replace("label5:", "label5: label5b:");
+    assert!(check(much.as_bytes(), 5000).errors().any(|finding| finding.message.contains("no tag left")));
+}
