@@ -7,8 +7,14 @@ pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
         return None;
     }
     let word = word.to_lowercase();
-    let scored = known.into_iter().map(|other| (strsim::jaro_winkler(&word, &other.to_lowercase()), other));
+    let scored = known.into_iter().map(|other| (likeness(&word, &other.to_lowercase()), other));
     scored.filter(|(score, _)| *score > 0.75).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, other)| other)
+}
+
+/// One slip of the fingers counts more than any likeness: short words have little of it.
+fn likeness(word: &str, other: &str) -> f64 {
+    let slip = if word.len() > 2 && strsim::osa_distance(word, other) == 1 { 1.0 } else { 0.0 };
+    strsim::jaro_winkler(word, other) + slip
 }
 
 #[cfg(test)]
