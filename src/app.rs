@@ -72,6 +72,7 @@ fn run(cli: Cli) -> Result<(), Stopped> {
     let done = runtime.block_on(async {
         match cli.command {
             Top::Yerc(noun) => run.robots(&*noun.command()).await,
+            Top::Toyo(noun) => run.robots(&*noun.command()).await,
             Top::Common(common) => common.run(&run).await,
         }
     });

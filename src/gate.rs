@@ -15,6 +15,18 @@ pub enum OnInterrupt {
     Leave,
 }
 
+/// What a command wants beyond the usual, because what it does cannot be taken back.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Demand {
+    /// A question before a motion, as everywhere.
+    #[default]
+    Usual,
+    /// `--yes` on the command line, and nothing less; says why, as in "a change of E06 needs a power cycle".
+    Flag(String),
+    /// This word, typed, on a real controller; `--yes` stands for it.
+    Word(&'static str),
+}
+
 /// What the operator allowed beforehand.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Gate {
@@ -29,7 +41,14 @@ pub struct Gate {
 impl Gate {
     /// Lets a command of `risk` through to `robot`, asking where the contract wants it. `intent` says what will happen,
     /// as in "start the selected job".
-    pub fn pass(&self, screen: &Screen, robot: &Robot, risk: Risk, intent: &str) -> Result<(), Failure> {
+    pub fn pass(
+        &self,
+        screen: &Screen,
+        robot: &Robot,
+        risk: Risk,
+        demand: &Demand,
+        intent: &str,
+    ) -> Result<(), Failure> {
         if risk == Risk::Read || self.dry_run {
             return Ok(());
         }
@@ -37,20 +56,27 @@ impl Gate {
             return Err(Failure::new(Kind::RefusedHere, format!("{} is read-only", robot.label()))
                 .hint("remove read_only from its entry in robots.toml if it may be changed"));
         }
-        if risk < Risk::Motion || self.yes || robot.target.value.is_simulated() {
+        let refused = |message: String| Failure::new(Kind::RefusedHere, message);
+        match demand {
+            Demand::Flag(why) if !self.yes => {
+                return Err(refused(format!("not confirmed: {why}")).hint("add --yes if it is meant"));
+            }
+            Demand::Usual if risk < Risk::Motion => return Ok(()),
+            _ => {}
+        }
+        if self.yes || robot.target.value.is_simulated() {
             return Ok(());
         }
-        let refused = |message: String| Failure::new(Kind::RefusedHere, message);
         if !screen.can_ask() {
             return Err(refused(format!("not confirmed: on {} this would {intent}", robot.label()))
                 .hint("add --yes when nobody is in the cell, or --dry-run to see what would be sent"));
         }
         screen.ask_note(&format!("{}: a {} controller, not the built-in simulator", robot.label(), robot.family));
-        if screen.confirm(&format!("This will {intent}. Go on?"))? {
-            Ok(())
-        } else {
-            Err(refused("not confirmed; nothing was sent".to_owned()))
-        }
+        let agreed = match demand {
+            Demand::Word(word) => screen.confirm_word(&format!("This will {intent}."), word)?,
+            Demand::Usual | Demand::Flag(_) => screen.confirm(&format!("This will {intent}. Go on?"))?,
+        };
+        if agreed { Ok(()) } else { Err(refused("not confirmed; nothing was sent".to_owned())) }
     }
 
     /// Refuses to move several robots that were not each named.

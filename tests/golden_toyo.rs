@@ -45,7 +45,8 @@ fn holds(about: &str, tx: &str, rx: &str) {
     let request = Request::parse(tx).unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
     request.check().unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
     assert_eq!(request.text(), tx, "{about}");
-    if let Some(content) = request.content().unwrap() {
+    let content = request.content().unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
+    if let Some(content) = content {
         let body = content.emit().unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
         assert!(tx.ends_with(&body), "{about}: {tx}: made anew as {body}");
     }

@@ -6,7 +6,11 @@
 
 pub mod common;
 pub mod interrupt;
+pub mod orders;
+pub mod overview;
 pub mod run;
+pub mod toyo;
+pub mod trace;
 pub mod yerc;
 
 use std::future::Future;
@@ -19,6 +23,7 @@ use serde_json::Value;
 
 use crate::controller::Risk;
 use crate::failure::Failure;
+use crate::gate::Demand;
 use crate::output::Screen;
 use crate::output::view::View;
 use crate::settings::{self, Robot};
@@ -61,8 +66,8 @@ pub struct Access {
 /// A controller family as the commands see it.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Family: Sized + 'static {
-    /// Its name.
-    const FAMILY: settings::target::Family;
+    /// Its name; `None` for what is for robots of any family.
+    const FAMILY: Option<settings::target::Family>;
     /// A connection to one robot.
     type Link;
 
@@ -99,6 +104,11 @@ pub trait Command {
         String::new()
     }
 
+    /// What it wants beyond the usual question.
+    fn demand(&self) -> Demand {
+        Demand::Usual
+    }
+
     /// Does it. In a dry run the future stays pending once all that can be foreseen is noted.
     async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
 }
@@ -114,6 +124,10 @@ pub trait AnyCommand<F: Family> {
     fn risk(&self) -> Risk;
     /// See [`Command::intent`].
     fn intent(&self) -> String;
+    /// See [`Command::demand`].
+    fn demand(&self) -> Demand;
+    /// What it reports, if it takes no robot to do it.
+    fn without_robot(&self, screen: &Screen) -> Option<Outcome>;
     /// See [`Command::run`].
     fn run<'a>(&'a self, context: Context<'a, F>) -> Pin<Box<dyn Future<Output = Outcome> + 'a>>;
 }
@@ -155,11 +169,69 @@ impl<C: Command> AnyCommand<C::Family> for C {
         Command::intent(self)
     }
 
+    fn demand(&self) -> Demand {
+        Command::demand(self)
+    }
+
+    fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {
+        None
+    }
+
     fn run<'a>(&'a self, context: Context<'a, C::Family>) -> Pin<Box<dyn Future<Output = Outcome> + 'a>> {
         Box::pin(async move {
             let report = Command::run(self, context).await?;
             Ok(Box::new(report) as Box<dyn AnyReport>)
         })
+    }
+}
+
+/// A command of a family that takes no robot: it is about files, or about this machine.
+pub trait Desk {
+    /// What it reports.
+    type Report: Report + 'static;
+    /// `toyo.program.check`: its name in envelopes and schemas.
+    const ID: &'static str;
+
+    /// Does it.
+    fn run(&self, screen: &Screen) -> Result<Self::Report, Failure>;
+}
+
+/// A [`Desk`] command among those for robots.
+#[derive(Debug, clap::Args)]
+pub struct AtDesk<C: clap::Args> {
+    #[command(flatten)]
+    command: C,
+}
+
+impl<C: Desk + clap::Args> AtDesk<C> {
+    fn report(&self, screen: &Screen) -> Outcome {
+        Ok(Box::new(self.command.run(screen)?))
+    }
+}
+
+impl<F: Family, C: Desk + clap::Args + 'static> AnyCommand<F> for AtDesk<C> {
+    fn id(&self) -> &'static str {
+        C::ID
+    }
+
+    fn risk(&self) -> Risk {
+        Risk::Read
+    }
+
+    fn intent(&self) -> String {
+        String::new()
+    }
+
+    fn demand(&self) -> Demand {
+        Demand::Usual
+    }
+
+    fn without_robot(&self, screen: &Screen) -> Option<Outcome> {
+        Some(self.report(screen))
+    }
+
+    fn run<'a>(&'a self, context: Context<'a, F>) -> Pin<Box<dyn Future<Output = Outcome> + 'a>> {
+        Box::pin(async move { self.report(context.screen) })
     }
 }
 
@@ -192,6 +264,16 @@ pub trait Noun<F: Family> {
 
 impl<C: Command + 'static> Noun<C::Family> for C {
     fn command(self) -> Box<dyn AnyCommand<C::Family>> {
+        Box::new(self)
+    }
+
+    fn schemas() -> Vec<SchemaEntry> {
+        vec![SchemaEntry::of::<C::Report>(C::ID)]
+    }
+}
+
+impl<F: Family, C: Desk + clap::Args + 'static> Noun<F> for AtDesk<C> {
+    fn command(self) -> Box<dyn AnyCommand<F>> {
         Box::new(self)
     }
 

@@ -17,7 +17,7 @@ use super::interrupt::{catch_interrupts, interruptible};
 use super::{Access, AnyCommand, AnyReport, Context, Family, Outcome, Report};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
-use crate::gate::{Gate, OnInterrupt};
+use crate::gate::{Demand, Gate, OnInterrupt};
 use crate::output::envelope::Envelope;
 use crate::output::jq::Filter;
 use crate::output::view::{Table, View};
@@ -93,16 +93,19 @@ impl Run {
     /// Runs `command` on the robots it is for, and reports.
     pub async fn robots<F: Family>(&self, command: &dyn AnyCommand<F>) -> Result<(), Stopped> {
         let risk = command.risk();
+        if let Some(outcome) = command.without_robot(&self.screen) {
+            return self.local(command.id(), &*outcome?);
+        }
         if risk > Risk::Read && self.repeat.is_wanted() {
             return Err(Failure::usage("--watch, --count and --until repeat commands that only read")
                 .hint("run this command once, and watch `status` or `position`")
                 .into());
         }
-        let robots = self.sources.robots(Some(F::FAMILY))?;
+        let robots = self.sources.robots(F::FAMILY)?;
         let selection = &self.sources.selection;
         let each_named = robots.iter().all(|robot| selection.robots.contains(&robot.name));
         Gate::pass_many(risk, &robots, each_named)?;
-        if risk == Risk::Motion {
+        if risk == Risk::Motion || command.demand() != Demand::Usual {
             // From here on Ctrl-C, at a question too, ends in a message and an exit code instead of a killed process.
             catch_interrupts();
             for robot in &robots {
@@ -110,7 +113,7 @@ impl Run {
             }
         }
         for robot in &robots {
-            let passed = self.pass_gate(robot, risk, command.intent()).await;
+            let passed = self.pass_gate(robot, command).await;
             passed.map_err(|failure| Stopped::at(robot, command, failure))?;
         }
         self.begin_trace()?;
@@ -121,13 +124,14 @@ impl Run {
     }
 
     /// Passes the gate. A question waits for its answer on a thread of its own, so that Ctrl-C is heard meanwhile.
-    async fn pass_gate(&self, robot: &Robot, risk: Risk, intent: String) -> Result<(), Failure> {
+    async fn pass_gate<F: Family>(&self, robot: &Robot, command: &dyn AnyCommand<F>) -> Result<(), Failure> {
         let (gate, screen) = (self.gate, self.screen);
-        if risk < Risk::Motion {
-            return gate.pass(&screen, robot, risk, &intent);
+        let (risk, demand, intent) = (command.risk(), command.demand(), command.intent());
+        if risk < Risk::Motion && demand == Demand::Usual {
+            return gate.pass(&screen, robot, risk, &demand, &intent);
         }
         let robot = robot.clone();
-        let asked = tokio::task::spawn_blocking(move || gate.pass(&screen, &robot, risk, &intent));
+        let asked = tokio::task::spawn_blocking(move || gate.pass(&screen, &robot, risk, &demand, &intent));
         match interruptible(asked).await {
             Ok(answered) => answered.map_err(|error| Failure::local(format!("the question failed: {error}")))?,
             Err(failure) => {
@@ -138,10 +142,10 @@ impl Run {
     }
 
     /// Reports what a command without a robot has to say.
-    pub fn local(&self, id: &str, report: &impl Report) -> Result<(), Stopped> {
-        let failure = Report::failure(report);
+    pub fn local(&self, id: &str, report: &dyn AnyReport) -> Result<(), Stopped> {
+        let failure = report.failure();
         if self.is_for_people() {
-            self.show(&Report::view(report), Place::Alone)?;
+            self.show(&report.view(), Place::Alone)?;
         } else {
             let envelope = Envelope::local(id, report.data()?);
             self.emit(&Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope })?;

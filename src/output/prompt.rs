@@ -14,7 +14,16 @@ impl Screen {
     /// Asks `question` and takes yes or no; an empty answer is no. The terminal stays as it is, so that whatever ends the
     /// process leaves nothing behind.
     pub fn confirm(&self, question: &str) -> Result<bool, Failure> {
-        Self::stderr(&format!("{} [y/N] ", super::escape::line(question)));
+        Self::ask(&format!("{question} [y/N]")).map(|answer| is_yes(&answer))
+    }
+
+    /// Says what will happen, and goes on if the answer is `word`.
+    pub fn confirm_word(&self, what: &str, word: &str) -> Result<bool, Failure> {
+        Self::ask(&format!("{what} Type '{word}' to go on:")).map(|answer| answer.trim_ascii() == word.as_bytes())
+    }
+
+    fn ask(question: &str) -> Result<Vec<u8>, Failure> {
+        Self::stderr(&format!("{} ", super::escape::line(question)));
         let mut answer = Vec::new();
         // A terminal that cannot be read any more, as it was closed, gives no answer either.
         if std::io::stdin().lock().read_until(b'\n', &mut answer).unwrap_or(0) == 0 {
@@ -22,7 +31,7 @@ impl Screen {
             return Err(Failure::new(Kind::RefusedHere, "not confirmed: there was no answer; nothing was sent")
                 .hint("answer the question, or use --yes"));
         }
-        Ok(is_yes(&answer))
+        Ok(answer)
     }
 }
 

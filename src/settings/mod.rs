@@ -130,8 +130,14 @@ pub struct Sources {
     pub inventory: Inventory,
 }
 
-/// Longest wait for an answer unless set: a controller answers in 5 to 20 ms, a busy one within seconds.
-const TIMEOUT: Duration = Duration::from_secs(3);
+/// Longest wait for an answer unless set. Over a network a controller answers in 5 to 20 ms, a busy one within seconds;
+/// over a serial line, within one second (TO 1-3).
+const fn timeout(family: Family) -> Duration {
+    match family {
+        Family::Yerc | Family::Yrcx => Duration::from_secs(3),
+        Family::Toyo => Duration::from_millis(1500),
+    }
+}
 /// Repetitions of a read unless set.
 const RETRIES: u32 = 3;
 
@@ -181,7 +187,9 @@ impl Sources {
     }
 
     fn unnamed(&self, target: Target, origin: Origin, family: Option<Family>) -> Result<Robot, Failure> {
-        let Some(family) = family.or(target.family()) else {
+        // A simulator for a command of any family: the first one.
+        let simulated = target.is_simulated().then_some(Family::Yerc);
+        let Some(family) = family.or(target.family()).or(simulated) else {
             return Err(Failure::usage(format!("target '{target}' does not tell the family"))
                 .hint("name the family: `armctl yerc …`"));
         };
@@ -253,7 +261,7 @@ impl Sources {
             name,
             family,
             target,
-            timeout: setting!(timeout, TIMEOUT),
+            timeout: setting!(timeout, timeout(family)),
             retries: setting!(retries, RETRIES),
             encoding: setting!(encoding, Encoding::default()),
             read_only: setting!(read_only, false),

@@ -11,8 +11,8 @@ pub mod sim;
 
 use clap::Subcommand;
 
+use super::overview::Overview;
 use super::run::{Run, Stopped};
-use super::yerc::overview::Overview;
 
 /// Commands that every family shares.
 #[derive(Debug, Subcommand)]

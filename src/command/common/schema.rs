@@ -3,9 +3,10 @@
 use clap::Args;
 use serde_json::json;
 
+use crate::command::overview::{Fleet, Overview};
 use crate::command::run::{Rehearsal, Run};
-use crate::command::yerc::overview::Overview;
-use crate::command::yerc::{Yerc, link};
+use crate::command::toyo::{self, Toyo};
+use crate::command::yerc::{self, Yerc};
 use crate::command::{Noun, SchemaEntry};
 use crate::failure::Failure;
 use crate::settings::inventory::nearest;
@@ -37,8 +38,9 @@ impl SchemaOf {
 
 /// The schemas of all reports.
 pub fn all() -> Vec<SchemaEntry> {
-    let mut all = <Yerc as Noun<link::Yerc>>::schemas();
-    all.extend(<Overview as Noun<link::Yerc>>::schemas());
+    let mut all = <Yerc as Noun<yerc::Family>>::schemas();
+    all.extend(<Toyo as Noun<toyo::Family>>::schemas());
+    all.extend(<Overview as Noun<Fleet>>::schemas());
     all.extend([
         SchemaEntry::of::<super::decode::Frames>("decode.yerc"),
         SchemaEntry::of::<Rehearsal>("dry-run"),

@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::Family;
 use super::link::Link;
-use super::orders::{Done, usage};
+use super::orders::usage;
+use crate::command::orders::Done;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;

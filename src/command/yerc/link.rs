@@ -99,7 +99,7 @@ struct Totals {
 }
 
 impl Family for Yerc {
-    const FAMILY: target::Family = target::Family::Yerc;
+    const FAMILY: Option<target::Family> = Some(target::Family::Yerc);
     type Link = Link;
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {

@@ -11,7 +11,7 @@ pub mod link;
 mod motion;
 mod moves;
 mod orders;
-pub mod overview;
+mod overview;
 mod position;
 mod raw;
 mod refusal;
@@ -25,6 +25,7 @@ mod var;
 mod writes;
 
 pub use link::Yerc as Family;
+pub use overview::overview;
 
 use crate::command::{Verbs, commands};
 

@@ -1,45 +1,14 @@
 //! Orders of one frame: servo, hold, hlock, cycle, say.
 
 use clap::{Args, ValueEnum};
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::Family;
-use crate::command::{Command, Context, Report};
+use crate::command::orders::{Done, Switch};
+use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yerc::payload::CycleMode;
 use crate::controller::yerc::query::{self, Query};
 use crate::failure::Failure;
-use crate::output::view::View;
-
-/// What the controller accepted.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Done {
-    /// In words.
-    done: String,
-}
-
-impl Done {
-    /// In words.
-    pub fn new(done: impl Into<String>) -> Self {
-        Self { done: done.into() }
-    }
-}
-
-impl Report for Done {
-    fn view(&self) -> View {
-        View::text(self.done.clone())
-    }
-}
-
-/// On or off.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Switch {
-    /// Switch it on
-    On,
-    /// Switch it off
-    Off,
-}
 
 /// A command whose risk and effect are those of a single order: its type, arguments, id, the order as a query, what it
 /// will do, and what it did.

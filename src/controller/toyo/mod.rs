@@ -9,5 +9,6 @@ pub(crate) mod nearest;
 pub mod program;
 pub mod request;
 pub mod session;
+pub mod simulator;
 pub mod status;
 pub mod table;

@@ -95,12 +95,20 @@ impl Request {
         Ok(Self { row, record })
     }
 
-    /// A request without values.
+    /// A request with values that are known to fit.
     ///
     /// # Panics
-    /// If the command has fields, which a test of the callers shows.
+    /// If they do not, which any test of the caller shows.
+    pub fn of<const N: usize>(command: Command, values: [Value; N]) -> Self {
+        Self::new(command, values.into()).expect("the caller's values fit")
+    }
+
+    /// A request of a command without fields.
+    ///
+    /// # Panics
+    /// If it has some, which any test of the caller shows.
     pub fn bare(command: Command) -> Self {
-        Self::new(command, Vec::new()).expect("a command without fields")
+        Self::of(command, [])
     }
 
     /// Reads a parameter, or a row of a table.

@@ -20,7 +20,7 @@ pub(super) fn check(resolved: &Resolved, findings: &mut Findings) {
             before = Some(row.op);
         }
     }
-    if let Some((row, at)) = steps().filter(|(row, _)| row.op != Op::Nop).next_back()
+    if let Some((row, at)) = steps().rfind(|(row, _)| row.op != Op::Nop)
         && !never_goes_on(row.op)
         && !jumps_somewhere(row.op)
     {

@@ -1,0 +1,155 @@
+//! `armctl status`: one line a robot, of whichever family.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
+
+use super::{Access, Command, Context, Family, Report, toyo, yerc};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::output::view::{Cell, Table, Tone, View};
+use crate::settings::{Robot, target};
+
+/// Robots of any family, for what all of them can be asked.
+#[derive(Debug)]
+pub struct Fleet;
+
+/// A connection to a robot of any family.
+#[derive(Debug)]
+pub enum Link {
+    /// To an FS100 or DX200.
+    Yerc(Box<yerc::link::Link>),
+    /// To a Toyo controller.
+    Toyo(Box<toyo::link::Link>),
+}
+
+impl Family for Fleet {
+    const FAMILY: Option<target::Family> = None;
+    type Link = Link;
+
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
+        match robot.family {
+            target::Family::Yerc => Ok(Link::Yerc(Box::new(yerc::Family::connect(robot, access, screen).await?))),
+            target::Family::Toyo => Ok(Link::Toyo(Box::new(toyo::Family::connect(robot, access, screen).await?))),
+            target::Family::Yrcx => {
+                Err(Failure::usage(format!("{}: this version does not speak yrcx yet", robot.label()))
+                    .hint("leave it out: name the robots with -r"))
+            }
+        }
+    }
+
+    async fn halt(link: &mut Link) -> Result<String, Failure> {
+        match link {
+            Link::Yerc(link) => yerc::Family::halt(link).await,
+            Link::Toyo(link) => toyo::Family::halt(link).await,
+        }
+    }
+
+    fn rehearsed(link: &mut Link) -> Vec<Value> {
+        match link {
+            Link::Yerc(link) => yerc::Family::rehearsed(link),
+            Link::Toyo(link) => toyo::Family::rehearsed(link),
+        }
+    }
+
+    async fn close(link: Link, screen: &Screen) -> Result<(), Failure> {
+        match link {
+            Link::Yerc(link) => yerc::Family::close(*link, screen).await,
+            Link::Toyo(link) => toyo::Family::close(*link, screen).await,
+        }
+    }
+}
+
+/// Whether robots answer, their mode, servo, alarm and position.
+#[derive(Debug, Args)]
+pub struct Overview {}
+
+impl Command for Overview {
+    type Family = Fleet;
+    type Report = OverviewReport;
+    const ID: &'static str = "status";
+
+    async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport, Failure> {
+        let found = match context.link {
+            Link::Yerc(link) => yerc::overview(link).await,
+            Link::Toyo(link) => toyo::overview(link).await,
+        };
+        match found {
+            Ok(report) => Ok(report),
+            Err(failure) if failure.kind == Kind::NoAnswer => {
+                Ok(OverviewReport { failure: Some(failure), ..OverviewReport::default() })
+            }
+            Err(failure) => Err(failure),
+        }
+    }
+}
+
+/// The state of one robot in a line.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+pub struct OverviewReport {
+    /// Where it is false, all that follows is null.
+    pub reachable: bool,
+    /// `teach` or `play` (yerc); `automatic`, `step` or `program` (toyo); null if unknown.
+    pub mode: Option<&'static str>,
+    /// Servo power.
+    pub servo_on: Option<bool>,
+    /// A job or program runs, or an axis moves.
+    pub running: Option<bool>,
+    /// Held or paused.
+    pub held: Option<bool>,
+    /// An alarm is present (yerc).
+    pub alarm: Option<bool>,
+    /// An error is present.
+    pub error: Option<bool>,
+    /// The first robot in base coordinates.
+    pub position: Option<PositionMm>,
+    /// Why it is not reachable.
+    #[serde(skip)]
+    pub failure: Option<Failure>,
+}
+
+/// A place in base coordinates.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct PositionMm {
+    /// X.
+    pub x_mm: f64,
+    /// Y.
+    pub y_mm: f64,
+    /// Z.
+    pub z_mm: f64,
+}
+
+impl Report for OverviewReport {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["reachable", "mode", "servo", "state", "alarm", "x y z (mm)"], "");
+        if !self.reachable {
+            let dash = || Cell::from("-");
+            table.row([Cell::from("no").tone(Tone::Bad), dash(), dash(), dash(), dash(), dash()]);
+            return View::table(table);
+        }
+        let state = match (self.held, self.running) {
+            (Some(true), _) => Cell::from("hold").tone(Tone::Warning),
+            (_, Some(true)) => Cell::from("running").tone(Tone::Good),
+            _ => "stopped".into(),
+        };
+        let alarm = match (self.alarm, self.error) {
+            (Some(true), _) => Cell::from("alarm").tone(Tone::Bad),
+            (_, Some(true)) => Cell::from("error").tone(Tone::Bad),
+            _ => "none".into(),
+        };
+        table.row([
+            Cell::from("yes").tone(Tone::Good),
+            Cell::maybe(self.mode),
+            Cell::maybe(self.servo_on.map(Cell::switch)),
+            state,
+            alarm,
+            Cell::maybe(self.position.as_ref().map(|at| format!("{:.3} {:.3} {:.3}", at.x_mm, at.y_mm, at.z_mm))),
+        ]);
+        View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.failure.clone()
+    }
+}

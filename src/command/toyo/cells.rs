@@ -1,0 +1,100 @@
+//! What the controller keeps in its EEPROM, which takes about a million rewrites of each cell (TO 2-1, note 2).
+//!
+//! So nothing is written that is there already. What is written is read back: a worn cell says `@OK` and keeps what it
+//! had (ambiguity R29).
+
+use std::collections::HashMap;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::link::Link;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::request::Request;
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+
+/// One thing that is stored: how it is read and written, and what it should be.
+#[derive(Debug, Clone)]
+pub struct Cell {
+    /// Asks for it.
+    pub read: Request,
+    /// Stores it.
+    pub write: Request,
+    /// What it should be; fields that the answer has under the same names.
+    pub wanted: Record,
+}
+
+/// What became of cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]
+pub struct Cells {
+    /// Written and read back.
+    pub cells_written: u32,
+    /// Held that value already.
+    pub cells_unchanged: u32,
+}
+
+/// How often each cell was written over one link.
+pub type Wear = HashMap<String, u32>;
+
+/// Writes of one cell over one link that are no accident any more.
+const LOOP: u32 = 3;
+
+impl Cells {
+    /// In words: `2 cells written, 1 unchanged`.
+    pub fn in_words(self) -> String {
+        let Self { cells_written: written, cells_unchanged: unchanged } = self;
+        let cells = if written == 1 { "cell" } else { "cells" };
+        match (written, unchanged) {
+            (0, _) => "nothing written: all is stored like that already".to_owned(),
+            (_, 0) => format!("{written} EEPROM {cells} written"),
+            _ => format!("{written} EEPROM {cells} written, {unchanged} unchanged"),
+        }
+    }
+}
+
+impl Link {
+    /// Stores one cell, unless it holds that already. A dry run notes the question and the order, and goes on.
+    ///
+    /// # Errors
+    /// As those of [`Link::order`]; [`Kind::Malformed`] if something else is there afterwards.
+    pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<(), Failure> {
+        if self.is_dry() {
+            self.foresee(&cell.read, "to compare");
+            self.take_host().await?;
+            self.foresee(&cell.write, "if it differs");
+            return Ok(());
+        }
+        if self.holds(cell).await? {
+            cells.cells_unchanged += 1;
+            return Ok(());
+        }
+        self.order(&cell.write).await?;
+        let name = cell.read.text();
+        let wear = self.wear.entry(name.clone()).or_default();
+        *wear += 1;
+        if *wear == LOOP {
+            screen.note(&format!(
+                "warning: {name} was written {LOOP} times in a row; a cell of the EEPROM wears out after about a million"
+            ));
+        }
+        if !self.holds(cell).await? {
+            return Err(Failure::new(
+                Kind::Malformed,
+                format!("the controller accepted {} and holds something else", cell.write.text()),
+            )
+            .hint("the EEPROM may be worn out, or somebody else writes it at the same time"));
+        }
+        cells.cells_written += 1;
+        Ok(())
+    }
+
+    /// Whether a cell holds what it should.
+    async fn holds(&mut self, cell: &Cell) -> Result<bool, Failure> {
+        let answer = self.read(&cell.read).await?;
+        let content =
+            cell.read.answered(&answer).map_err(|error| self.malformed(&answer.written(), &error.to_string()))?;
+        let found = content.unwrap_or(answer);
+        Ok(cell.wanted.pairs().all(|(field, wanted)| found.value(field.name) == Some(wanted)))
+    }
+}

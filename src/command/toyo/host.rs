@@ -1,0 +1,62 @@
+//! `toyo host on|off`: who commands the controller.
+
+use clap::Args;
+
+use super::Family;
+use crate::command::orders::{Done, Switch};
+use crate::command::{Command, Context};
+use crate::controller::Risk;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+
+/// Switches the host ON or OFF, and leaves it so.
+///
+/// Other commands need no `host on`: they take the host and give it back as they found it.
+#[derive(Debug, Args)]
+pub struct Host {
+    /// on: the host commands, the start input does not; off: the other way round
+    #[arg(value_name = "on|off")]
+    to: Switch,
+}
+
+impl Command for Host {
+    type Family = Family;
+    type Report = Done;
+    const ID: &'static str = "toyo.host";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+        let (command, done) = match self.to {
+            Switch::On => (table::Command::Hson, "the host commands; the start input does not"),
+            Switch::Off => (table::Command::Hsof, "the start input commands again; the host does not"),
+        };
+        context.link.order(&Request::bare(command)).await?;
+        Ok(Done::new(done))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{Bench, all_blocks, blocks, intent, objection};
+
+    #[test]
+    fn the_order_goes_out_alone() {
+        assert_eq!(all_blocks(&["host", "on"]).unwrap(), ["@HSON"]);
+        assert_eq!(blocks(&["position"]).unwrap(), ["@MPST"]);
+        assert!(objection(&["host", "maybe"]).contains("maybe"));
+        assert_eq!(intent(&["host", "off"]), "");
+    }
+
+    #[test]
+    fn the_host_stays_as_it_was_switched() {
+        let mut bench = Bench::new("sim:");
+        bench.data(&["host", "on"]);
+        assert_eq!(bench.data(&["status"])["host_on"], true);
+        bench.data(&["host", "off"]);
+        assert_eq!(bench.data(&["status"])["host_on"], false);
+    }
+}

@@ -1,0 +1,521 @@
+//! The connection to a controller: the one driver that moves characters between the session and a line.
+
+use std::convert::Infallible;
+use std::io;
+use std::time::Duration;
+
+use serde_json::json;
+use tokio::time::Instant;
+
+use super::cells::Wear;
+use super::reach;
+use super::refusal;
+use super::simulated::Simulated;
+use super::trace::Trace;
+use crate::command::{Access, Family};
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::layout::{Misfit, Record};
+use crate::controller::toyo::request::{Answer, BlockError, Request};
+use crate::controller::toyo::session::{Counters, Ended, Line, Policy};
+use crate::controller::toyo::status::Status;
+use crate::controller::toyo::table::commands::Command;
+use crate::controller::{Risk, Session as _, Step};
+use crate::failure::{Failure, Kind, plain};
+use crate::output::Screen;
+use crate::settings::Robot;
+use crate::settings::target;
+use crate::transport::stream::Stream;
+use crate::transport::tap::Direction;
+
+/// The toyo family.
+#[derive(Debug)]
+pub struct Toyo;
+
+/// A connection to one controller.
+#[derive(Debug)]
+pub struct Link {
+    transport: Transport,
+    line: Line,
+    policy: Policy,
+    screen: Screen,
+    granted: Risk,
+    label: String,
+    motion: Motion,
+    host: Host,
+    started: Instant,
+    trace: Trace,
+    waited: Duration,
+    /// Whether the line is gone: nothing more is tried on it.
+    is_gone: bool,
+    /// Writes to the EEPROM.
+    pub(super) wear: Wear,
+}
+
+/// How the characters travel.
+#[derive(Debug)]
+enum Transport {
+    Stream(Box<Stream<Simulated>>),
+    /// A dry run: what would be sent is noted.
+    Notes(Vec<serde_json::Value>),
+}
+
+/// What this link set in motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Motion {
+    None,
+    /// An axis, until it is told to stop.
+    Jog,
+    /// A program, a return to origin, servo power.
+    Program,
+}
+
+/// Who commands the controller.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Host {
+    /// Not asked yet.
+    Unknown,
+    /// The host was ON before.
+    Found,
+    /// This link switched it ON, and gives it back.
+    Taken,
+}
+
+/// A controller's "no" (`@NG`): it has no code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Refusal(pub Command);
+
+/// Room for what arrives in one piece.
+const BUFFER: usize = 1024;
+/// How long a stop is tried, the silence after which it is sent again, and the pause between two looks.
+const STOP_WITHIN: Duration = Duration::from_secs(5);
+const REPEAT_STOP: Duration = Duration::from_millis(300);
+const STOPS: u32 = 8;
+const LOOK_EVERY: Duration = Duration::from_millis(50);
+/// A session that waits for nothing is asked again after this.
+const LONG: Duration = Duration::from_secs(3600);
+
+impl Family for Toyo {
+    const FAMILY: Option<target::Family> = Some(target::Family::Toyo);
+    type Link = Link;
+
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
+        let way = reach::way(robot)?;
+        let transport = if access.dry_run {
+            Transport::Notes(Vec::new())
+        } else {
+            Transport::Stream(Box::new(way.open(robot).await?))
+        };
+        let policy = Policy { timeout: robot.timeout.value, retries: robot.retries.value, character: way.character() };
+        Ok(Link {
+            transport,
+            line: Line::new(policy),
+            policy,
+            screen: *screen,
+            granted: access.granted,
+            label: robot.label(),
+            motion: Motion::None,
+            host: Host::Unknown,
+            started: Instant::now(),
+            trace: Trace::open(&access, screen)?,
+            waited: Duration::ZERO,
+            is_gone: false,
+            wear: Wear::new(),
+        })
+    }
+
+    async fn halt(link: &mut Link) -> Result<String, Failure> {
+        let stop = match link.motion {
+            Motion::None => return Ok("nothing was sent that moves the robot".to_owned()),
+            Motion::Jog => jog_stop(),
+            Motion::Program => Request::bare(Command::Stop),
+        };
+        link.screen.note(&format!("stopping the robot: {}", stop.text()));
+        link.granted = link.granted.max(Risk::Write);
+        link.stop(&stop).await?;
+        Ok(format!("the robot was stopped ({})", stop.text()))
+    }
+
+    fn rehearsed(link: &mut Link) -> Vec<serde_json::Value> {
+        link.note_host_off();
+        match &mut link.transport {
+            Transport::Notes(notes) => std::mem::take(notes),
+            Transport::Stream(_) => Vec::new(),
+        }
+    }
+
+    async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
+        let given_back = link.give_back().await;
+        let Counters { sent, received, noise, garbled, foreign, echoes } = link.line.counters();
+        screen.detail(1, &format!("{sent} blocks sent, {received} received in {:.1?}", link.waited));
+        let odd = [(noise, "stray characters"), (garbled, "garbled"), (foreign, "foreign or late"), (echoes, "echoes")];
+        let odd: Vec<String> =
+            odd.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
+        if !odd.is_empty() {
+            screen.detail(1, &format!("on the line: {}", odd.join(", ")));
+        }
+        given_back.and(link.trace.finish())
+    }
+}
+
+impl Link {
+    /// Asks for data; a refusal is a failure.
+    pub async fn read(&mut self, request: &Request) -> Result<Record, Failure> {
+        match self.try_read(request).await? {
+            Ok(record) => Ok(record),
+            Err(Refusal(command)) => Err(refusal::explained(self, command).await),
+        }
+    }
+
+    /// Asks for data; a refusal is an answer.
+    pub async fn try_read(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Failure> {
+        if let Transport::Notes(_) = self.transport {
+            self.note(request, None);
+            std::future::pending::<Infallible>().await;
+        }
+        match self.exchange(request).await? {
+            Answer::Data(record) => Ok(Ok(record)),
+            Answer::Refused => Ok(Err(Refusal(request.command()))),
+            Answer::Done => Err(self.malformed("@OK", "data is expected")),
+        }
+    }
+
+    /// Reads the content of a parameter, a step or a palletizing record; a refusal is a failure.
+    pub async fn read_content(&mut self, request: &Request) -> Result<Record, Failure> {
+        let record = self.read(request).await?;
+        let content =
+            request.answered(&record).map_err(|error| self.malformed(&record.written(), &error.to_string()))?;
+        content.ok_or_else(|| Failure::local(format!("{} has no content", request.text())))
+    }
+
+    /// Gives an order; a refusal is a failure. Takes the host before, where that is needed. A dry run notes it and goes
+    /// on.
+    pub async fn order(&mut self, request: &Request) -> Result<(), Failure> {
+        match self.try_order(request).await? {
+            Ok(()) => Ok(()),
+            Err(Refusal(command)) => Err(refusal::explained(self, command).await),
+        }
+    }
+
+    /// Gives an order; a refusal is an answer.
+    pub async fn try_order(&mut self, request: &Request) -> Result<Result<(), Refusal>, Failure> {
+        if wants_host(request) {
+            self.take_host().await?;
+        }
+        if let Transport::Notes(_) = self.transport {
+            self.note(request, None);
+            return Ok(Ok(()));
+        }
+        Ok(match self.exchange(request).await? {
+            Answer::Refused => Err(Refusal(request.command())),
+            Answer::Done | Answer::Data(_) => Ok(()),
+        })
+    }
+
+    /// Gives an order whose answer is data, such as TYPE; a refusal is a failure.
+    pub async fn order_for(&mut self, request: &Request) -> Result<Record, Failure> {
+        if wants_host(request) {
+            self.take_host().await?;
+        }
+        self.read(request).await
+    }
+
+    /// All five pages of the status.
+    pub async fn status(&mut self) -> Result<Status, Failure> {
+        let mut status = Status::default();
+        for page in 0..=4 {
+            status = status.with(page, self.status_page(page).await?);
+        }
+        Ok(status)
+    }
+
+    /// Some pages of the status; the others are 0.
+    pub async fn status_of(&mut self, pages: &[u8]) -> Result<Status, Failure> {
+        let mut status = Status::default();
+        for page in pages {
+            status = status.with(*page, self.status_page(*page).await?);
+        }
+        Ok(status)
+    }
+
+    async fn status_page(&mut self, page: u8) -> Result<u8, Failure> {
+        // Not `read`: what explains a refusal asks for the status.
+        let Ok(record) = self.try_read(&status_page(page)).await? else { return Err(refusal::mute()) };
+        record.byte("st1").ok_or_else(|| self.malformed(&record.written(), "there is no status in it"))
+    }
+
+    /// Sends a block that is in no table, and returns what came back.
+    pub async fn raw(&mut self, block: &str) -> Result<String, Failure> {
+        if let Transport::Notes(notes) = &mut self.transport {
+            notes.push(json!({ "text": block }));
+            std::future::pending::<Infallible>().await;
+        }
+        self.motion = Motion::Program;
+        self.line.begin_raw(block);
+        match self.drive(Risk::Motion).await? {
+            Ended::Answered(answer) => Ok(answer),
+            ended => Err(self.unanswered(ended, Risk::Motion, "`toyo status` tells how the controller stands")),
+        }
+    }
+
+    /// One request, one answer. Only what changes nothing is sent again after silence.
+    pub async fn exchange(&mut self, request: &Request) -> Result<Answer, Failure> {
+        self.converse(request, request.risk() == Risk::Read).await
+    }
+
+    async fn converse(&mut self, request: &Request, is_repeatable: bool) -> Result<Answer, Failure> {
+        let risk = request.risk();
+        if risk > self.granted {
+            return Err(Failure::local(format!("{} was stopped before it left: it is a {risk:?}", request.text()))
+                .hint("this is a fault of armctl: the command passed the gate as less than it is; please report it"));
+        }
+        request.check().map_err(|error| misuse(&error))?;
+        if risk == Risk::Motion {
+            self.motion = if request.command() == Command::Jgst { Motion::Jog } else { Motion::Program };
+        }
+        self.line.begin(request, is_repeatable);
+        match self.drive(risk).await? {
+            Ended::Answered(block) => {
+                request.answer(&block).map_err(|error| self.malformed(&block, &error.to_string()))
+            }
+            ended => Err(self.unanswered(ended, risk, refusal::telltale(request.command()))),
+        }
+    }
+
+    /// Moves characters and time until the exchange has ended. The future may be dropped: the next exchange lets what
+    /// is still owed pass.
+    async fn drive(&mut self, risk: Risk) -> Result<Ended, Failure> {
+        let began = self.started.elapsed();
+        let mut now = began;
+        let mut has_left = false;
+        let mut buffer = [0; BUFFER];
+        loop {
+            let step = match self.line.poll(now) {
+                Step::Send(bytes) => {
+                    let sent = self.send(&bytes).await;
+                    has_left = true;
+                    sent.map(|()| 0)
+                }
+                Step::Wait(until) => self.receive(&mut buffer, self.started + until.min(now + LONG)).await,
+                Step::Done(ended) => {
+                    self.waited += now.saturating_sub(began);
+                    return Ok(ended);
+                }
+                Step::Data(_) | Step::Feed => Ok(0),
+            };
+            let received = step.map_err(|error| self.broken(&error, has_left && risk > Risk::Read))?;
+            now = self.started.elapsed();
+            self.line.handle(now, &buffer[..received]);
+        }
+    }
+
+    async fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let Transport::Stream(stream) = &mut self.transport else { return Ok(()) };
+        self.trace.record(Direction::Sent, bytes);
+        stream.send(bytes).await
+    }
+
+    /// Waits for characters and puts them into the buffer; 0 if none came until then.
+    async fn receive(&mut self, buffer: &mut [u8], until: Instant) -> io::Result<usize> {
+        let Transport::Stream(stream) = &mut self.transport else { return std::future::pending().await };
+        let received = stream.receive(buffer, until).await?.unwrap_or(0);
+        self.trace.record(Direction::Received, &buffer[..received]);
+        Ok(received)
+    }
+
+    /// Makes sure that the host commands, and remembers who did before.
+    pub async fn take_host(&mut self) -> Result<(), Failure> {
+        if self.host != Host::Unknown {
+            return Ok(());
+        }
+        if let Transport::Notes(_) = self.transport {
+            self.note(&status_page(2), Some("whether the host is ON"));
+            self.note(&Request::bare(Command::Hson), Some("if it is not"));
+            self.host = Host::Taken;
+            return Ok(());
+        }
+        let status = self.status_of(&[2]).await?;
+        if status.host_on() {
+            self.host = Host::Found;
+            return Ok(());
+        }
+        if status.pendant_on() {
+            return Err(refusal::pendant());
+        }
+        match self.converse(&Request::bare(Command::Hson), false).await? {
+            Answer::Refused => Err(refusal::pendant()),
+            Answer::Done | Answer::Data(_) => {
+                self.host = Host::Taken;
+                Ok(())
+            }
+        }
+    }
+
+    /// The host stays as it is when the link ends: somebody asked for that.
+    pub fn keep_host(&mut self) {
+        self.host = Host::Found;
+    }
+
+    /// Gives the host back as it was found.
+    async fn give_back(&mut self) -> Result<(), Failure> {
+        if self.host != Host::Taken || self.is_dry() || self.is_gone {
+            return Ok(());
+        }
+        self.host = Host::Unknown;
+        let kept = |why: String| {
+            Failure::new(Kind::Refused, format!("the host was switched ON and could not be switched OFF again: {why}"))
+                .hint("`toyo host off` gives the start input back")
+        };
+        match self.converse(&Request::bare(Command::Hsof), false).await {
+            Ok(Answer::Refused) => Err(kept("@NG".to_owned())),
+            Ok(_) => Ok(()),
+            Err(failure) => Err(Failure { kind: failure.kind, ..kept(failure.message) }),
+        }
+    }
+
+    /// Stops what moves, and sees to it that it stands. The order is repeated after silence, whatever the options say:
+    /// a stop twice is a stop once, and a lost one lets the robot move on.
+    pub async fn stop(&mut self, stop: &Request) -> Result<(), Failure> {
+        let usual = self.policy;
+        self.set_policy(Policy { timeout: REPEAT_STOP, retries: STOPS, ..usual });
+        let stopped = self.stop_until_it_stands(stop).await;
+        self.set_policy(usual);
+        if stopped.is_ok() {
+            self.motion = Motion::None;
+        }
+        stopped
+    }
+
+    async fn stop_until_it_stands(&mut self, stop: &Request) -> Result<(), Failure> {
+        let until = Instant::now() + STOP_WITHIN;
+        let mut place = None;
+        loop {
+            // An `@OK` may be that of the order before: only the robot itself tells that it stands.
+            let answer = self.converse(stop, true).await?;
+            let state = self.status_of(&[0]).await?;
+            let now = self.read(&Request::bare(Command::Mpst)).await?;
+            if !state.executing() && !state.homing() && place.as_ref() == Some(&now) {
+                return Ok(());
+            }
+            place = Some(now);
+            if Instant::now() >= until {
+                let how =
+                    if answer == Answer::Refused { "refuses to stop (@NG)" } else { "moves on although it said @OK" };
+                return Err(Failure::new(Kind::ConditionNotMet, format!("the controller {how}")));
+            }
+            tokio::time::sleep(LOOK_EVERY).await;
+        }
+    }
+
+    fn set_policy(&mut self, policy: Policy) {
+        self.policy = policy;
+        self.line.set_policy(policy);
+    }
+
+    /// Nothing that this link set in motion moves any more.
+    pub fn has_ended(&mut self) {
+        self.motion = Motion::None;
+    }
+
+    /// Whether nothing is sent, only noted.
+    pub fn is_dry(&self) -> bool {
+        matches!(self.transport, Transport::Notes(_))
+    }
+
+    /// Notes in a dry run a request that the command would send under a condition, or for a reason.
+    pub fn foresee(&mut self, request: &Request, about: &str) {
+        self.note(request, Some(about));
+    }
+
+    fn note(&mut self, request: &Request, about: Option<&str>) {
+        if let Transport::Notes(notes) = &mut self.transport {
+            let text = request.text();
+            notes.push(about.map_or_else(|| json!({ "text": text }), |about| json!({ "text": text, "about": about })));
+        }
+    }
+
+    fn note_host_off(&mut self) {
+        if self.host == Host::Taken {
+            self.host = Host::Unknown;
+            self.note(&Request::bare(Command::Hsof), Some("if it was OFF before"));
+        }
+    }
+
+    /// An answer that makes no sense.
+    pub fn malformed(&self, block: &str, why: &str) -> Failure {
+        Failure::new(Kind::Malformed, format!("{}: unexpected answer '{block}': {why}", self.label))
+            .hint("check baud rate and parity; -vv shows what came, `armctl decode toyo` explains it")
+    }
+
+    /// No answer, or none that fits.
+    fn unanswered(&self, ended: Ended, risk: Risk, telltale: &str) -> Failure {
+        let counters = self.line.counters();
+        let (kind, what) = match ended {
+            Ended::Unfitting { block, why } => (Kind::Malformed, format!("unexpected answer '{block}': {why}")),
+            _ if counters.received == counters.echoes && counters.echoes > 0 => {
+                (Kind::NoAnswer, "only what was sent came back".to_owned())
+            }
+            _ if counters.received == 0 && counters.noise > 0 => {
+                (Kind::NoAnswer, format!("no answer, but {} stray characters", counters.noise))
+            }
+            _ => (Kind::NoAnswer, format!("no answer within {:.1?}", self.policy.timeout)),
+        };
+        let failure = Failure::new(kind, format!("{}: {what}", self.label));
+        if risk > Risk::Read {
+            let message =
+                format!("{}: the order was sent, but whether it was carried out is unknown: {what}", self.label);
+            return Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(telltale);
+        }
+        failure.hint(if counters.echoes > 0 {
+            "a loop-back plug, or an RS-485 adapter that hears itself and no controller"
+        } else if counters.noise > 0 || kind == Kind::Malformed {
+            "check baud rate and parity: the controller has 9600 baud, 8 data bits, even parity, 1 stop bit"
+        } else {
+            "check that the controller is on, and the cable: TXD and RXD cross over, there is no handshake"
+        })
+    }
+
+    /// The line has bad news.
+    fn broken(&mut self, error: &io::Error, is_open: bool) -> Failure {
+        self.is_gone = true;
+        let what = match error.kind() {
+            io::ErrorKind::NotConnected => "the line is gone: unplugged, or closed by the other side".to_owned(),
+            _ => format!("the line is broken: {}", plain(error)),
+        };
+        if is_open {
+            let message = format!("{}: {what}; whether the order was carried out is unknown", self.label);
+            return Failure::new(Kind::OutcomeUnknown, message)
+                .hint("look at the robot; once the line is back, `toyo status` tells");
+        }
+        Failure::new(Kind::NoAnswer, format!("{}: {what}", self.label)).hint("`toyo ports` lists the ports there are")
+    }
+}
+
+/// Whether the host must be ON. Only reads do without for sure (ambiguity C14); a stop must not wait for it.
+fn wants_host(request: &Request) -> bool {
+    request.risk() > Risk::Read && !matches!(request.command(), Command::Hson | Command::Hsof | Command::Stop)
+}
+
+fn status_page(page: u8) -> Request {
+    Request::of(Command::Stas, [Value::Number(page.into())])
+}
+
+/// The order that stops a JOG.
+pub fn jog_stop() -> Request {
+    jog("SP", None)
+}
+
+/// JOG: one word for all axes, or one for an axis (0 to 3) while the others stop.
+pub fn jog(word: &'static str, axis: Option<usize>) -> Request {
+    let of = |index| if axis.is_none_or(|axis| axis == index) { word } else { "SP" };
+    Request::of(Command::Jgst, [0, 1, 2, 3].map(|index| Value::Word(of(index))))
+}
+
+/// Values that cannot be sent, as a failure of the command line.
+pub fn wrong(error: &Misfit) -> Failure {
+    Failure::usage(error.to_string()).hint("`--help` tells what may be given")
+}
+
+/// A request that cannot be sent.
+pub fn misuse(error: &BlockError) -> Failure {
+    Failure::usage(error.to_string()).hint("`--help` tells what may be given")
+}

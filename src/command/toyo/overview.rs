@@ -1,0 +1,26 @@
+//! A robot of the family in the line that `armctl status` prints.
+
+use super::link::Link;
+use super::position::Place;
+use crate::command::overview::{OverviewReport, PositionMm};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::status::RunMode;
+use crate::controller::toyo::table::Command;
+use crate::failure::Failure;
+
+/// Asks for status and position.
+pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
+    let status = link.status_of(&[0, 2, 3]).await?;
+    let place = Place::of(&link.read(&Request::bare(Command::Mpst)).await?);
+    Ok(OverviewReport {
+        reachable: true,
+        mode: status.run_mode().map(RunMode::name),
+        servo_on: Some(status.servo_on()),
+        running: Some(status.executing() || status.homing()),
+        held: Some(status.paused()),
+        alarm: None,
+        error: Some(status.has_error()),
+        position: Some(PositionMm { x_mm: place.x_mm, y_mm: place.y_mm, z_mm: place.z_mm }),
+        failure: None,
+    })
+}

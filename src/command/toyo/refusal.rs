@@ -1,0 +1,140 @@
+//! A controller's `@NG` in words: it has no code, so the status must tell why.
+
+use super::link::Link;
+use crate::controller::Risk;
+use crate::controller::toyo::errors;
+use crate::controller::toyo::status::{RunMode, Status};
+use crate::controller::toyo::table::commands::{Command, Row};
+use crate::failure::{Failure, Kind};
+
+/// What may be behind a refusal, as far as the status tells.
+pub async fn explained(link: &mut Link, command: Command) -> Failure {
+    let row = command.row();
+    // That it was refused is known, whatever becomes of the question why.
+    let Ok(status) = link.status().await else {
+        return refused(row, "the status, which may tell why, could not be read", "`toyo status` may tell why");
+    };
+    match reason(status, row) {
+        Some((why, hint)) => refused(row, &why, &hint),
+        None => refused(row, "the status does not tell why", &unexplained(row)),
+    }
+}
+
+/// The teach pendant has the controller.
+pub fn pendant() -> Failure {
+    Failure::new(Kind::Refused, "the controller refused: the teach pendant is ON, and the host cannot take over")
+        .hint("switch the teach pendant OFF, then repeat the command")
+        .code("NG")
+}
+
+/// Not even the status is told.
+pub fn mute() -> Failure {
+    Failure::new(Kind::Refused, "the controller refuses even to tell its status (@NG)")
+        .hint("it is busy, or no such controller: try again, then look at the teach pendant")
+        .code("NG")
+}
+
+fn refused(row: &Row, why: &str, hint: &str) -> Failure {
+    Failure::new(Kind::Refused, format!("the controller refused {} (@NG): {why}", row.word)).hint(hint).code("NG")
+}
+
+/// The weightiest thing in the status that keeps a command from being done, with what to do.
+fn reason(status: Status, row: &Row) -> Option<(String, String)> {
+    let told = |why: &str, hint: &str| Some((why.to_owned(), hint.to_owned()));
+    let moves = row.risk == Risk::Motion;
+    if status.pendant_on() {
+        return told("the teach pendant is ON", "switch the teach pendant OFF");
+    }
+    if status.needs_power_cycle() {
+        return told(
+            "parameter 2 was changed: only communication works until the power was off",
+            "switch the controller's power off and on",
+        );
+    }
+    if status.has_error() {
+        let error = errors::explain(status.error);
+        return Some((format!("error {}", error.in_a_line()), format!("{}; then `toyo error cancel`", error.remedy)));
+    }
+    if row.needs_host && !status.host_on() {
+        return told("the host is OFF", "`toyo host on`");
+    }
+    if status.card_reading() || status.card_writing() {
+        return told(
+            "the memory card is being used",
+            "wait until it is done: `toyo status --until '.data.card | not'`",
+        );
+    }
+    if status.homing() {
+        return told("the axes are returning to the origin", "wait for the end, or `toyo stop`");
+    }
+    if status.executing() {
+        return told("a program or command is being executed", "wait for the end, or `toyo stop`");
+    }
+    if moves && !status.servo_on() && row.command != Command::Svon {
+        return told("servo power is off", "`toyo servo on`");
+    }
+    if moves && !status.homed() && !matches!(row.command, Command::Home | Command::Svon | Command::Svof | Command::Jgst)
+    {
+        return told("the axes have not returned to the origin", "`toyo home`");
+    }
+    if moves && status.run_mode() == Some(RunMode::Program) {
+        return told("the controller is in program mode", "`toyo mode automatic`");
+    }
+    if row.writes_eeprom && status.run_mode() != Some(RunMode::Program) {
+        return told("the controller is not in program mode", "`toyo mode program`, if the controller asks for it");
+    }
+    None
+}
+
+fn unexplained(row: &Row) -> String {
+    if row.only_on.is_empty() {
+        "the value may be out of what this controller has, or the controller be busy: try again".to_owned()
+    } else {
+        format!("only some controllers have it: {}", row.only_on.join(", "))
+    }
+}
+
+/// What tells whether an order was carried out whose answer was lost.
+pub fn telltale(command: Command) -> &'static str {
+    match command {
+        Command::Home | Command::Sorg => {
+            "keep clear; `toyo status` tells whether it moves, and whether the origin is done"
+        }
+        Command::Spst | Command::Ppst | Command::Sesy | Command::Extp | Command::Mrss => {
+            "keep clear; `toyo status` and `toyo position` tell whether it moves, and where it is"
+        }
+        Command::Jgst => "keep clear; `toyo stop --jog` stops it, `toyo position` tells where it is",
+        Command::Svon | Command::Svof => "`toyo status` tells whether servo power is on",
+        Command::Wpar => "`toyo param get` tells what is stored",
+        Command::Wstx | Command::Istx | Command::Dstx | Command::Dstl | Command::Cpss => {
+            "`toyo program get` tells what is stored"
+        }
+        Command::Wplt | Command::Cppl => "`toyo palletizing get` tells what is stored",
+        Command::Wesy | Command::Cesy => "`toyo easy get` tells what is stored",
+        Command::Dout => "`toyo io out` tells",
+        Command::Wovr => "`toyo override get` tells",
+        Command::Mcst => "`toyo counter get` tells",
+        Command::Ctsk => "`toyo task get` tells",
+        Command::Wmca | Command::Rmca => "`toyo status` tells whether the card is being used",
+        _ => "`toyo status` tells how the controller stands",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_status_tells_why() {
+        let fine = Status::default().with(0, 0x30).with(2, 0x80).with(3, 0x11);
+        let why = |status: Status, command: Command| reason(status, command.row()).map(|(why, _)| why);
+        assert_eq!(why(fine, Command::Home), None);
+        assert_eq!(why(fine.with(2, 0x40), Command::Home).unwrap(), "the teach pendant is ON");
+        assert_eq!(why(fine.with(2, 0), Command::Home).unwrap(), "the host is OFF");
+        assert_eq!(why(fine.with(0, 0x32), Command::Spst).unwrap(), "a program or command is being executed");
+        assert_eq!(why(fine.with(3, 0x10), Command::Spst).unwrap(), "servo power is off");
+        assert_eq!(why(fine.with(0, 0x20), Command::Spst).unwrap(), "the axes have not returned to the origin");
+        assert!(why(fine.with(0, 0x31).with(1, 0x28), Command::Spst).unwrap().starts_with("error 28: axis 1"));
+        assert!(why(fine.with(0, 0xB0), Command::Cerr).unwrap().starts_with("parameter 2 was changed"));
+    }
+}

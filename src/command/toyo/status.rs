@@ -1,0 +1,165 @@
+//! `toyo status`: all five pages of the status.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use crate::command::{Command, Context, Report};
+use crate::controller::toyo::errors;
+use crate::controller::toyo::status::{self, ProgramKind, RunMode};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Tone, View};
+
+/// Asks for all five pages of the status.
+#[derive(Debug, Args)]
+pub struct Status {}
+
+impl Command for Status {
+    type Family = Family;
+    type Report = StatusReport;
+    const ID: &'static str = "toyo.status";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<StatusReport, Failure> {
+        Ok(StatusReport::of(context.link.status().await?))
+    }
+}
+
+/// What a controller says of itself.
+#[derive(Debug, Serialize, JsonSchema)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a bit of the status")]
+pub struct StatusReport {
+    /// `sequential`, `palletizing`, `external_point` or `easy`.
+    program_kind: &'static str,
+    /// `automatic`, `step` or `program`; null for the value that the manual does not list.
+    mode: Option<&'static str>,
+    host_on: bool,
+    pendant_on: bool,
+    servo_on: bool,
+    homed: bool,
+    homing: bool,
+    executing: bool,
+    paused: bool,
+    in_position: bool,
+    single_movement: bool,
+    waits_for_input: bool,
+    /// The error, if there is one.
+    error: Option<ErrorCode>,
+    /// Parameter 2 was changed: nothing is executed until the power was off.
+    needs_power_cycle: bool,
+    slave_not_ready: bool,
+    escape_input: bool,
+    continuous_input: bool,
+    pause_input: bool,
+    ready_output: bool,
+    card: Card,
+    /// The pages as they came, hexadecimal, page 0 first.
+    pages: [String; 5],
+}
+
+/// An error code with its meaning.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct ErrorCode {
+    /// `28`.
+    pub code: String,
+    /// In words.
+    pub meaning: String,
+    /// The axis it is about.
+    pub axis: Option<u8>,
+}
+
+/// The memory card.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Card {
+    inserted: bool,
+    reading: bool,
+    writing: bool,
+}
+
+impl ErrorCode {
+    /// A code in words.
+    pub fn of(code: u8) -> Self {
+        let explanation = errors::explain(code);
+        Self { code: format!("{code:02X}"), meaning: explanation.name.into_owned(), axis: explanation.axis }
+    }
+}
+
+impl StatusReport {
+    fn of(status: status::Status) -> Self {
+        Self {
+            program_kind: ProgramKind::name(status.program_kind()),
+            mode: status.run_mode().map(RunMode::name),
+            host_on: status.host_on(),
+            pendant_on: status.pendant_on(),
+            servo_on: status.servo_on(),
+            homed: status.homed(),
+            homing: status.homing(),
+            executing: status.executing(),
+            paused: status.paused(),
+            in_position: status.in_position(),
+            single_movement: status.single_movement(),
+            waits_for_input: status.waits_for_input(),
+            error: (status.has_error() || status.error != errors::NONE).then(|| ErrorCode::of(status.error)),
+            needs_power_cycle: status.needs_power_cycle(),
+            slave_not_ready: status.slave_not_ready(),
+            escape_input: status.escape_input(),
+            continuous_input: status.continuous_input(),
+            pause_input: status.pause_input(),
+            ready_output: status.ready_output(),
+            card: Card {
+                inserted: status.card_inserted(),
+                reading: status.card_reading(),
+                writing: status.card_writing(),
+            },
+            pages: [0, 1, 2, 3, 4].map(|page| format!("{:02X}", status.page(page))),
+        }
+    }
+}
+
+impl Report for StatusReport {
+    fn view(&self) -> View {
+        let yes = |is: bool, tone: Tone| if is { Cell::from("yes").tone(tone) } else { "no".into() };
+        let origin = match (self.homing, self.homed) {
+            (true, _) => Cell::from("on the way").tone(Tone::Warning),
+            (_, true) => Cell::from("done").tone(Tone::Good),
+            _ => Cell::from("not done").tone(Tone::Warning),
+        };
+        let error = match &self.error {
+            Some(error) => Cell::from(format!("{}: {}", error.code, error.meaning)).tone(Tone::Bad),
+            None => "none".into(),
+        };
+        let running = match (self.paused, self.executing) {
+            (true, _) => Cell::from("paused").tone(Tone::Warning),
+            (_, true) if self.waits_for_input => Cell::from("waits for input").tone(Tone::Warning),
+            (_, true) => Cell::from("yes").tone(Tone::Good),
+            _ => "no".into(),
+        };
+        let card = match &self.card {
+            Card { writing: true, .. } => "being written",
+            Card { reading: true, .. } => "being read",
+            Card { inserted: true, .. } => "inserted",
+            _ => "none",
+        };
+        let inputs =
+            [(self.escape_input, "escape"), (self.continuous_input, "continuous"), (self.pause_input, "pause")];
+        let inputs: Vec<&str> = inputs.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
+        let fields = vec![
+            ("runs", Cell::from(self.program_kind.replace('_', " "))),
+            ("mode", Cell::maybe(self.mode)),
+            ("host", Cell::switch(self.host_on)),
+            ("teach pendant", Cell::switch(self.pendant_on)),
+            ("servo", Cell::switch(self.servo_on)),
+            ("origin", origin),
+            ("executing", running),
+            ("in position", if self.in_position { "yes".into() } else { "no".into() }),
+            ("error", error),
+            ("ready output", Cell::switch(self.ready_output)),
+            ("inputs on", if inputs.is_empty() { "none".into() } else { inputs.join(", ").into() }),
+            ("single movement", yes(self.single_movement, Tone::Plain)),
+            ("memory card", card.into()),
+            ("slave not ready", yes(self.slave_not_ready, Tone::Bad)),
+            ("power cycle due", yes(self.needs_power_cycle, Tone::Bad)),
+        ];
+        View { sections: vec![crate::output::view::Section::Fields(fields)] }
+    }
+}
