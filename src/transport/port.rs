@@ -144,7 +144,7 @@ fn read(port: &mut Port) -> io::Result<Vec<u8>> {
 
 /// Writes all bytes; fails if that takes longer than `longest`.
 fn write(port: &mut Port, mut bytes: &[u8], longest: Duration) -> io::Result<()> {
-    let start = Instant::now();
+    let start = std::time::Instant::now();
     while !bytes.is_empty() {
         match port.write(bytes) {
             Ok(len) => bytes = bytes.get(len..).unwrap_or_default(),

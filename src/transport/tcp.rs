@@ -117,7 +117,7 @@ fn connect_error(error: io::Error) -> ConnectError {
 #[cfg(test)]
 mod tests {
     use tokio::io::AsyncWriteExt as _;
-    use tokio::net::TcpListener;
+    use tokio::net::{TcpListener, TcpSocket};
 
     use super::super::testing::soon;
     use super::*;
@@ -171,9 +171,10 @@ mod tests {
 
     #[tokio::test]
     async fn a_port_nobody_listens_on_refuses() {
-        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
-        let port = listener.local_addr().unwrap().port();
-        drop(listener);
+        // Bound, so that nobody else gets it, but not listening.
+        let socket = TcpSocket::new_v4().unwrap();
+        socket.bind("127.0.0.1:0".parse().unwrap()).unwrap();
+        let port = socket.local_addr().unwrap().port();
         assert!(matches!(Tcp::open("127.0.0.1", port, soon()).await, Err(ConnectError::Refused)));
     }
 
