@@ -1,7 +1,8 @@
 //! One value on the line: its form, to the character.
 //!
-//! Everything has a fixed width (TO 2-4 to 2-8 print it as templates). What is sent is in that form and in range; what
-//! comes may be wider, narrower, or out of range, as long as it means something.
+//! Everything has a fixed width (TO 2-4 to 2-8 print it as templates). On a line without a checksum that is all there is
+//! against lost and doubled characters, so what comes must have it too; only its range is not checked. What people write
+//! may be shorter.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -146,6 +147,27 @@ impl Number {
     /// How many of the units that values count make one.
     pub const fn scale(self) -> i32 {
         10_i32.pow(self.decimals as u32 + self.spare as u32)
+    }
+
+    /// Characters on the line.
+    const fn width(self) -> usize {
+        let sign = self.signed as usize;
+        let fraction = if self.decimals == 0 { 0 } else { 1 + self.decimals as usize };
+        sign + self.whole as usize + fraction
+    }
+
+    /// Whether sign, digits and point are where they belong.
+    fn has_shape(self, text: &str) -> bool {
+        let fits = |whole: u8, decimals: u8| {
+            let point = usize::from(self.signed) + usize::from(whole);
+            text.bytes().enumerate().all(|(at, byte)| match at {
+                0 if self.signed => matches!(byte, b'+' | b'-'),
+                _ if at == point && decimals > 0 => byte == b'.',
+                _ => byte.is_ascii_digit(),
+            })
+        };
+        fits(self.whole, self.decimals)
+            || self.spare > 0 && fits(self.whole.saturating_sub(self.spare), self.decimals + self.spare)
     }
 
     /// Units between two values that can be sent.
@@ -322,20 +344,29 @@ impl Field {
         }
     }
 
-    /// Takes the value off the front of a text, as far as it goes; returns it with what is left.
+    /// Takes the value off the front of a text, in full width; returns it with what is left.
     pub fn take<'t>(&self, text: &'t str) -> Result<(Value, &'t str), FieldError> {
+        let misfit = || self.misfit(shown(text));
         let len = match self.form {
-            Form::Number(_) => number_len(text),
-            Form::Hex => text.bytes().take(2).take_while(u8::is_ascii_hexdigit).count(),
-            Form::Word(words) => words.iter().map(|word| fitting(word.text, text)).max().unwrap_or(0),
-            Form::Bits | Form::Mask => text.bytes().take(8).take_while(|byte| b"01.".contains(byte)).count(),
+            Form::Number(number) => number.width(),
+            Form::Hex => 2,
+            Form::Word(words) => {
+                let fitting = words
+                    .iter()
+                    .map(|word| word.text.len())
+                    .filter(|len| words.iter().any(|word| word.text.len() == *len && text.starts_with(word.text)));
+                fitting.max().ok_or_else(misfit)?
+            }
+            Form::Bits | Form::Mask => 8,
             Form::Token => text.find(' ').unwrap_or(text.len()),
             Form::Text => text.len(),
         };
-        let len = if self.starred && len == 0 { text.bytes().take_while(|byte| *byte == b'*').count() } else { len };
-        let (own, rest) = text.split_at(len);
-        let value = self.value(own).ok_or_else(|| self.misfit(shown(text)))?;
-        Ok((value, rest))
+        let (own, rest) = text.split_at_checked(len).ok_or_else(misfit)?;
+        let value = self.value(own).ok_or_else(misfit)?;
+        match (self.form, &value) {
+            (Form::Number(number), Value::Number(_)) if !number.has_shape(own) => Err(misfit()),
+            _ => Ok((value, rest)),
+        }
     }
 
     /// A value that somebody wrote, alone: in form, and in the range that may be sent.
@@ -414,25 +445,6 @@ impl Field {
     }
 }
 
-/// Bytes at the front that are a number.
-fn number_len(text: &str) -> usize {
-    let count = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
-    let sign = usize::from(text.starts_with(['+', '-']));
-    let whole = count(&text[sign..]);
-    let fraction = text[sign + whole..].strip_prefix('.').map_or(0, |rest| 1 + count(rest));
-    if whole + fraction == 0 { 0 } else { sign + whole + fraction }
-}
-
-/// Bytes at the front that are this word; its padding may be missing.
-fn fitting(word: &str, text: &str) -> usize {
-    let bare = word.trim_end();
-    match text.strip_prefix(bare) {
-        None => 0,
-        Some(_) if text.starts_with(word) => word.len(),
-        Some(_) => bare.len(),
-    }
-}
-
 /// The front of a text, for an error.
 fn shown(text: &str) -> &str {
     let end = text.char_indices().nth(16).map_or(text.len(), |(at, _)| at);
@@ -469,15 +481,24 @@ mod tests {
     }
 
     #[test]
-    fn numbers_come_in_any_width() {
+    fn numbers_come_in_full_width() {
         let take = |text| X.take(text).map(|(value, rest)| (value, rest.to_owned()));
         assert_eq!(take("+0100.00 Y"), Ok((Value::Number(10_000), " Y".into())));
-        assert_eq!(take("-1.5"), Ok((Value::Number(-150), String::new())));
-        assert_eq!(take("+0000.000"), Ok((Value::Number(0), String::new())));
-        assert!(take("+0000.001").is_err(), "nothing is rounded away");
-        assert!(take("+").is_err());
-        assert!(take("99999999999").is_err());
-        assert_eq!(take("1.2.3"), Ok((Value::Number(120), ".3".into())));
+        assert_eq!(take("+9999.99"), Ok((Value::Number(999_999), String::new())));
+        for damaged in ["+010.00", "+0100.0", "0100.00 ", "+01000.0", "+01.0.00", "", "+"] {
+            assert!(take(damaged).is_err(), "{damaged}");
+        }
+        // A doubled digit shifts the rest out of its place, and what follows no longer fits.
+        assert_eq!(take("+01100.00 Y"), Err(X.take("+01100.00 Y").unwrap_err()));
+    }
+
+    #[test]
+    fn people_write_numbers_as_they_like() {
+        assert_eq!(X.read("-1.5").unwrap(), Value::Number(-150));
+        assert_eq!(X.read("100").unwrap(), Value::Number(10_000));
+        assert_eq!(X.read("0.100").unwrap(), Value::Number(10));
+        assert!(X.read("0.001").is_err(), "nothing is rounded away");
+        assert!(X.read("99999999999").is_err());
     }
 
     #[test]
@@ -489,12 +510,13 @@ mod tests {
         assert_eq!(offset.written(&value), "+12.345");
         assert!(offset.emit(&value).is_err());
         assert_eq!(offset.emit(&offset.take("-001.50").unwrap().0).unwrap(), "-001.50");
+        assert!(offset.take("+0.1234").is_err());
     }
 
     #[test]
     fn comparisons_are_two_characters_wide() {
         assert_eq!(COMPARE.take("= 0000").unwrap(), (Value::Word("= "), "0000"));
-        assert_eq!(COMPARE.take("=0000").unwrap(), (Value::Word("= "), "0000"));
+        assert!(COMPARE.take("=0000").is_err());
         assert_eq!(COMPARE.take("<=0000").unwrap(), (Value::Word("<="), "0000"));
         assert!(COMPARE.take("!").is_err());
     }

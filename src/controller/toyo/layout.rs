@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn blanks_do_not_matter() {
-        assert_eq!(TWO.parse("  MCNT   CN1=12  ").unwrap().written(), "MCNT CN01=0012");
+        assert_eq!(TWO.parse("  MCNT   CN01=0012  ").unwrap().written(), "MCNT CN01=0012");
     }
 
     #[test]
