@@ -53,6 +53,11 @@ impl<P: Peer> InProcessLine<P> {
         Self { peer, wire: Wire::new(pace, faults), start: Instant::now() }
     }
 
+    /// The peer, as it was when somebody last sent or received.
+    pub fn peer(&self) -> &P {
+        &self.peer
+    }
+
     /// Sends bytes to the peer; returns at once, while they are on their way.
     pub fn send(&mut self, bytes: &[u8]) {
         let now = self.start.elapsed();

@@ -67,6 +67,8 @@ pub struct Line {
     owed_until: Now,
     /// Whether the line sends back what is sent.
     echoes: bool,
+    /// When the last line end of the controller is over, and the host may send (TO 1-3: half duplex).
+    free: Now,
 }
 
 #[derive(Debug)]
@@ -107,6 +109,7 @@ impl Line {
             owed: 0,
             owed_until: Now::ZERO,
             echoes: false,
+            free: Now::ZERO,
         }
     }
 
@@ -245,7 +248,7 @@ impl Session for Line {
                     self.owed = 0;
                 }
                 let settled = if self.owed > 0 { self.owed_until } else { now };
-                let at = settled.max(exchange.not_before);
+                let at = settled.max(exchange.not_before).max(self.free);
                 if at > now { Step::Wait(at) } else { self.send(now) }
             }
             State::Waiting(_, deadline) if now < *deadline => Step::Wait(*deadline),
@@ -258,6 +261,7 @@ impl Session for Line {
 
     fn handle(&mut self, now: Now, bytes: &[u8]) {
         for byte in bytes {
+            self.free = if *byte == b'\r' { now + self.policy.character } else { now };
             let (framed, noise) = self.framer.push(*byte);
             self.counters.noise += noise;
             let Some(framed) = framed else { continue };
@@ -271,6 +275,7 @@ impl Session for Line {
             };
         }
         if let State::Settling(exchange) = &mut self.state
+            && !bytes.is_empty()
             && !exchange.not_before.is_zero()
         {
             exchange.not_before = now + QUIET;

@@ -105,6 +105,7 @@ fn a_garbled_read_is_asked_again_when_the_line_is_quiet() {
     line.handle(ms(10), b"@MTSK TA\x80K=01\r\n");
     assert_eq!(line.poll(ms(10)), Step::Wait(ms(60)));
     line.handle(ms(40), b"\x80");
+    line.handle(ms(50), b"");
     assert_eq!(line.poll(ms(60)), Step::Wait(ms(90)));
     assert_eq!(line.poll(ms(90)), Step::Send(b"@MTSK\r\n".to_vec()));
     line.handle(ms(110), b"@MTSK TASK=01\r\n");

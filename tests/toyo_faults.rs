@@ -1,0 +1,224 @@
+//! The session of toyo behind lines that lose, double, damage and delay characters, or send them back.
+//!
+//! In virtual time, against a controller of its own that counts what it carries out. Blocks have a fixed width and no
+//! checksum: one lost or doubled character is noticed, a lost and a doubled one in the same block are not, nor is noise
+//! that turns a digit into another. Under such faults only the number of executions counts.
+
+use std::collections::HashMap;
+use std::time::Duration;
+
+use armctl::controller::toyo::field::Value;
+use armctl::controller::toyo::request::{Answer, Request};
+use armctl::controller::toyo::session::{Ended, Framed, Framer, Line, Policy};
+use armctl::controller::toyo::table::Command;
+use armctl::controller::{Session as _, Step};
+use armctl::transport::line::{InProcessLine, Pace};
+use armctl::transport::sim::Peer;
+use tokio::time::Instant;
+
+/// 9600 baud, 8 data bits, even parity, one stop bit.
+const BITS: u32 = 11;
+const BAUD: u32 = 9600;
+const TIMEOUT: Duration = Duration::from_secs(1);
+
+/// A controller with counters. Each order to it sets a counter to a value that no other order has.
+#[derive(Debug, Default)]
+struct Counters {
+    framer: Framer,
+    is_damaged: bool,
+    counters: HashMap<i32, i32>,
+    /// How often each value was set.
+    executed: HashMap<i32, u32>,
+    /// How often any was.
+    executions: u32,
+    answers: Vec<Vec<u8>>,
+}
+
+impl Counters {
+    fn carry_out(&mut self, block: &str) -> String {
+        let request = match Request::parse(block) {
+            Ok(request) if request.check().is_ok() => request,
+            _ => return "@NG".to_owned(),
+        };
+        let number = |name| request.record().number(name).unwrap();
+        match request.command() {
+            Command::Mcst => {
+                self.counters.insert(number("counter"), number("count"));
+                self.executions += 1;
+                *self.executed.entry(number("count")).or_default() += 1;
+                "@OK".to_owned()
+            }
+            Command::Mcnt => {
+                let count = self.counters.get(&number("counter")).copied().unwrap_or(0);
+                format!("@MCNT CN{:02}={count:04}", number("counter"))
+            }
+            _ => "@NG".to_owned(),
+        }
+    }
+}
+
+impl Peer for Counters {
+    fn receive(&mut self, _now: Duration, _channel: usize, bytes: &[u8]) {
+        for byte in bytes {
+            let Some(framed) = self.framer.push(*byte).0 else { continue };
+            // A block in which a parity error was seen is not answered (TO 1-3).
+            if !std::mem::take(&mut self.is_damaged)
+                && let Framed::Block(block) = framed
+            {
+                let answer = self.carry_out(&block);
+                self.answers.push(format!("{answer}\r\n").into_bytes());
+            }
+        }
+    }
+
+    fn damaged(&mut self, _now: Duration, _channel: usize) {
+        self.is_damaged = true;
+    }
+
+    fn transmit(&mut self, _now: Duration) -> Option<(usize, Vec<u8>)> {
+        if self.answers.is_empty() { None } else { Some((0, self.answers.remove(0))) }
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        None
+    }
+}
+
+/// What happened on one line.
+#[derive(Debug, Default, PartialEq, Eq)]
+struct Tally {
+    answered: u32,
+    refused: u32,
+    open: u32,
+    /// Reads that told something else than what was there.
+    wrong: u32,
+    /// Orders that were carried out more often than once, or not although they were confirmed.
+    doubled: u32,
+    lost: u32,
+    /// Orders that were carried out, whatever they had become.
+    executions: u32,
+}
+
+async fn exchange(line: &mut Line, wire: &mut InProcessLine<Counters>, began: Instant) -> Ended {
+    let mut buffer = [0; 256];
+    loop {
+        let now = began.elapsed();
+        match line.poll(now) {
+            Step::Send(bytes) => wire.send(&bytes),
+            Step::Wait(until) => {
+                let received = wire.receive(&mut buffer, began + until).await.unwrap_or(0);
+                line.handle(began.elapsed(), &buffer[..received]);
+            }
+            Step::Done(ended) => return ended,
+            Step::Data(_) | Step::Feed => unreachable!("lines have no payload"),
+        }
+    }
+}
+
+/// A hundred orders, and a read after each.
+async fn talk(faults: &str, seed: u64) -> Tally {
+    const EXCHANGES: i32 = 100;
+    let pace = Pace::new(BAUD, BITS);
+    let spec = format!("{faults},seed={seed}").parse().expect("faults");
+    let mut wire = InProcessLine::new(Counters::default(), Some(pace), Some(spec));
+    let mut line = Line::new(Policy { timeout: TIMEOUT, retries: 3, character: pace.time(1) });
+    let began = Instant::now();
+    let mut tally = Tally::default();
+    for order in 1..=EXCHANGES {
+        let counter = order % 7 + 1;
+        let set = Request::new(Command::Mcst, vec![Value::Number(counter), Value::Number(order)]).unwrap();
+        line.begin(&set, false);
+        let before = Instant::now();
+        let ended = exchange(&mut line, &mut wire, began).await;
+        assert!(before.elapsed() <= 4 * TIMEOUT, "an order ends in time: {:?}", before.elapsed());
+        let executed = wire.peer().executed.get(&order).copied().unwrap_or(0);
+        tally.doubled += executed.saturating_sub(1);
+        match ended {
+            Ended::Answered(block) => match set.answer(&block).unwrap() {
+                Answer::Done => {
+                    tally.answered += 1;
+                    tally.lost += u32::from(executed == 0);
+                }
+                Answer::Refused => tally.refused += 1,
+                Answer::Data(_) => panic!("an order has no data"),
+            },
+            Ended::NoAnswer | Ended::Unfitting { .. } => tally.open += 1,
+        }
+        let read = Request::new(Command::Mcnt, vec![Value::Number(counter)]).unwrap();
+        line.begin(&read, true);
+        let before = Instant::now();
+        let ended = exchange(&mut line, &mut wire, began).await;
+        assert!(before.elapsed() <= 12 * TIMEOUT, "a read ends in time: {:?}", before.elapsed());
+        let truth = wire.peer().counters.get(&counter).copied().unwrap_or(0);
+        if let Ended::Answered(block) = ended
+            && let Answer::Data(record) = read.answer(&block).unwrap()
+        {
+            tally.wrong += u32::from(record.number("count") != Some(truth));
+        }
+    }
+    tally.executions = wire.peer().executions;
+    tally
+}
+
+fn virtual_time() -> tokio::runtime::Runtime {
+    tokio::runtime::Builder::new_current_thread().enable_time().start_paused(true).build().expect("a runtime")
+}
+
+/// Every kind of fault alone and together, with many seeds each.
+#[test]
+fn nothing_is_doubled_lost_or_mistaken() {
+    let grid = [
+        "drop=0.5%",
+        "drop=5%",
+        "dup=0.5%",
+        "dup=5%",
+        "parity=1%",
+        "parity=10%",
+        "delay=0..50ms",
+        // Later than the answer is waited for, and not later than it is let pass.
+        "delay=0..900ms",
+        "echo",
+        "echo,drop=1%",
+        "echo,dup=3%,delay=0..100ms",
+        "drop=2%,parity=2%,delay=0..400ms",
+        "drop=20%",
+    ];
+    for faults in grid {
+        let mut all = Tally::default();
+        for seed in 0..25 {
+            let tally = virtual_time().block_on(talk(faults, seed));
+            assert_eq!((tally.doubled, tally.lost, tally.wrong), (0, 0, 0), "{faults}, seed {seed}: {tally:?}");
+            all.answered += tally.answered;
+            all.open += tally.open;
+            all.refused += tally.refused;
+        }
+        // The grid is no grid if the faults do not bite, or nothing gets through.
+        let bites = faults == "delay=0..50ms" || faults == "echo" || all.open + all.refused > 0;
+        assert!(bites && all.answered > 0, "{faults}: {all:?}");
+    }
+}
+
+#[test]
+fn no_damage_makes_an_order_count_twice() {
+    for faults in ["noise=0.5%", "noise=5%", "drop=5%,dup=5%", "noise=1%,drop=1%,dup=1%,parity=1%,delay=0..200ms,echo"]
+    {
+        for seed in 0..25 {
+            let tally = virtual_time().block_on(talk(faults, seed));
+            assert!(tally.executions <= 100, "{faults}, seed {seed}: {tally:?}");
+        }
+    }
+}
+
+#[test]
+fn a_line_without_faults_is_as_fast_as_its_characters() {
+    let time = virtual_time().block_on(async {
+        let began = Instant::now();
+        let tally = talk("drop=0%", 0).await;
+        assert_eq!(tally, Tally { answered: 100, executions: 100, ..Tally::default() });
+        began.elapsed()
+    });
+    // "@MCST CN01=0001\r\n" and "@OK\r\n", "@MCNT CN=01\r\n" and "@MCNT CN01=0001\r\n": 17 + 5 + 13 + 17 characters. The
+    // controller answers at the CR, while the LF comes.
+    let characters = Pace::new(BAUD, BITS).time(100 * (16 + 5 + 12 + 17));
+    assert!(time >= characters && time < characters + Duration::from_millis(200), "{time:?} for {characters:?}");
+}
