@@ -5,7 +5,7 @@
 pub mod errors;
 pub mod field;
 pub mod layout;
-pub(crate) mod nearest;
+mod nearest;
 pub mod program;
 pub mod request;
 pub mod session;

@@ -1,0 +1,379 @@
+//! The axes: where they are, what moves them, and what stands in their way.
+//!
+//! The commanded place is the goal of all moves, less what each of them still has to go. So moves add up: a pass point
+//! is rounded because the next move begins while the last one slows down.
+
+use super::motion::{AXES, Drive, Path, Place, Segment, minus, plus};
+use crate::controller::Now;
+
+/// Owner of moves that no task makes: JOG and return to origin by the host.
+pub(super) const HOST: usize = 4;
+/// Pieces of each stretch of steady acceleration in which a crossing is looked for.
+const PIECES: u32 = 16;
+/// Halvings that find a crossing to the nanosecond, or nearly.
+const HALVINGS: u32 = 40;
+/// An axis within this many mm is in the same place.
+const SAME: f64 = 1e-6;
+
+/// All axes.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Arm {
+    goal: Place,
+    segments: Vec<Segment>,
+    held: Vec<Held>,
+    walls: [Option<Wall>; AXES],
+    changes: u64,
+    /// The task that has each axis.
+    pub(super) owners: [usize; AXES],
+    /// Whether an axis knows its origin.
+    pub(super) known: [bool; AXES],
+    /// Coordinate at which each axis finds its origin.
+    pub(super) sensors: Place,
+    /// The return to origin under way.
+    pub(super) homing: Option<Homing>,
+}
+
+/// A return to origin.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Homing {
+    pub(super) owner: usize,
+    pub(super) axes: [bool; AXES],
+    /// Whether it is the search of synchronized axes.
+    pub(super) together: bool,
+}
+
+/// Something that an axis cannot get past.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Wall {
+    at: f64,
+    /// Whether the axis is below it.
+    below: bool,
+}
+
+/// What is left of an owner's moves that were interrupted.
+#[derive(Debug, Clone)]
+struct Held {
+    owner: usize,
+    rests: Vec<Rest>,
+    /// Where they were going.
+    aim: Place,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Rest {
+    path: Path,
+    done: f64,
+    drive: Drive,
+}
+
+impl Arm {
+    /// Where the axes should be.
+    pub(super) fn commanded(&self, now: Now) -> Place {
+        self.segments.iter().fold(self.goal, |place, segment| plus(&place, &segment.rest(now)))
+    }
+
+    /// Where the axes are.
+    pub(super) fn position(&self, now: Now) -> Place {
+        let commanded = self.commanded(now);
+        std::array::from_fn(|axis| match self.walls[axis] {
+            Some(wall) if wall.depth(commanded[axis]) > 0.0 => wall.at,
+            _ => commanded[axis],
+        })
+    }
+
+    /// Where all moves end.
+    pub(super) const fn goal(&self) -> Place {
+        self.goal
+    }
+
+    /// Puts the axes somewhere, at rest.
+    pub(super) fn put(&mut self, place: Place) {
+        self.touch();
+        self.segments.clear();
+        self.held.clear();
+        self.goal = place;
+    }
+
+    /// Gives the place where an axis rests another coordinate.
+    pub(super) fn rename(&mut self, axis: usize, coordinate: f64) {
+        self.touch();
+        if let Some(wall) = &mut self.walls[axis] {
+            wall.at += coordinate - self.goal[axis];
+        }
+        self.goal[axis] = coordinate;
+    }
+
+    /// Puts something in the way of an axis, or takes it away.
+    pub(super) fn set_wall(&mut self, axis: usize, at: Option<f64>, now: Now) {
+        self.touch();
+        let position = self.position(now)[axis];
+        self.walls[axis] = at.map(|at| Wall { at, below: position <= at });
+    }
+
+    /// What is in the way of an axis: its coordinate, and whether the axis is below it.
+    pub(super) fn wall(&self, axis: usize) -> Option<(f64, bool)> {
+        self.walls[axis].map(|wall| (wall.at, wall.below))
+    }
+
+    /// How often the moves have changed.
+    pub(super) const fn changes(&self) -> u64 {
+        self.changes
+    }
+
+    /// Counts as a change of the moves: something else is to be watched.
+    pub(super) const fn touch(&mut self) {
+        self.changes += 1;
+    }
+
+    /// How far an axis pushes beyond what is in its way, in mm; 0 if it does not.
+    pub(super) fn push(&self, axis: usize, now: Now) -> f64 {
+        self.walls[axis].map_or(0.0, |wall| wall.depth(self.commanded(now)[axis]).max(0.0))
+    }
+
+    pub(super) fn is_moving(&self, now: Now) -> bool {
+        self.segments.iter().any(|segment| segment.ends() > now)
+    }
+
+    /// Whether an owner has something to move.
+    pub(super) fn is_busy(&self, owner: usize, now: Now) -> bool {
+        self.segments.iter().any(|segment| segment.owner == owner && segment.ends() > now)
+    }
+
+    /// When the next move of anybody is over.
+    pub(super) fn next_end(&self) -> Option<Now> {
+        self.segments.iter().map(Segment::ends).min()
+    }
+
+    /// Adds a move, which begins where the owner's last one ends.
+    pub(super) fn begin(&mut self, segment: Segment) {
+        self.touch();
+        self.goal = plus(&self.goal, &segment.way());
+        self.segments.push(segment);
+    }
+
+    /// Forgets moves that are over.
+    pub(super) fn settle(&mut self, now: Now) {
+        if self.segments.iter().any(|segment| segment.ends() <= now) {
+            self.segments.retain(|segment| segment.ends() > now);
+            self.touch();
+        }
+    }
+
+    /// Slows all moves down; what pushes stops where it is. What is left is kept for [`Arm::resume`].
+    pub(super) fn brake(&mut self, now: Now) {
+        (0..=HOST).for_each(|owner| self.brake_one(owner, now));
+    }
+
+    /// The same with one owner's moves.
+    pub(super) fn brake_one(&mut self, owner: usize, now: Now) {
+        let pushes = (0..AXES).any(|axis| self.belongs(axis, owner) && self.push(axis, now) > 0.0);
+        self.halt(owner, now, !pushes);
+    }
+
+    /// Stops all moves where they are. What is left is kept for [`Arm::resume`].
+    pub(super) fn freeze(&mut self, now: Now) {
+        (0..=HOST).for_each(|owner| self.freeze_one(owner, now));
+    }
+
+    /// The same with one owner's moves.
+    pub(super) fn freeze_one(&mut self, owner: usize, now: Now) {
+        self.halt(owner, now, false);
+    }
+
+    /// Whether something is left of an owner's interrupted moves.
+    pub(super) fn is_held(&self, owner: usize) -> bool {
+        self.held.iter().any(|held| held.owner == owner)
+    }
+
+    /// Forgets what is left of an owner's interrupted moves.
+    pub(super) fn drop_held(&mut self, owner: usize) {
+        self.held.retain(|held| held.owner != owner);
+    }
+
+    /// Goes on with an owner's interrupted moves; if the axes were moved since, straight to where they went.
+    pub(super) fn resume(&mut self, owner: usize, now: Now) {
+        let Some(index) = self.held.iter().position(|held| held.owner == owner) else { return };
+        let held = self.held.remove(index);
+        let left = |axis: usize| {
+            held.rests.iter().map(|rest| rest.path.end()[axis] - rest.path.at(rest.done)[axis]).sum::<f64>()
+        };
+        let fits = |axis: usize| (self.goal[axis] + left(axis) - held.aim[axis]).abs() < SAME;
+        if (0..AXES).all(|axis| !self.belongs(axis, owner) || fits(axis)) {
+            for rest in held.rests {
+                self.begin(Segment::new(owner, rest.path, rest.done, rest.drive, now));
+            }
+            return;
+        }
+        let Some(last) = held.rests.last() else { return };
+        let mut to = self.goal;
+        for axis in (0..AXES).filter(|&axis| self.belongs(axis, owner)) {
+            to[axis] = held.aim[axis];
+        }
+        let length = minus(&to, &self.goal).into_iter().map(f64::abs).fold(0.0, f64::max);
+        self.begin(Segment::new(owner, Path::line(self.goal, to, length), 0.0, last.drive, now));
+    }
+
+    /// When an axis first is on the other side of what `test` tells apart than it is now.
+    pub(super) fn crossing(&self, axis: usize, test: impl Fn(f64) -> bool, now: Now) -> Option<Now> {
+        let is = |at: Now| test(self.commanded(at)[axis]);
+        let before = is(now);
+        let mut bends: Vec<Now> = self.segments.iter().flat_map(Segment::bends).filter(|&at| at > now).collect();
+        bends.sort_unstable();
+        let mut from = now;
+        for to in bends {
+            let piece = (to - from) / PIECES;
+            for part in 1..=PIECES {
+                let at = if part == PIECES { to } else { from + piece * part };
+                if is(at) != before {
+                    return Some(narrow(at - piece, at, |at| is(at) != before));
+                }
+            }
+            from = to;
+        }
+        None
+    }
+
+    fn belongs(&self, axis: usize, owner: usize) -> bool {
+        owner == HOST || self.owners[axis] == owner
+    }
+
+    /// Ends an owner's moves, by a ramp or at once. The goal becomes where they end then.
+    fn halt(&mut self, owner: usize, now: Now, ramp: bool) {
+        self.touch();
+        let (position, aim) = (self.position(now), self.goal);
+        let mut rests = Vec::new();
+        for segment in std::mem::take(&mut self.segments) {
+            if segment.owner != owner || segment.ends() <= now {
+                self.segments.push(segment);
+                continue;
+            }
+            let braked = segment.braked(now);
+            let done = if ramp && !segment.is_to_come(now) {
+                self.goal = plus(&self.goal, &minus(&braked.end(), &segment.end()));
+                self.segments.push(braked);
+                braked.done(braked.ends())
+            } else {
+                self.goal = plus(&self.goal, &segment.rest(now));
+                segment.done(now)
+            };
+            rests.push(Rest { path: segment.path, done, drive: segment.drive });
+        }
+        if !ramp {
+            // What pushed stays where it got to.
+            let commanded = self.commanded(now);
+            for axis in 0..AXES {
+                if self.belongs(axis, owner) {
+                    self.goal[axis] += position[axis] - commanded[axis];
+                }
+            }
+        }
+        if !rests.is_empty() {
+            self.drop_held(owner);
+            self.held.push(Held { owner, rests, aim });
+        }
+    }
+}
+
+impl Wall {
+    /// How far beyond it a coordinate is.
+    fn depth(self, coordinate: f64) -> f64 {
+        if self.below { coordinate - self.at } else { self.at - coordinate }
+    }
+}
+
+/// The moment between two at which something becomes so; it is so at the moment returned.
+fn narrow(mut before: Now, mut after: Now, so: impl Fn(Now) -> bool) -> Now {
+    for _ in 0..HALVINGS {
+        let middle = before + (after - before) / 2;
+        if middle == before {
+            break;
+        }
+        if so(middle) { after = middle } else { before = middle }
+    }
+    after
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    const DRIVE: Drive = Drive { speed: 100.0, up: 0.1, down: 0.1 };
+
+    fn ms(ms: u64) -> Now {
+        Duration::from_millis(ms)
+    }
+
+    fn to(arm: &mut Arm, place: Place, at: Now) {
+        let from = arm.goal();
+        let length = minus(&place, &from).into_iter().map(f64::abs).fold(0.0, f64::max);
+        arm.begin(Segment::new(0, Path::line(from, place, length), 0.0, DRIVE, at));
+    }
+
+    fn near(a: Place, b: Place) -> bool {
+        a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6)
+    }
+
+    #[test]
+    fn moves_add_up() {
+        let mut arm = Arm::default();
+        to(&mut arm, [100.0, 0.0, 0.0, 0.0], ms(0));
+        // 100 mm take 1.1 s; the second move begins with the last ramp.
+        to(&mut arm, [100.0, 100.0, 0.0, 0.0], ms(1000));
+        assert!(near(arm.commanded(ms(1000)), [95.0, 0.0, 0.0, 0.0]));
+        assert!(near(arm.commanded(ms(1050)), [98.75, 1.25, 0.0, 0.0]), "the corner is rounded");
+        assert!(near(arm.commanded(ms(2100)), [100.0, 100.0, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn what_was_braked_goes_on() {
+        let mut arm = Arm::default();
+        to(&mut arm, [100.0, 0.0, 0.0, 0.0], ms(0));
+        arm.brake(ms(500));
+        assert!(near(arm.goal(), [50.0, 0.0, 0.0, 0.0]), "45 mm, and a ramp of 5");
+        assert!(!arm.is_moving(ms(600)));
+        arm.resume(0, ms(5000));
+        assert!(near(arm.commanded(ms(9000)), [100.0, 0.0, 0.0, 0.0]));
+        assert!(near(arm.commanded(ms(5100)), [55.0, 0.0, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn what_was_moved_since_goes_on_to_the_same_place() {
+        let mut arm = Arm::default();
+        to(&mut arm, [100.0, 0.0, 0.0, 0.0], ms(0));
+        arm.freeze(ms(500));
+        assert!(near(arm.goal(), [45.0, 0.0, 0.0, 0.0]));
+        arm.settle(ms(500));
+        arm.begin(Segment::new(HOST, Path::line(arm.goal(), [0.0, 7.0, 0.0, 0.0], 45.0), 0.0, DRIVE, ms(600)));
+        arm.resume(0, ms(5000));
+        assert!(near(arm.goal(), [100.0, 0.0, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn nothing_gets_past_a_wall() {
+        let mut arm = Arm::default();
+        arm.set_wall(0, Some(30.0), ms(0));
+        to(&mut arm, [100.0, 0.0, 0.0, 0.0], ms(0));
+        let contact = arm.crossing(0, |x| x > 30.0, ms(0)).unwrap();
+        assert!((contact.as_secs_f64() - 0.35).abs() < 1e-6);
+        assert!(near(arm.position(ms(500)), [30.0, 0.0, 0.0, 0.0]));
+        assert!((arm.push(0, ms(500)) - 15.0).abs() < 1e-6);
+        arm.brake(ms(500));
+        assert!(near(arm.goal(), [30.0, 0.0, 0.0, 0.0]));
+        arm.set_wall(0, None, ms(600));
+        arm.resume(0, ms(600));
+        assert!(near(arm.goal(), [100.0, 0.0, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn a_crossing_is_found_both_ways() {
+        let mut arm = Arm::default();
+        to(&mut arm, [100.0, 0.0, 0.0, 0.0], ms(0));
+        let at = arm.crossing(0, |x| x >= 55.0, ms(0)).unwrap();
+        assert!(arm.commanded(at)[0] >= 55.0);
+        assert!((at.as_secs_f64() - 0.6).abs() < 1e-6);
+        assert_eq!(arm.crossing(0, |x| x >= 55.0, at), None);
+        assert_eq!(arm.crossing(1, |y| y >= 55.0, ms(0)), None);
+    }
+}

@@ -1,0 +1,177 @@
+//! The commands of the host: which may be done when, and what they answer.
+
+use super::memory::index;
+use super::operate::Refusal;
+use super::world::{Mode, World};
+use crate::controller::toyo::field::{Mask, Value};
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::request::{BlockError, Request};
+use crate::controller::toyo::table::Command;
+
+/// What a command is answered.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Reply {
+    /// `@OK`.
+    Done,
+    /// Values in a form of the answer.
+    Data(usize, Vec<Value>),
+}
+
+/// Carries a block out; what to answer, without line end.
+pub(super) fn answer(world: &mut World, block: &str) -> String {
+    let reply = parse(block).and_then(|request| {
+        let reply = carry_out(world, &request)?;
+        Ok(match reply {
+            Reply::Done => "@OK".to_owned(),
+            Reply::Data(form, values) => {
+                let record = request.row().answers[form].record(values).map_err(|error| error.to_string())?;
+                format!("@{}", record.written())
+            }
+        })
+    });
+    world.settle();
+    reply.unwrap_or_else(|why| {
+        world.refusal = Some((block.to_owned(), why));
+        "@NG".to_owned()
+    })
+}
+
+/// A block that is exact to the character: this controller is stricter than the codec.
+fn parse(block: &str) -> Result<Request, String> {
+    let text = |error: BlockError| error.to_string();
+    let request = Request::parse(block).map_err(text)?;
+    request.check().map_err(text)?;
+    let given = block.trim_end_matches(' ').replacen("@HTSK", "@CTSK", 1);
+    let content = request.content().map_err(text)?.map(|content| content.written());
+    if request.text() != given || content.is_some_and(|content| !given.ends_with(&content)) {
+        return Err(format!("it is not in form: {} is", request.text()));
+    }
+    Ok(request)
+}
+
+fn carry_out(world: &mut World, request: &Request) -> Result<Reply, String> {
+    let row = request.row();
+    if row.needs_host && !world.switches.host {
+        return Err("the host is off".to_owned());
+    }
+    if !world.has(row.only_on) {
+        return Err(format!("a {} does not have this command", world.model));
+    }
+    let refused = |refusal: Refusal| refusal.to_owned();
+    if row.writes_eeprom {
+        world.idle().map_err(refused)?;
+    }
+    let fields = Fields(request.record());
+    let done = |()| Reply::Done;
+    match row.command {
+        Command::Hson => world.host(true).map(done).map_err(refused),
+        Command::Hsof => world.host(false).map(done).map_err(refused),
+        Command::Mpro => world.choose_mode(Mode::Program).map(done).map_err(refused),
+        Command::Mstp => world.choose_mode(Mode::Step).map(done).map_err(refused),
+        Command::Maut => world.choose_mode(Mode::Automatic).map(done).map_err(refused),
+        Command::Mseq => world.choose_kind(false).map(done).map_err(refused),
+        Command::Mple => world.choose_kind(true).map(done).map_err(refused),
+        Command::Home => world.home().map(done).map_err(refused),
+        Command::Spst => world.start_sequential(fields.index("step")).map(done).map_err(refused),
+        Command::Ppst => world.start_palletizing().map(done).map_err(refused),
+        Command::Sesy => world.start_easy().map(done).map_err(refused),
+        Command::Extp => world.start_point(fields.number("point")).map(done).map_err(refused),
+        Command::Stop => {
+            world.stop();
+            Ok(Reply::Done)
+        }
+        Command::Jgst => world.jog(["x", "y", "z", "r"].map(|axis| fields.word(axis))).map(done).map_err(refused),
+        Command::Dout => direct(world, request).map(done).map_err(refused),
+        Command::Rest => world.reset().map(done).map_err(refused),
+        Command::Cerr => world.cancel_error().map(done).map_err(refused),
+        Command::Svon => world.servo(true).map(done).map_err(refused),
+        Command::Svof => world.servo(false).map(done).map_err(refused),
+        Command::Sorg => world.search_origin(fields.index("axis") - 1).map(done).map_err(refused),
+        Command::Spln => {
+            world.idle().map_err(refused)?;
+            world.pallet = fields.index("program");
+            Ok(Reply::Done)
+        }
+        Command::Sesn => {
+            world.idle().map_err(refused)?;
+            world.easy = fields.index("program");
+            Ok(Reply::Done)
+        }
+        Command::Ctsk => {
+            world.current = fields.index("task") - 1;
+            Ok(Reply::Done)
+        }
+        Command::Wmca => {
+            world.idle().map_err(refused)?;
+            let begun = world.card.write(world.now);
+            if begun { Ok(Reply::Done) } else { Err("no memory card is inserted".to_owned()) }
+        }
+        Command::Rmca => {
+            world.idle().map_err(refused)?;
+            let begun = world.card.read(world.now);
+            if begun { Ok(Reply::Done) } else { Err("there is no memory card that was written".to_owned()) }
+        }
+        Command::Mrss => {
+            let place = ["x", "y", "z", "r"].map(|axis| f64::from(fields.number(axis)) / 100.0);
+            world.supply(fields.index("task") - 1, place, fields.number("speed")).map(done).map_err(refused)
+        }
+        Command::Mcst => {
+            world.counters[fields.index("counter")] = u16::try_from(fields.number("count")).unwrap_or_default();
+            Ok(Reply::Done)
+        }
+        Command::Type => {
+            world.idle().map_err(refused)?;
+            Ok(robot_type(world, fields.index("axis") - 1, fields.number("robot_type")))
+        }
+        command if row.writes_eeprom || command == Command::Sstg => super::edit::carry_out(world, request),
+        _ => super::monitor::answer(world, request),
+    }
+}
+
+/// Sets a robot type that is known; the answer is the one in force.
+fn robot_type(world: &mut World, axis: usize, robot_type: i32) -> Reply {
+    if world.robot_types.contains(&robot_type) {
+        world.memory.set_robot_type(axis, robot_type);
+        world.switches.machine_changed = true;
+        world.memory_changed();
+    }
+    let number = i32::try_from(axis + 1).unwrap_or_default();
+    Reply::Data(0, vec![Value::Number(number), Value::Number(world.memory.content.robot_types[axis])])
+}
+
+/// Sets the bits of a port, or one that M12 has assigned.
+fn direct(world: &mut World, request: &Request) -> Result<(), Refusal> {
+    if world.switches.machine_changed {
+        return Err("parameter 2 was changed: power must be cycled first");
+    }
+    let fields = Fields(request.record());
+    let (port, mask) = match request.record().mask("data") {
+        Some(mask) => (fields.port(), mask),
+        None => {
+            let bit = world.settings.direct[fields.index("direct") - 1].ok_or("no bit is assigned to it (M12)")?;
+            (bit.port, Mask { care: bit.mask(), bits: bit.mask() })
+        }
+    };
+    if world.ports.set_output(port, mask) { Ok(()) } else { Err("there is no such port") }
+}
+
+/// The values of a request, which are all in range.
+pub(super) struct Fields<'a>(pub(super) &'a Record);
+
+impl Fields<'_> {
+    pub(super) fn number(&self, name: &str) -> i32 {
+        self.0.number(name).unwrap_or_default()
+    }
+
+    pub(super) fn index(&self, name: &str) -> usize {
+        index(self.number(name))
+    }
+
+    pub(super) fn word(&self, name: &str) -> &'static str {
+        self.0.word(name).unwrap_or_default()
+    }
+
+    fn port(&self) -> super::io::Port {
+        super::io::Port { station: self.index("station"), port: self.index("port") }
+    }
+}

@@ -1,0 +1,132 @@
+//! Return to origin, and JOG.
+
+use super::arm::{HOST, Homing};
+use super::errors::code;
+use super::motion::{AXES, Drive, Path, Place, Segment};
+use super::trace::What;
+use super::watch::NEAR;
+use super::world::{Jog, World};
+use crate::controller::Now;
+
+/// How far an axis backs off its origin sensor to come upon it slowly, in mm.
+const BACK_OFF: f64 = 1.0;
+/// Beyond this an axis cannot get, in mm: its mechanical ends.
+const END: f64 = 8000.0;
+
+impl World {
+    /// Begins the return to origin of some axes, in the order of P07.
+    ///
+    /// An axis that knows its origin first goes near it, fast (E13); then it seeks its sensor at middle speed, backs off,
+    /// and comes upon it slowly.
+    pub(super) fn begin_homing(&mut self, owner: usize, axes: &[usize]) {
+        let mut begin = self.now;
+        for rank in 1..=4 {
+            let mut end = begin;
+            for &axis in axes {
+                if self.settings.sequence[axis] == rank {
+                    end = end.max(self.seek_origin(owner, axis, begin));
+                }
+            }
+            begin = end;
+        }
+        for &axis in axes {
+            self.arm.known[axis] = false;
+        }
+        let axes = std::array::from_fn(|axis| axes.contains(&axis));
+        self.arm.homing = Some(Homing { owner, axes, together: false });
+    }
+
+    /// The moves of one axis; when they are over.
+    fn seek_origin(&mut self, owner: usize, axis: usize, begin: Now) -> Now {
+        let [slow, middle, fast] = self.machine.origin[axis];
+        let sensor = self.arm.sensors[axis];
+        let back = if self.machine.upwards[axis] { -BACK_OFF } else { BACK_OFF };
+        let mut legs = vec![(sensor, middle), (sensor + back, slow), (sensor, slow)];
+        if self.arm.known[axis] {
+            legs.insert(0, (self.machine.fast[axis], fast));
+        }
+        let (ramp, mut at, mut from) = (self.ramp(1), begin, self.arm.goal());
+        for (coordinate, speed) in legs {
+            let mut to = from;
+            to[axis] = coordinate;
+            let length = (to[axis] - from[axis]).abs();
+            if length > NEAR {
+                let drive = Drive { speed: speed.min(self.machine.top[axis]), up: ramp, down: ramp };
+                let segment = Segment::new(owner, Path::line(from, to, length), 0.0, drive, at);
+                at = segment.ends();
+                self.arm.begin(segment);
+            }
+            from = to;
+        }
+        at
+    }
+
+    /// Ends a return to origin whose moves are over: the axes get their coordinates.
+    pub(super) fn end_homing(&mut self) {
+        let Some(homing) = self.arm.homing else { return };
+        if self.arm.is_busy(homing.owner, self.now) {
+            return;
+        }
+        self.arm.homing = None;
+        for axis in (0..AXES).filter(|&axis| homing.axes[axis]) {
+            self.arm.rename(axis, self.settings.origin[axis]);
+            self.arm.sensors[axis] = self.settings.origin[axis];
+            self.arm.known[axis] = true;
+        }
+        self.synchronized |= homing.together;
+        self.note(What::Origin);
+    }
+
+    /// Leaves a task's return to origin off.
+    pub(super) fn forget_homing(&mut self, owner: usize) {
+        self.arm.homing.take_if(|homing| homing.owner == owner);
+    }
+
+    /// Begins a JOG of one axis: `+C`, `-L` and so on.
+    pub(super) fn begin_jog(&mut self, axis: usize, word: &'static str) -> Result<(), u8> {
+        let upwards = word.starts_with('+');
+        let sign = if upwards { 1.0 } else { -1.0 };
+        let from = self.arm.goal();
+        let [low, high] = self.settings.jog[axis];
+        let bound = if upwards { self.settings.plus[axis] } else { self.settings.minus[axis] };
+        let limit = self.arm.known[axis].then_some((bound, upwards));
+        let mut to: Place = from;
+        let inches = word.ends_with('C');
+        to[axis] = if inches { from[axis] + sign * self.settings.inch[axis] } else { sign * END };
+        let length = (to[axis] - from[axis]).abs();
+        let path = Path::line(from, to, length);
+        if inches && limit.is_some() {
+            self.within(&[axis], &path, code::target)?;
+        }
+        // At a limit there is nothing left to go.
+        if limit.is_some_and(|(bound, _)| sign * (from[axis] - bound) > -NEAR) && !inches {
+            return Err(code::beyond(axis, upwards));
+        }
+        if length < NEAR {
+            return Ok(());
+        }
+        let ramp = self.ramp(1);
+        let speed = if word.ends_with('H') { high } else { low }.min(self.machine.top[axis]);
+        self.arm.begin(Segment::new(HOST, path, 0.0, Drive { speed, up: ramp, down: ramp }, self.now));
+        self.jog = Some(Jog { axis, word, limit });
+        Ok(())
+    }
+
+    /// Lets a JOG come to rest.
+    pub(super) fn end_jog(&mut self) {
+        if self.jog.take().is_some() {
+            self.arm.brake_one(HOST, self.now);
+            self.arm.drop_held(HOST);
+        }
+    }
+
+    /// Searches the origin of a drive axis and the one it drives, together.
+    pub(super) fn synchronize(&mut self, drive: usize) {
+        let driven = self.machine.driver.iter().position(|driver| *driver == Some(drive));
+        let axes: Vec<usize> = std::iter::once(drive).chain(driven).collect();
+        self.begin_homing(HOST, &axes);
+        if let Some(homing) = &mut self.arm.homing {
+            homing.together = true;
+        }
+    }
+}

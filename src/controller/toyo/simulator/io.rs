@@ -1,0 +1,116 @@
+//! Input, output and internal ports.
+
+use super::memory::index;
+use crate::controller::toyo::field::Mask;
+use crate::controller::toyo::layout::Record;
+
+/// Stations: the controller's own ports, and four more.
+pub(super) const STATIONS: usize = 5;
+/// Input and output ports of the controller itself (TO 2-8).
+const OWN: (usize, usize) = (23, 18);
+/// Input and output ports of another station.
+const OTHER: (usize, usize) = (3, 2);
+/// Internal ports that an instruction can name with its one digit; MNIN shows the first four.
+const INTERNAL: usize = 9;
+
+/// A port, which need not exist.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Port {
+    pub(super) station: usize,
+    /// From 1.
+    pub(super) port: usize,
+}
+
+/// A bit of a port.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct PortBit {
+    pub(super) port: Port,
+    /// From 1.
+    pub(super) bit: u8,
+}
+
+/// All ports.
+#[derive(Debug, Clone)]
+pub(super) struct Ports {
+    inputs: [Vec<u8>; STATIONS],
+    outputs: [Vec<u8>; STATIONS],
+    pub(super) internal: [u8; INTERNAL],
+    /// SY01 of the inputs.
+    pub(super) system: u8,
+}
+
+impl Default for Ports {
+    fn default() -> Self {
+        let ports = |own, other| std::array::from_fn(|station| vec![0; if station == 0 { own } else { other }]);
+        Self { inputs: ports(OWN.0, OTHER.0), outputs: ports(OWN.1, OTHER.1), internal: [0; INTERNAL], system: 0 }
+    }
+}
+
+impl PortBit {
+    /// Of a parameter, whose fields end in `suffix`; `None` if no bit is assigned.
+    pub(super) fn of(record: &Record, suffix: &str) -> Option<Self> {
+        let field = |name: &str| record.number(&format!("{name}{suffix}")).map(index);
+        let bit = u8::try_from(field("bit")?).ok().filter(|bit| *bit > 0)?;
+        Some(Self { port: Port { station: field("station")?, port: field("port")? }, bit })
+    }
+
+    pub(super) const fn mask(self) -> u8 {
+        1 << (self.bit - 1)
+    }
+}
+
+impl Ports {
+    pub(super) fn input(&self, port: Port) -> Option<u8> {
+        at(&self.inputs, port)
+    }
+
+    pub(super) fn output(&self, port: Port) -> Option<u8> {
+        at(&self.outputs, port)
+    }
+
+    /// Whether there is such an input port, which then has these bits.
+    pub(super) fn set_input(&mut self, port: Port, mask: Mask) -> bool {
+        set(&mut self.inputs, port, mask)
+    }
+
+    /// Whether there is such an output port, which then has these bits.
+    pub(super) fn set_output(&mut self, port: Port, mask: Mask) -> bool {
+        set(&mut self.outputs, port, mask)
+    }
+
+    /// Whether an input is on; one that does not exist is off.
+    pub(super) fn is_on(&self, bit: Option<PortBit>) -> bool {
+        bit.is_some_and(|bit| self.input(bit.port).is_some_and(|port| port & bit.mask() != 0))
+    }
+
+    /// The number that the bits of a port from this one on make.
+    pub(super) fn number(&self, bit: PortBit) -> u8 {
+        self.input(bit.port).unwrap_or_default() >> (bit.bit - 1)
+    }
+
+    /// Switches an output; one that does not exist takes no notice.
+    pub(super) fn switch(&mut self, bit: PortBit, on: bool) {
+        let care = bit.mask();
+        self.set_output(bit.port, Mask { care, bits: if on { care } else { 0 } });
+    }
+
+    pub(super) fn clear_outputs(&mut self) {
+        self.outputs.iter_mut().for_each(|ports| ports.fill(0));
+    }
+
+    /// All output ports.
+    pub(super) fn outputs(&self) -> impl Iterator<Item = (Port, u8)> {
+        self.outputs.iter().enumerate().flat_map(|(station, ports)| {
+            ports.iter().enumerate().map(move |(port, bits)| (Port { station, port: port + 1 }, *bits))
+        })
+    }
+}
+
+fn at(ports: &[Vec<u8>; STATIONS], port: Port) -> Option<u8> {
+    ports.get(port.station)?.get(port.port.checked_sub(1)?).copied()
+}
+
+fn set(ports: &mut [Vec<u8>; STATIONS], port: Port, mask: Mask) -> bool {
+    let place = port.port.checked_sub(1).and_then(|index| ports.get_mut(port.station)?.get_mut(index));
+    place.map(|bits| *bits = mask.applied(*bits)).is_some()
+}

@@ -1,0 +1,424 @@
+//! How axes move: ramps, and the lines and arcs they move along, all in closed form.
+
+use std::f64::consts::TAU;
+use std::time::Duration;
+
+use crate::controller::Now;
+
+/// Axes a controller can have.
+pub(super) const AXES: usize = 4;
+/// Axes that a circle can lie in.
+const SPACE: usize = 3;
+/// A circle through points that are nearer to a line than this has no radius: mm² of their parallelogram.
+const FLAT: f64 = 1e-6;
+
+/// Coordinates of all axes, in mm.
+pub(super) type Place = [f64; AXES];
+
+/// Speeds of a move along its path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Drive {
+    /// mm/s.
+    pub(super) speed: f64,
+    /// Seconds from standstill to that speed.
+    pub(super) up: f64,
+    /// Seconds from that speed to standstill.
+    pub(super) down: f64,
+}
+
+/// Distance over time: up to three phases of steady acceleration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Profile {
+    phases: [Phase; 3],
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Phase {
+    seconds: f64,
+    from: f64,
+    to: f64,
+}
+
+/// A way through space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Path {
+    /// Straight, all axes in proportion.
+    Line { from: Place, to: Place, length: f64 },
+    /// On a circle; axes outside of its plane go in proportion.
+    Arc(Arc),
+}
+
+/// Part of a circle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Arc {
+    from: Place,
+    to: Place,
+    center: Place,
+    radius: f64,
+    /// Unit vectors in its plane; the first one points to the start.
+    basis: [Place; 2],
+    angle: f64,
+}
+
+/// A move under way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Segment {
+    /// Whose it is.
+    pub(super) owner: usize,
+    pub(super) path: Path,
+    /// How much of the path was done before.
+    skip: f64,
+    pub(super) drive: Drive,
+    profile: Profile,
+    began: Now,
+    /// Where it ends, which is before the end of its path after it was braked.
+    end: Place,
+}
+
+impl Drive {
+    fn deceleration(self) -> f64 {
+        self.speed / self.down
+    }
+}
+
+impl Profile {
+    /// Speeds up, runs, slows down. On a short way the same accelerations reach a lower speed.
+    pub(super) fn trapezoid(length: f64, drive: Drive) -> Self {
+        let ramps = drive.speed * (drive.up + drive.down) / 2.0;
+        let share = if length < ramps { (length / ramps).sqrt() } else { 1.0 };
+        let peak = drive.speed * share;
+        Self {
+            phases: [
+                Phase { seconds: drive.up * share, from: 0.0, to: peak },
+                Phase { seconds: ((length - ramps) / drive.speed).max(0.0), from: peak, to: peak },
+                Phase { seconds: drive.down * share, from: peak, to: 0.0 },
+            ],
+        }
+    }
+
+    /// Slows down from a speed.
+    fn stop(speed: f64, deceleration: f64) -> Self {
+        let rest = Phase { seconds: 0.0, from: 0.0, to: 0.0 };
+        Self { phases: [rest, rest, Phase { seconds: speed / deceleration, from: speed, to: 0.0 }] }
+    }
+
+    pub(super) fn seconds(&self) -> f64 {
+        self.phases.iter().map(|phase| phase.seconds).sum()
+    }
+
+    pub(super) fn length(&self) -> f64 {
+        self.phases.iter().map(|phase| (phase.from + phase.to) / 2.0 * phase.seconds).sum()
+    }
+
+    /// Distance and speed after a time.
+    pub(super) fn at(&self, seconds: f64) -> (f64, f64) {
+        let (mut left, mut distance) = (seconds.max(0.0), 0.0);
+        for phase in &self.phases {
+            let time = left.min(phase.seconds);
+            let speed = if phase.seconds > 0.0 {
+                phase.from + (phase.to - phase.from) * time / phase.seconds
+            } else {
+                phase.to
+            };
+            distance += (phase.from + speed) / 2.0 * time;
+            if left < phase.seconds {
+                return (distance, speed);
+            }
+            left -= phase.seconds;
+        }
+        (distance, 0.0)
+    }
+
+    /// Seconds until it slows down.
+    fn steady(&self) -> f64 {
+        self.phases[0].seconds + self.phases[1].seconds
+    }
+}
+
+impl Path {
+    /// A line; its length is that of the axes that decide about the speed.
+    pub(super) fn line(from: Place, to: Place, length: f64) -> Self {
+        Self::Line { from, to, length }
+    }
+
+    pub(super) fn length(&self) -> f64 {
+        match self {
+            Self::Line { length, .. } => *length,
+            Self::Arc(arc) => arc.radius * arc.angle,
+        }
+    }
+
+    pub(super) fn end(&self) -> Place {
+        match self {
+            Self::Line { to, .. } => *to,
+            Self::Arc(arc) => arc.to,
+        }
+    }
+
+    /// Where it is after some of its length.
+    pub(super) fn at(&self, distance: f64) -> Place {
+        let share = if self.length() > 0.0 { (distance / self.length()).clamp(0.0, 1.0) } else { 1.0 };
+        match self {
+            Self::Line { from, to, .. } => blend(from, to, share),
+            Self::Arc(arc) => arc.at(share),
+        }
+    }
+
+    /// Least and greatest coordinate of an axis on the way.
+    pub(super) fn range(&self, axis: usize) -> (f64, f64) {
+        match self {
+            Self::Line { from, to, .. } => (from[axis].min(to[axis]), from[axis].max(to[axis])),
+            Self::Arc(arc) => arc.range(axis),
+        }
+    }
+
+    /// How fast an axis can become, as a share of the speed along the path.
+    pub(super) fn steepness(&self, axis: usize) -> f64 {
+        match self {
+            Self::Line { from, to, length } if *length > 0.0 => (to[axis] - from[axis]).abs() / length,
+            Self::Line { .. } => 0.0,
+            Self::Arc(arc) => {
+                let along = (arc.to[axis] - arc.from[axis]).abs() / (arc.radius * arc.angle);
+                if axis < SPACE { arc.reach(axis) / arc.radius } else { along }
+            }
+        }
+    }
+}
+
+impl Arc {
+    /// From a place through another to a third, on the circle in the first axes; `None` if they are on a line.
+    ///
+    /// `round` tells which axes the circle lies in: the first two or three that are named.
+    pub(super) fn through(from: Place, via: Place, to: Place, round: &[usize]) -> Option<Self> {
+        let flat = |place: Place| std::array::from_fn(|axis| if round.contains(&axis) { place[axis] } else { 0.0 });
+        let (p0, p1, p2): (Place, Place, Place) = (flat(from), flat(via), flat(to));
+        let (a, b) = (minus(&p0, &p2), minus(&p1, &p2));
+        let normal = cross(&a, &b);
+        let area = dot(&normal, &normal);
+        if area.sqrt() < FLAT {
+            return None;
+        }
+        let (aa, bb) = (dot(&a, &a), dot(&b, &b));
+        let turned = cross(&std::array::from_fn(|axis| aa * b[axis] - bb * a[axis]), &normal);
+        let center: Place = std::array::from_fn(|axis| p2[axis] + turned[axis] / (2.0 * area));
+        let spoke = minus(&p0, &center);
+        let radius = dot(&spoke, &spoke).sqrt();
+        // The plane is oriented so that the way through the middle point turns in the positive sense.
+        let axis = cross(&minus(&p1, &p0), &minus(&p2, &p1));
+        let size = dot(&axis, &axis).sqrt();
+        let first = spoke.map(|part| part / radius);
+        let second = cross(&axis.map(|part| part / size), &first);
+        let last = minus(&p2, &center);
+        let angle = dot(&last, &second).atan2(dot(&last, &first)).rem_euclid(TAU);
+        Some(Self { from, to, center, radius, basis: [first, second], angle })
+    }
+
+    pub(super) const fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    fn at(&self, share: f64) -> Place {
+        let (sin, cos) = (self.angle * share).sin_cos();
+        let along = blend(&self.from, &self.to, share);
+        std::array::from_fn(|axis| {
+            if self.reach(axis) > 0.0 && share < 1.0 {
+                self.center[axis] + self.radius * (cos * self.basis[0][axis] + sin * self.basis[1][axis])
+            } else {
+                along[axis]
+            }
+        })
+    }
+
+    /// How far an axis goes from the center.
+    fn reach(&self, axis: usize) -> f64 {
+        self.radius * self.basis[0][axis].hypot(self.basis[1][axis])
+    }
+
+    fn range(&self, axis: usize) -> (f64, f64) {
+        let (mut least, mut most) = (self.from[axis].min(self.to[axis]), self.from[axis].max(self.to[axis]));
+        let top = self.basis[1][axis].atan2(self.basis[0][axis]).rem_euclid(TAU);
+        if self.reach(axis) > 0.0 {
+            if top < self.angle {
+                most = most.max(self.center[axis] + self.reach(axis));
+            }
+            if (top + TAU / 2.0).rem_euclid(TAU) < self.angle {
+                least = least.min(self.center[axis] - self.reach(axis));
+            }
+        }
+        (least, most)
+    }
+}
+
+impl Segment {
+    /// A move that begins at a moment, which may be to come.
+    pub(super) fn new(owner: usize, path: Path, skip: f64, drive: Drive, began: Now) -> Self {
+        let profile = Profile::trapezoid((path.length() - skip).max(0.0), drive);
+        Self { owner, path, skip, drive, profile, began, end: path.end() }
+    }
+
+    pub(super) fn ends(&self) -> Now {
+        self.began.saturating_add(duration(self.profile.seconds()))
+    }
+
+    /// The moment in its last ramp when a share of that ramp is left.
+    pub(super) fn hands_over(&self, share: f64) -> Now {
+        let ramp = self.profile.seconds() - self.profile.steady();
+        self.began.saturating_add(duration(self.profile.seconds() - share * ramp))
+    }
+
+    /// How far it still is from its end.
+    pub(super) fn rest(&self, now: Now) -> Place {
+        if now >= self.ends() {
+            return [0.0; AXES];
+        }
+        minus(&self.path.at(self.done(now)), &self.end)
+    }
+
+    /// Where it ends.
+    pub(super) const fn end(&self) -> Place {
+        self.end
+    }
+
+    /// From its beginning to its end.
+    pub(super) fn way(&self) -> Place {
+        minus(&self.end, &self.path.at(self.skip))
+    }
+
+    /// How much of the path is done at a moment.
+    pub(super) fn done(&self, now: Now) -> f64 {
+        self.skip + self.distance(now)
+    }
+
+    /// The same, slowing down from now on. What already slows down goes on as it is.
+    pub(super) fn braked(self, now: Now) -> Self {
+        let (distance, speed) = self.profile.at(self.elapsed(now));
+        if self.elapsed(now) >= self.profile.steady() {
+            return self;
+        }
+        let profile = Profile::stop(speed, self.drive.deceleration());
+        let skip = self.skip + distance;
+        Self { skip, profile, began: now, end: self.path.at(skip + profile.length()), ..self }
+    }
+
+    /// Moments at which its acceleration changes.
+    pub(super) fn bends(&self) -> [Now; 4] {
+        let [up, run, down] = self.profile.phases.map(|phase| phase.seconds);
+        [0.0, up, up + run, up + run + down].map(|seconds| self.began.saturating_add(duration(seconds)))
+    }
+
+    /// Whether it has not begun.
+    pub(super) fn is_to_come(&self, now: Now) -> bool {
+        now < self.began
+    }
+
+    fn distance(&self, now: Now) -> f64 {
+        self.profile.at(self.elapsed(now)).0
+    }
+
+    fn elapsed(&self, now: Now) -> f64 {
+        now.saturating_sub(self.began).as_secs_f64()
+    }
+}
+
+/// Seconds as time; what is no time is none.
+pub(super) fn duration(seconds: f64) -> Duration {
+    Duration::try_from_secs_f64(seconds).unwrap_or_default()
+}
+
+/// The sum of two places.
+pub(super) fn plus(a: &Place, b: &Place) -> Place {
+    std::array::from_fn(|axis| a[axis] + b[axis])
+}
+
+/// The way from the second place to the first.
+pub(super) fn minus(a: &Place, b: &Place) -> Place {
+    std::array::from_fn(|axis| a[axis] - b[axis])
+}
+
+fn blend(from: &Place, to: &Place, share: f64) -> Place {
+    if share >= 1.0 { *to } else { std::array::from_fn(|axis| from[axis] + (to[axis] - from[axis]) * share) }
+}
+
+fn dot(a: &Place, b: &Place) -> f64 {
+    (0..SPACE).map(|axis| a[axis] * b[axis]).sum()
+}
+
+fn cross(a: &Place, b: &Place) -> Place {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], 0.0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(a: f64, b: f64) -> bool {
+        (a - b).abs() < 1e-9
+    }
+
+    const DRIVE: Drive = Drive { speed: 100.0, up: 0.2, down: 0.4 };
+
+    #[test]
+    fn a_long_way_is_a_trapezoid() {
+        // 10 mm up, 170 mm steady, 20 mm down.
+        let profile = Profile::trapezoid(200.0, DRIVE);
+        assert!(near(profile.seconds(), 0.2 + 1.7 + 0.4));
+        assert!(near(profile.length(), 200.0));
+        assert!(near(profile.at(0.1).0, 2.5) && near(profile.at(0.1).1, 50.0));
+        assert!(near(profile.at(1.2).0, 110.0) && near(profile.at(1.2).1, 100.0));
+        assert!(near(profile.at(2.1).0, 195.0) && near(profile.at(2.1).1, 50.0));
+        assert_eq!(profile.at(9.0).1, 0.0);
+    }
+
+    #[test]
+    fn a_short_way_is_a_triangle() {
+        // 7.5 mm are a quarter of the 30 mm that the ramps need: half the speed, half the times.
+        let profile = Profile::trapezoid(7.5, DRIVE);
+        assert!(near(profile.seconds(), 0.3));
+        assert!(near(profile.at(0.1).1, 50.0));
+        assert!(near(profile.length(), 7.5));
+    }
+
+    #[test]
+    fn a_quarter_of_a_circle_keeps_its_radius() {
+        let half = 50.0 * 2f64.sqrt();
+        let arc = Arc::through([100.0, 0.0, 5.0, 0.0], [half, half, 0.0, 0.0], [0.0, 100.0, 15.0, 0.0], &[0, 1]);
+        let arc = arc.unwrap();
+        assert!(near(arc.radius(), 100.0));
+        let path = Path::Arc(arc);
+        assert!(near(path.length(), 100.0 * TAU / 4.0));
+        let middle = path.at(path.length() / 2.0);
+        assert!(near(middle[0], half) && near(middle[1], half), "{middle:?}");
+        assert!(near(middle[2], 10.0), "what is not in the plane goes in proportion");
+        assert_eq!(path.at(path.length()), path.end());
+        assert_eq!(path.range(0), (0.0, 100.0));
+    }
+
+    #[test]
+    fn an_arc_reaches_beyond_its_points() {
+        // Three quarters of a circle about the origin, clockwise.
+        let arc = Arc::through([0.0, 10.0, 0.0, 0.0], [10.0, 0.0, 0.0, 0.0], [-10.0, 0.0, 0.0, 0.0], &[0, 1]).unwrap();
+        let path = Path::Arc(arc);
+        assert!(near(path.length(), 10.0 * TAU * 0.75));
+        assert!(near(path.range(1).0, -10.0));
+        assert!(near(path.at(10.0 * TAU / 4.0)[0], 10.0), "it goes through the second point");
+    }
+
+    #[test]
+    fn points_on_a_line_have_no_circle() {
+        assert_eq!(Arc::through([0.0; 4], [1.0, 1.0, 0.0, 0.0], [2.0, 2.0, 0.0, 0.0], &[0, 1]), None);
+    }
+
+    #[test]
+    fn a_braked_move_stops_before_its_end() {
+        let path = Path::line([0.0; 4], [200.0, 0.0, 0.0, 0.0], 200.0);
+        let segment = Segment::new(0, path, 0.0, DRIVE, Duration::from_secs(1));
+        // After 0.7 s: 10 mm of ramp and 50 mm; the stop takes 20 mm and 0.4 s.
+        let now = Duration::from_millis(1700);
+        let braked = segment.braked(now);
+        assert!(near(braked.end()[0], 80.0));
+        assert_eq!(braked.ends(), Duration::from_millis(2100));
+        assert!(near(braked.rest(now)[0], -20.0));
+        assert!(near(segment.rest(now)[0], -140.0));
+        assert_eq!(segment.hands_over(1.0), segment.bends()[2]);
+    }
+}

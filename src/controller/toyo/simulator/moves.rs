@@ -1,0 +1,173 @@
+//! Moves of programs: where they go, how fast, and what forbids them.
+
+use super::action::{Move, Target, Torque};
+use super::errors::code;
+use super::motion::{AXES, Arc, Drive, Path, Place, Segment, minus, plus};
+use super::run::Flow;
+use super::task::Wait;
+use super::watch::NEAR;
+use super::world::World;
+
+/// Rows of the coordinate table.
+const LAST_POINT: i32 = 999;
+/// Circles that are larger than this cannot be driven, in mm. The manual does not tell.
+const MOST_RADIUS: f64 = 8000.0;
+
+impl World {
+    /// Begins a move; the task goes on with a step once it is over.
+    pub(super) fn move_then(&mut self, index: usize, order: Move, next: usize) -> Result<Flow, u8> {
+        let order = match (order.to, self.tasks[index].supplied) {
+            (Target::Host, None) => return Ok(Flow::Wait(Wait::Host(order), next)),
+            (Target::Host, Some((place, row))) => {
+                let order = Move { to: Target::Place(place), speed: if row == 0 { order.speed } else { row }, ..order };
+                self.tasks[index].supplied = None;
+                order
+            }
+            _ => order,
+        };
+        if order.escape && self.ports.is_on(self.settings.escape) {
+            return Ok(Flow::To(next));
+        }
+        let axes = self.machine.tasks[index].axes.clone();
+        self.may_move(&axes)?;
+        let from = self.arm.goal();
+        let (base, to) = self.aim(index, &order, &from)?;
+        self.within(&axes, &self.line(index, from, base, order.line), code::target)?;
+        let path = self.line(index, from, to, order.line);
+        self.within(&axes, &path, code::beyond)?;
+        Ok(self.drive_then(index, path, &order, next))
+    }
+
+    /// Begins an arc through the place of this step to that of the next.
+    pub(super) fn arc_then(&mut self, index: usize, step: usize, first: Move) -> Result<Flow, u8> {
+        let Some(super::action::Action::Arc(second)) = self.memory.action(index, step + 1) else {
+            return Err(code::ARC_DATA);
+        };
+        let axes = self.machine.tasks[index].clone();
+        self.may_move(&axes.axes)?;
+        if axes.space < 2 {
+            return Err(code::ARC_DATA);
+        }
+        let from = self.arm.goal();
+        let (via_base, via) = self.aim(index, &first, &from)?;
+        let (to_base, to) = self.aim(index, &second, &via)?;
+        let round = &axes.axes[..axes.space];
+        let arc = |via: Place, to: Place| {
+            Arc::through(from, via, to, round).filter(|arc| arc.radius() <= MOST_RADIUS).map(Path::Arc)
+        };
+        if let Some(base) = arc(via_base, to_base) {
+            self.within(&axes.axes, &base, code::target)?;
+        }
+        let path = arc(via, to).ok_or(code::ARC_RADIUS)?;
+        self.within(&axes.axes, &path, code::beyond)?;
+        Ok(self.drive_then(index, path, &Move { pass: second.pass, ..first }, step + 2))
+    }
+
+    /// Whether axes may move in a program.
+    pub(super) fn may_move(&self, axes: &[usize]) -> Result<(), u8> {
+        if axes.is_empty() {
+            return Err(code::COMMAND);
+        }
+        if !axes.iter().all(|&axis| self.switches.servo[axis]) {
+            return Err(code::UNEXECUTABLE);
+        }
+        Ok(())
+    }
+
+    /// The place of a row of the coordinate table, by a number and a counter.
+    pub(super) fn row(&self, index: usize, point: i32, counter: usize) -> Result<Place, u8> {
+        let row = point + if counter == 0 { 0 } else { self.counters[counter].into() };
+        let row = Some(row).filter(|row| (1..=LAST_POINT).contains(row));
+        row.and_then(|row| self.memory.content.point(index, row)).ok_or(code::TABLE)
+    }
+
+    /// Whether a path keeps within the soft limits. Who is outside may come in.
+    pub(super) fn within(&self, axes: &[usize], path: &Path, code: fn(usize, bool) -> u8) -> Result<(), u8> {
+        let from = path.at(0.0);
+        for &axis in axes {
+            let (least, most) = path.range(axis);
+            if most > self.settings.plus[axis] + NEAR && most > from[axis] + NEAR {
+                return Err(code(axis, true));
+            }
+            if least < self.settings.minus[axis] - NEAR && least < from[axis] - NEAR {
+                return Err(code(axis, false));
+            }
+        }
+        Ok(())
+    }
+
+    /// Where a move goes, without and with the offset. Axes of other tasks stay.
+    fn aim(&self, index: usize, order: &Move, from: &Place) -> Result<(Place, Place), u8> {
+        let axes = &self.machine.tasks[index].axes;
+        if !axes.iter().all(|&axis| self.arm.known[axis]) {
+            return Err(code::ORIGIN_INCOMPLETE);
+        }
+        if axes.iter().any(|&axis| self.machine.driver[axis].is_some()) && !self.synchronized {
+            return Err(code::NOT_SYNCHRONIZED);
+        }
+        let place = self.target(index, order.to)?;
+        let base = if order.incremental { plus(from, &place) } else { place };
+        let shifted = order.incremental || order.to == Target::Back;
+        let to = if shifted { base } else { plus(&base, &self.tasks[index].offset) };
+        let own = |place: Place| -> Place {
+            let mut own = *from;
+            for &axis in axes {
+                // A driven axis does what its drive does.
+                own[axis] = match self.machine.driver[axis] {
+                    Some(driver) => from[axis] + own[driver] - from[driver],
+                    None => place[axis],
+                };
+            }
+            own
+        };
+        Ok((own(base), own(to)))
+    }
+
+    /// A line, whose length is that of the longest axis, or the one in space.
+    fn line(&self, index: usize, from: Place, to: Place, in_space: bool) -> Path {
+        let way = minus(&to, &from);
+        let axes = &self.machine.tasks[index];
+        let longest = way.iter().fold(0.0, |most: f64, part| most.max(part.abs()));
+        let space = axes.axes[..axes.space].iter().map(|&axis| way[axis] * way[axis]).sum::<f64>().sqrt();
+        Path::line(from, to, if in_space && space > 0.0 { space } else { longest })
+    }
+
+    /// Drives along a path.
+    fn drive_then(&mut self, index: usize, path: Path, order: &Move, next: usize) -> Flow {
+        let task = &mut self.tasks[index];
+        task.from = Some(path.at(0.0));
+        if path.length() < NEAR {
+            return Flow::To(next);
+        }
+        let moves = |torque: &Torque| (path.end()[torque.axis] - path.at(0.0)[torque.axis]).abs() > NEAR;
+        task.limited = task.torque.take_if(|torque| moves(torque));
+        task.escape = order.escape;
+        let share = task.pass;
+        let drive = self.drive(index, order.speed, &path);
+        let segment = Segment::new(index, path, 0.0, drive, self.now);
+        let wait = if order.pass { Wait::Pass(segment.hands_over(share)) } else { Wait::Motion };
+        self.arm.begin(segment);
+        Flow::Wait(wait, next)
+    }
+
+    /// Speeds for a path, by a row of the speed table; 0 is the one chosen last.
+    fn drive(&self, index: usize, row: i32, path: &Path) -> Drive {
+        let task = &self.tasks[index];
+        let [speed] = self.memory.content.numbers("T2", if row == 0 { task.speed } else { row });
+        let mut speed = f64::from(speed) / 10.0 * f64::from(self.memory.content.percent) / 100.0;
+        for axis in 0..AXES {
+            let steepness = path.steepness(axis);
+            if steepness > 0.0 {
+                speed = speed.min(self.machine.top[axis] / steepness);
+            }
+        }
+        let [up, down] = task.ramps.map(|row| self.ramp(row));
+        Drive { speed, up, down }
+    }
+
+    /// Seconds of a row of the acceleration table.
+    pub(super) fn ramp(&self, row: i32) -> f64 {
+        let [hundredths] = self.memory.content.numbers("T3", row);
+        f64::from(hundredths.max(1)) / 100.0
+    }
+}

@@ -1,0 +1,306 @@
+//! What a host, or somebody at the machine, can have done: starts, stops, power, errors.
+//!
+//! Whatever is refused says why; on the line that is `@NG`.
+
+use super::arm::HOST;
+use super::errors::code;
+use super::memory::{MOST_STEPS, TASKS};
+use super::routine::Routine;
+use super::settings::Special;
+use super::world::{Kind, Mode, World};
+
+/// Why something is not done.
+pub(super) type Refusal = &'static str;
+
+impl World {
+    /// Refuses what cannot be while something is executed.
+    pub(super) fn idle(&self) -> Result<(), Refusal> {
+        if self.is_executing() {
+            return Err("something is being executed");
+        }
+        if self.card.is_busy() { Err("the memory card is being read or written") } else { Ok(()) }
+    }
+
+    /// Refuses what cannot be started now.
+    fn startable(&self) -> Result<(), Refusal> {
+        self.idle()?;
+        self.unchanged()?;
+        if self.errors.current().is_some() { Err("there is an error: cancel it first") } else { Ok(()) }
+    }
+
+    /// Refuses execution after a change of parameter 2.
+    fn unchanged(&self) -> Result<(), Refusal> {
+        if self.switches.machine_changed { Err("parameter 2 was changed: power must be cycled first") } else { Ok(()) }
+    }
+
+    fn powered_axes(&self) -> Result<(), Refusal> {
+        if self.has_servo() { Ok(()) } else { Err("servo power is off") }
+    }
+
+    fn of_kind(&self, kind: Kind, what: Refusal) -> Result<(), Refusal> {
+        self.startable()?;
+        if self.switches.mode == Mode::Program {
+            return Err("programs do not run in program mode");
+        }
+        if self.kind() == kind { Ok(()) } else { Err(what) }
+    }
+
+    /// Starts the sequential program of task 1 at a step; 0 goes on where it stands, or begins at the start.
+    pub(super) fn start_sequential(&mut self, step: usize) -> Result<(), Refusal> {
+        self.of_kind(Kind::Sequential, "it is not in sequential mode")?;
+        if step > self.memory.size(0) || self.memory.size(0) == 0 {
+            return Err("there is no such step");
+        }
+        self.memory.index_tags();
+        self.jog_ready = false;
+        let allowance = (self.switches.mode == Mode::Step).then_some(1);
+        if step > 0 {
+            self.reset_program();
+            self.tasks[0].start(step, self.now);
+        } else if self.stopped {
+            self.stopped = false;
+            self.go_on();
+        } else {
+            let step = self.tasks[0].step;
+            // A move that an error interrupted is done to its end first.
+            if self.arm.is_held(0) {
+                self.tasks[0].running = true;
+                self.resume_task(0);
+            } else {
+                self.tasks[0].start(step, self.now);
+            }
+        }
+        self.allowance = allowance;
+        Ok(())
+    }
+
+    /// Starts the palletizing program, or lets it go on.
+    pub(super) fn start_palletizing(&mut self) -> Result<(), Refusal> {
+        self.of_kind(Kind::Palletizing, "it is not in palletizing mode")?;
+        self.powered_axes()?;
+        if self.goes_on() {
+            return Ok(());
+        }
+        match self.chosen_pallet() {
+            Ok(program) => {
+                let routine = self.palletizing(program).ok_or("there is no such palletizing program")?;
+                self.start_routine(0, Routine::Palletizing(Box::new(routine)));
+            }
+            Err(code) => self.fail(code),
+        }
+        Ok(())
+    }
+
+    /// Starts the easy program, or lets it go on.
+    pub(super) fn start_easy(&mut self) -> Result<(), Refusal> {
+        self.of_kind(Kind::Easy, "easy mode is not chosen (M10)")?;
+        self.powered_axes()?;
+        if self.goes_on() {
+            return Ok(());
+        }
+        match Routine::easy(self.easy, self.memory.content.easy(self.easy)) {
+            Some(routine) => self.start_routine(0, routine),
+            None => self.fail(code::EASY),
+        }
+        Ok(())
+    }
+
+    /// Moves the axes of the current task to a row of its coordinate table.
+    pub(super) fn start_point(&mut self, row: i32) -> Result<(), Refusal> {
+        self.of_kind(Kind::Point, "external point mode is not chosen (M10)")?;
+        self.powered_axes()?;
+        self.start_routine(self.current, Routine::Point { row, begun: false });
+        Ok(())
+    }
+
+    fn goes_on(&mut self) -> bool {
+        let stood = std::mem::take(&mut self.stopped);
+        if stood {
+            self.go_on();
+        }
+        stood
+    }
+
+    fn start_routine(&mut self, task: usize, routine: Routine) {
+        self.memory.index_tags();
+        self.reset_program();
+        self.jog_ready = false;
+        self.tasks[task].routine = Some(routine);
+        self.tasks[task].start(1, self.now);
+    }
+
+    /// Returns all axes to their origin. Programs begin anew after it.
+    pub(super) fn home(&mut self) -> Result<(), Refusal> {
+        self.startable()?;
+        self.powered_axes()?;
+        self.reset_program();
+        self.jog_ready = false;
+        let axes: Vec<usize> = (0..self.axes).collect();
+        self.begin_homing(HOST, &axes);
+        Ok(())
+    }
+
+    /// Searches the origin of synchronized axes.
+    pub(super) fn search_origin(&mut self, drive: usize) -> Result<(), Refusal> {
+        self.startable()?;
+        self.powered_axes()?;
+        if !self.machine.driver.contains(&Some(drive)) {
+            return Err("that axis drives none (E26)");
+        }
+        self.reset_program();
+        self.jog_ready = false;
+        self.synchronize(drive);
+        Ok(())
+    }
+
+    /// JOG: what each axis does.
+    pub(super) fn jog(&mut self, words: [&'static str; 4]) -> Result<(), Refusal> {
+        let moving: Vec<_> = words.iter().enumerate().filter(|(_, word)| !matches!(**word, "RS" | "SP")).collect();
+        if moving.is_empty() {
+            self.end_jog();
+            if words.contains(&"RS") {
+                self.jog_ready = true;
+            }
+            return Ok(());
+        }
+        let [(axis, word)] = moving[..] else { return Err("one axis at a time can be jogged") };
+        if words.contains(&"RS") {
+            return Err("axes that do not move are stopped (SP)");
+        }
+        // The same once more changes nothing.
+        if self.jog.is_some_and(|jog| jog.axis == axis && jog.word == *word && !word.ends_with('C')) {
+            return Ok(());
+        }
+        self.startable()?;
+        if !self.jog_ready {
+            return Err("JOG was not reset (RS)");
+        }
+        if axis >= self.axes {
+            return Err("that axis is not fitted");
+        }
+        if !self.switches.servo[axis] {
+            return Err("servo power is off");
+        }
+        if let Err(code) = self.begin_jog(axis, word) {
+            self.fail(code);
+        }
+        Ok(())
+    }
+
+    /// Puts programs back to their beginning.
+    pub(super) fn reset(&mut self) -> Result<(), Refusal> {
+        self.idle()?;
+        self.reset_program();
+        self.pulses.clear();
+        if self.settings.clear_on_reset {
+            self.ports.clear_outputs();
+        }
+        Ok(())
+    }
+
+    /// Cancels the error.
+    pub(super) fn cancel_error(&mut self) -> Result<(), Refusal> {
+        self.unchanged()?;
+        if self.switches.estop {
+            return Err("the emergency stop is pressed");
+        }
+        self.errors.cancel();
+        Ok(())
+    }
+
+    /// Switches servo power of all axes.
+    pub(super) fn servo(&mut self, on: bool) -> Result<(), Refusal> {
+        self.unchanged()?;
+        self.idle()?;
+        if on && (self.switches.estop || self.errors.current().is_some()) {
+            return Err("there is an error: cancel it first");
+        }
+        self.switches.servo = std::array::from_fn(|axis| on && axis < self.axes);
+        Ok(())
+    }
+
+    /// Lets the host command, unless the pendant does.
+    pub(super) fn host(&mut self, on: bool) -> Result<(), Refusal> {
+        if on && self.switches.pendant {
+            return Err("the teach pendant is on");
+        }
+        if !on {
+            self.end_jog();
+        }
+        self.jog_ready = false;
+        self.switches.host = on;
+        Ok(())
+    }
+
+    /// Switches the teach pendant; it takes the host's place.
+    pub(super) fn pendant(&mut self, on: bool) {
+        self.switches.pendant = on;
+        if on {
+            self.end_jog();
+            self.jog_ready = false;
+            self.switches.host = false;
+        }
+    }
+
+    pub(super) fn emergency_stop(&mut self, pressed: bool) {
+        self.switches.estop = pressed;
+        if pressed {
+            self.fail(code::EMERGENCY_STOP);
+        }
+    }
+
+    /// Sequential or palletizing mode; M10 must not have chosen another.
+    pub(super) fn choose_kind(&mut self, palletizing: bool) -> Result<(), Refusal> {
+        self.idle()?;
+        if self.settings.special != Special::None {
+            return Err("M10 has chosen easy or external point mode");
+        }
+        if palletizing != self.switches.palletizing {
+            self.reset_program();
+        }
+        self.switches.palletizing = palletizing;
+        Ok(())
+    }
+
+    pub(super) fn choose_mode(&mut self, mode: Mode) -> Result<(), Refusal> {
+        self.idle()?;
+        self.switches.mode = mode;
+        Ok(())
+    }
+
+    /// Takes coordinates for a move of a task; one set waits at a time.
+    pub(super) fn supply(&mut self, task: usize, place: [f64; 4], speed: i32) -> Result<(), Refusal> {
+        let slot = &mut self.tasks[task].supplied;
+        if slot.is_some() {
+            return Err("coordinates that were sent before are still waiting");
+        }
+        *slot = Some((place, speed));
+        Ok(())
+    }
+
+    /// The current step goes to a tag of the current task.
+    pub(super) fn search_tag(&mut self, tag: usize) -> Result<(), Refusal> {
+        self.idle()?;
+        let task = self.current;
+        let step = self.memory.search(task, tag).ok_or("there is no such tag")?;
+        self.arm.drop_held(task);
+        let now = self.now;
+        let found = &mut self.tasks[task];
+        found.step = step;
+        found.stack.clear();
+        found.wait = super::task::Wait::Ready(now);
+        Ok(())
+    }
+
+    /// What changes when the memory was written: settings, and programs that do not fit any more.
+    pub(super) fn memory_changed(&mut self) {
+        self.settings = super::settings::Settings::of(&self.memory.content);
+        for index in 0..TASKS {
+            debug_assert!(self.memory.size(index) <= MOST_STEPS);
+            if self.tasks[index].step > self.memory.size(index).max(1) {
+                self.arm.drop_held(index);
+                self.tasks[index].reset();
+            }
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! Parameters as the machine goes by them.
+
+use super::io::PortBit;
+use super::memory::{Content, TASKS};
+use super::motion::{AXES, Place};
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::layout::Record;
+
+/// An output that the controller drives by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Signal {
+    Paused,
+    InputWait,
+    Ready,
+    Battery,
+    Positioned(usize),
+    Origin(usize),
+    Load(usize),
+    Limit(usize),
+    Locked(usize),
+    /// By the place of an axis.
+    Area(usize),
+}
+
+/// What M10 chooses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Special {
+    None,
+    Easy,
+    Point,
+}
+
+/// Parameters that count at once: M and P.
+#[derive(Debug, Clone)]
+pub(super) struct Settings {
+    pub(super) single: Option<PortBit>,
+    pub(super) continuous: Option<PortBit>,
+    pub(super) escape: Option<PortBit>,
+    pub(super) pause: Option<PortBit>,
+    pub(super) selection: Option<PortBit>,
+    pub(super) palletizing: Option<PortBit>,
+    pub(super) servo_on: Option<PortBit>,
+    pub(super) signals: Vec<(PortBit, Signal)>,
+    pub(super) direct: [Option<PortBit>; 4],
+    pub(super) special: Special,
+    pub(super) clear_on_reset: bool,
+    pub(super) japanese: bool,
+    pub(super) plus: Place,
+    pub(super) minus: Place,
+    pub(super) origin: Place,
+    pub(super) sequence: [i32; AXES],
+    /// mm/s, low and high.
+    pub(super) jog: [[f64; 2]; AXES],
+    pub(super) inch: Place,
+    /// Whether the area is upwards of a place.
+    pub(super) areas: [(bool, f64); AXES],
+}
+
+/// Parameters that count from when power comes on: E.
+#[derive(Debug, Clone)]
+pub(super) struct Machine {
+    /// The axes of each task.
+    pub(super) tasks: [Axes; TASKS],
+    pub(super) top: Place,
+    /// mm/s: low, middle, high.
+    pub(super) origin: [[f64; 3]; AXES],
+    /// Where a fast return to origin goes first.
+    pub(super) fast: Place,
+    /// Whether the origin is in plus direction.
+    pub(super) upwards: [bool; AXES],
+    /// mm of position error that count as overflow.
+    pub(super) overflow: Place,
+    pub(super) absolute: bool,
+    pub(super) priority: [i32; TASKS],
+    /// The axis that drives each driven one.
+    pub(super) driver: [Option<usize>; AXES],
+    /// Whether the roles of synchronized axes make no sense.
+    pub(super) bad_roles: bool,
+}
+
+/// The axes of a task.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct Axes {
+    pub(super) axes: Vec<usize>,
+    /// How many of them, from the first, lie in a plane or in space.
+    pub(super) space: usize,
+}
+
+impl Settings {
+    pub(super) fn of(content: &Content) -> Self {
+        let bit = |id| PortBit::of(content.single(id), "");
+        let mut signals = Vec::new();
+        for (id, signal) in
+            [("M07", Signal::Paused), ("M08", Signal::InputWait), ("M13", Signal::Ready), ("M19", Signal::Battery)]
+        {
+            signals.extend(bit(id).map(|bit| (bit, signal)));
+        }
+        let by_task: [(&str, fn(usize) -> Signal); 5] = [
+            ("M14", Signal::Positioned),
+            ("M15", Signal::Origin),
+            ("M24", Signal::Load),
+            ("M25", Signal::Limit),
+            ("M26", Signal::Locked),
+        ];
+        for (id, signal) in by_task {
+            for task in 0..TASKS {
+                let bit = PortBit::of(content.single(id), &(task + 1).to_string());
+                signals.extend(bit.map(|bit| (bit, signal(task))));
+            }
+        }
+        let areas = ["P13", "P14", "P15", "P16"];
+        for (axis, id) in areas.into_iter().enumerate() {
+            signals.extend(bit(id).map(|bit| (bit, Signal::Area(axis))));
+        }
+        Self {
+            single: bit("M01"),
+            continuous: bit("M02"),
+            escape: bit("M03"),
+            pause: bit("M04"),
+            selection: bit("M05"),
+            palletizing: bit("M06"),
+            servo_on: bit("M21"),
+            signals,
+            direct: std::array::from_fn(|place| PortBit::of(content.single("M12"), &(place + 1).to_string())),
+            special: match content.single("M10").word("mode") {
+                Some("E") => Special::Easy,
+                Some("P") => Special::Point,
+                _ => Special::None,
+            },
+            clear_on_reset: content.single("M11").word("use") == Some("E"),
+            japanese: content.single("M09").word("language") == Some("J"),
+            plus: decimals(content, "P01", 100.0),
+            minus: decimals(content, "P02", 100.0),
+            origin: decimals(content, "P06", 100.0),
+            sequence: numbers(content.single("P07")),
+            jog: ["P08", "P09", "P10", "P11"]
+                .map(|id| numbers(content.single(id)).map(|speed| f64::from(speed) / 10.0)),
+            inch: decimals(content, "P12", 100.0),
+            areas: areas.map(|id| {
+                let area = content.single(id);
+                (area.word("compare") == Some(">="), f64::from(area.number("place").unwrap_or_default()) / 100.0)
+            }),
+        }
+    }
+}
+
+impl Machine {
+    pub(super) fn of(content: &Content) -> Self {
+        let lead = decimals(content, "E14", 1000.0);
+        let division = decimals(content, "E15", 1.0);
+        let multiplier = decimals(content, "E16", 1.0);
+        let pulses = decimals(content, "E03", 1.0);
+        let words = |id| words(content.single(id));
+        let roles = words("E26");
+        let driver = std::array::from_fn(|axis| {
+            let before = axis.checked_sub(1)?;
+            (roles[axis] == "S" && roles[before] == "M").then_some(before)
+        });
+        Self {
+            tasks: tasks(words("E19")[0]),
+            top: decimals(content, "E06", 1.0),
+            origin: ["E07", "E08", "E09", "E10"]
+                .map(|id| numbers(content.single(id)).map(|speed| f64::from(speed) / 10.0)),
+            fast: decimals(content, "E13", 100.0),
+            upwards: words("E24").map(|word| word == "1"),
+            overflow: std::array::from_fn(|axis| pulses[axis] * lead[axis] / (division[axis] * multiplier[axis])),
+            absolute: words("E17")[0] == "a",
+            priority: numbers(content.single("E20")),
+            bad_roles: (0..AXES).any(|axis| match roles[axis] {
+                "S" => driver[axis].is_none(),
+                "M" => axis + 1 >= AXES || roles[axis + 1] != "S",
+                _ => false,
+            }),
+            driver,
+        }
+    }
+}
+
+/// The axes of each task: a digit a task, axes in their order (TO 2-4, E19).
+fn tasks(digits: &str) -> [Axes; TASKS] {
+    let mut next = 0;
+    let mut digits = digits.bytes();
+    std::array::from_fn(|_| {
+        let (count, space) = match digits.next() {
+            Some(b'1') => (1, 1),
+            Some(b'2') => (2, 2),
+            Some(b'3') => (3, 2),
+            Some(b'4') => (3, 3),
+            Some(b'5') => (4, 3),
+            _ => (0, 0),
+        };
+        next += count;
+        Axes { axes: (next - count..next).collect(), space }
+    })
+}
+
+fn numbers<const N: usize>(record: &Record) -> [i32; N] {
+    std::array::from_fn(|place| if let Some(Value::Number(number)) = record.values().get(place) { *number } else { 0 })
+}
+
+fn words(record: &Record) -> [&'static str; AXES] {
+    std::array::from_fn(|place| if let Some(Value::Word(word)) = record.values().get(place) { word } else { "" })
+}
+
+fn decimals(content: &Content, id: &str, scale: f64) -> Place {
+    numbers(content.single(id)).map(|number: i32| f64::from(number) / scale)
+}
+
+/// The number of axes that a combination of tasks needs.
+pub(super) fn axes_of(machine: &Machine) -> usize {
+    machine.tasks.iter().map(|task| task.axes.len()).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_are_given_to_tasks_in_their_order() {
+        let axes = tasks("1210").map(|task| task.axes);
+        assert_eq!(axes, [vec![0], vec![1, 2], vec![3], vec![]]);
+        assert_eq!(tasks("5000")[0], Axes { axes: vec![0, 1, 2, 3], space: 3 });
+        assert_eq!(tasks("1300")[1], Axes { axes: vec![1, 2, 3], space: 2 });
+    }
+
+    #[test]
+    fn defaults_make_sense() {
+        let content = Content::new(4, 0);
+        let (settings, machine) = (Settings::of(&content), Machine::of(&content));
+        assert!(settings.signals.is_empty());
+        assert_eq!(settings.plus, [1000.0; 4]);
+        assert_eq!(settings.jog[2], [10.0, 50.0]);
+        // 20,000 pulses of 20 mm / 8,000.
+        assert_eq!(machine.overflow, [50.0; 4]);
+        assert_eq!(machine.origin[0], [2.0, 20.0, 100.0]);
+    }
+}

@@ -1,0 +1,499 @@
+//! The start state: what a TOML file can say about the controller to be simulated.
+//!
+//! Everything has a default, so an empty file is a fresh KCA-25-M10 with four axes in one task, whose power has just come
+//! on. Each mistake is told with its line.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::arm::Arm;
+use super::card::Card;
+use super::console;
+use super::edit;
+use super::errors::{Entry, Errors};
+use super::io::{Port, Ports};
+use super::memory::{Content, MOST_STEPS, Memory, STEPS_WITH_EASY, TASKS, Wear};
+use super::motion::AXES;
+use super::settings::{Machine, Settings};
+use super::task::Task;
+use super::trace::Trace;
+use super::world::{COUNTERS, Mode, Switches, TIMERS, World};
+use crate::controller::Now;
+use crate::controller::toyo::field::{Mask, Value};
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::request::{Request, instruction};
+use crate::controller::toyo::table::{Command, KCA};
+
+/// What a simulated controller is like when it starts; [`Start::parse`] reads it (see [`EXAMPLE`]).
+#[derive(Debug, Clone)]
+pub struct Start {
+    pub(super) world: World,
+    pub(super) seed: u64,
+    pub(super) answer_delay: Duration,
+    pub(super) busy: f64,
+}
+
+/// A start state that names the keys there are; each can be left out.
+pub const EXAMPLE: &str = r#"model = "KCA-25-M10"            # or KCA-20-M00 and so on, or "other": without what some models have
+version = "4.00"
+robot_types = [0]               # that TYPE takes; the first one is in force
+axes = 4                        # 1 to 4
+mode = "automatic"              # step, program
+palletizing = false
+host = false
+pendant = false
+servo = true
+origin = false                  # whether the axes know it
+position = [0.0, 0.0, 0.0, 0.0] # mm from the origin
+
+points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0] } }      # by task and row, mm
+speeds = { 5 = 200.0 }          # mm/s, by row
+ramps = { 1 = 0.1 }             # s, by row
+counters = { 1 = 7 }
+inputs = { "0/01" = "00000001" }
+outputs = { "0/02" = "10000000" }
+steps = { 1 = ["SPD V=05", "MOVP a PT=001 CN=00 S V=00 POST", "OUT STN=0 PN01=.......1", "END"] }  # by task
+write = ["WPAR M13 0/01/8", "WPLT 01 SNO=01 TAG=000 MOD=M-1", "WESY PNO=01 ST=000 START=000 LOOP=0000 END=000"]
+
+error = "13"                    # the error there is
+history = [{ code = "28", after_seconds = 45 }]       # the newest first; { power_cut = true } is one, too
+hours = 123                     # power-on time before the start
+card = "none"                   # empty, written
+card_seconds = 2
+
+seed = 0
+answer_delay_ms = 0             # up to 1000 on a real controller
+busy = 0.0                      # share of commands refused with @NG
+instruction_us = 1000           # time that an instruction takes
+eeprom_limit = 0                # writes that a cell takes before it keeps nothing any more; 0 for no limit
+
+[[event]]
+at_ms = 2000
+do = "input 0/01/3 on"          # any line of the console
+"#;
+
+impl Default for Start {
+    fn default() -> Self {
+        build(&Entries::default(), "").expect("the defaults are correct")
+    }
+}
+
+impl Start {
+    /// Reads a start state. The error says what is wrong, and in which line.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let entries: Entries = toml::from_str(text).map_err(|error| {
+            let line = 1 + error.span().map_or(0, |span| newlines(text, span.start));
+            format!("line {line}: {}", error.message())
+        })?;
+        build(&entries, text)
+    }
+
+    /// Another seed for everything random.
+    #[must_use]
+    pub fn with_seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+
+    /// Refuses a share of the commands with `@NG`, 0.0 to 1.0.
+    #[must_use]
+    pub fn with_busy(self, busy: f64) -> Self {
+        Self { busy: busy.clamp(0.0, 1.0), ..self }
+    }
+
+    /// With a program in a task, 1 to 4. The task gets as many steps as that needs (E22).
+    pub fn with_program(mut self, task: usize, steps: Vec<Record>) -> Result<Self, String> {
+        program(&mut self.world, task, steps)?;
+        self.world.memory_changed();
+        Ok(self)
+    }
+
+    /// With what a command of the host writes: `WPAR T2 V05=0200.0`, `WPLT …`, `WESY …`, `WSTX …`.
+    pub fn with_written(mut self, command: &str) -> Result<Self, String> {
+        write(&mut self.world, command)?;
+        Ok(self)
+    }
+}
+
+/// The keys of the file.
+#[derive(Debug, Deserialize)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a key of its own")]
+#[serde(default, deny_unknown_fields)]
+struct Entries {
+    model: Spanned<String>,
+    version: Spanned<String>,
+    robot_types: Spanned<Vec<i32>>,
+    axes: Spanned<usize>,
+    mode: Mode,
+    palletizing: bool,
+    host: bool,
+    pendant: bool,
+    servo: bool,
+    origin: bool,
+    position: Spanned<[f64; AXES]>,
+    points: BTreeMap<String, BTreeMap<String, Spanned<[f64; AXES]>>>,
+    speeds: BTreeMap<String, Spanned<f64>>,
+    ramps: BTreeMap<String, Spanned<f64>>,
+    counters: BTreeMap<String, Spanned<u16>>,
+    inputs: BTreeMap<String, Spanned<String>>,
+    outputs: BTreeMap<String, Spanned<String>>,
+    steps: BTreeMap<String, Spanned<Vec<Spanned<String>>>>,
+    /// Commands of the host, without `@`.
+    write: Vec<Spanned<String>>,
+    error: Option<Spanned<String>>,
+    history: Vec<Spanned<Past>>,
+    hours: u32,
+    card: Slot,
+    card_seconds: u64,
+    seed: u64,
+    answer_delay_ms: u64,
+    busy: Spanned<f64>,
+    instruction_us: Spanned<u64>,
+    eeprom_limit: u64,
+    #[serde(rename = "event")]
+    events: Vec<Spanned<Event>>,
+}
+
+impl Default for Entries {
+    fn default() -> Self {
+        let text = |text: &str| Spanned::new(0..0, text.to_owned());
+        Self {
+            model: text(KCA[2]),
+            version: text("4.00"),
+            robot_types: Spanned::new(0..0, vec![0]),
+            axes: Spanned::new(0..0, AXES),
+            mode: Mode::Automatic,
+            palletizing: false,
+            host: false,
+            pendant: false,
+            servo: true,
+            origin: false,
+            position: Spanned::new(0..0, [0.0; AXES]),
+            points: BTreeMap::new(),
+            speeds: BTreeMap::new(),
+            ramps: BTreeMap::new(),
+            counters: BTreeMap::new(),
+            inputs: BTreeMap::new(),
+            outputs: BTreeMap::new(),
+            steps: BTreeMap::new(),
+            write: Vec::new(),
+            error: None,
+            history: Vec::new(),
+            hours: 0,
+            card: Slot::None,
+            card_seconds: 2,
+            seed: 0,
+            answer_delay_ms: 0,
+            busy: Spanned::new(0..0, 0.0),
+            instruction_us: Spanned::new(0..0, 1000),
+            eeprom_limit: 0,
+            events: Vec::new(),
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Slot {
+    None,
+    Empty,
+    Written,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Past {
+    code: Option<String>,
+    #[serde(default)]
+    after_seconds: u64,
+    #[serde(default)]
+    power_cut: bool,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Event {
+    at_ms: u64,
+    #[serde(rename = "do")]
+    line: String,
+}
+
+/// Lines that end before a place in a text.
+fn newlines(text: &str, place: usize) -> usize {
+    text.bytes().take(place).filter(|&byte| byte == b'\n').count()
+}
+
+/// Says what is wrong with an entry, and where.
+struct Place<'a> {
+    text: &'a str,
+}
+
+impl Place<'_> {
+    fn wrong<T>(&self, entry: &Spanned<T>, what: impl std::fmt::Display) -> String {
+        let line = 1 + newlines(self.text, entry.span().start);
+        format!("line {line}: {what}")
+    }
+
+    /// A value by its key, if that is a number in a range.
+    fn key<T>(&self, key: &str, most: usize, entry: &Spanned<T>) -> Result<usize, String> {
+        let number = key.parse().ok().filter(|number| (1..=most).contains(number));
+        number.ok_or_else(|| self.wrong(entry, format!("'{key}' is not a number from 1 to {most}")))
+    }
+}
+
+fn build(entries: &Entries, text: &str) -> Result<Start, String> {
+    let at = Place { text };
+    let busy = *entries.busy.get_ref();
+    if !(0.0..=1.0).contains(&busy) {
+        return Err(at.wrong(&entries.busy, "busy is a share from 0 to 1"));
+    }
+    let mut world = bare_world(entries, &at)?;
+    programs(&mut world, entries, &at)?;
+    tables(&mut world, entries, &at)?;
+    for line in &entries.write {
+        write(&mut world, line.get_ref()).map_err(|what| at.wrong(line, what))?;
+    }
+    // That was there before; it did not wear anything, and parameters 2 are in force.
+    world.memory.wear = Wear::new(Some(entries.eeprom_limit).filter(|limit| *limit > 0));
+    world.power_up();
+    world.switches.mode = entries.mode;
+    world.switches.palletizing = entries.palletizing;
+    world.switches.pendant = entries.pendant;
+    world.switches.host = entries.host && !entries.pendant;
+    if !entries.servo {
+        world.switches.servo = [false; AXES];
+    }
+    for (key, count) in &entries.counters {
+        let counter = at.key(key, COUNTERS - 1, count)?;
+        let value = Some(*count.get_ref()).filter(|count| *count <= 9999);
+        world.counters[counter] = value.ok_or_else(|| at.wrong(count, "counters hold 0 to 9999"))?;
+    }
+    for (key, bits) in &entries.inputs {
+        let (port, mask) = port(key, bits, &at)?;
+        if !world.ports.set_input(port, mask) {
+            return Err(at.wrong(bits, format!("there is no input port {key}")));
+        }
+    }
+    for (key, bits) in &entries.outputs {
+        let (port, mask) = port(key, bits, &at)?;
+        if !world.ports.set_output(port, mask) {
+            return Err(at.wrong(bits, format!("there is no output port {key}")));
+        }
+    }
+    errors(&mut world, entries, &at)?;
+    if entries.card == Slot::Written {
+        let content = world.memory.content.clone();
+        world.card.fill(&content);
+    }
+    world.settle();
+    events(&mut world, &entries.events, &at)?;
+    let answer_delay = Duration::from_millis(entries.answer_delay_ms);
+    Ok(Start { world, seed: entries.seed, answer_delay, busy })
+}
+
+/// The controller with nothing in it.
+fn bare_world(entries: &Entries, at: &Place<'_>) -> Result<World, String> {
+    let model = entries.model.get_ref();
+    if model != "other" && !KCA.contains(&model.as_str()) {
+        return Err(at.wrong(&entries.model, format!("a model is one of {}, or other", KCA.join(", "))));
+    }
+    let axes = *entries.axes.get_ref();
+    if !(1..=AXES).contains(&axes) {
+        return Err(at.wrong(&entries.axes, "a controller has 1 to 4 axes"));
+    }
+    let version =
+        hundredths(&entries.version).ok_or_else(|| at.wrong(&entries.version, "a version is like \"4.00\""))?;
+    let types = entries.robot_types.get_ref();
+    if types.is_empty() || types.iter().any(|number| !(0..=999_999).contains(number)) {
+        return Err(at.wrong(&entries.robot_types, "robot types are 0 to 999999, and there is one at least"));
+    }
+    let tick = *entries.instruction_us.get_ref();
+    if !(1..=1_000_000).contains(&tick) {
+        return Err(at.wrong(&entries.instruction_us, "an instruction takes 1 to 1000000 microseconds"));
+    }
+    let position = *entries.position.get_ref();
+    if !position.iter().all(|place| place.abs() <= 8000.0) {
+        return Err(at.wrong(&entries.position, "coordinates are within 8000 mm"));
+    }
+    let mut arm = Arm::default();
+    // Without its origin an axis counts from where it is.
+    arm.put(if entries.origin { position } else { [0.0; AXES] });
+    arm.sensors = if entries.origin { [0.0; AXES] } else { position.map(|place| -place) };
+    arm.known = [entries.origin; AXES];
+    let content = Content::new(axes, types[0]);
+    let (settings, machine) = (Settings::of(&content), Machine::of(&content));
+    let memory = Memory::new(content);
+    Ok(World {
+        now: Now::ZERO,
+        model: model.clone(),
+        version,
+        axes,
+        robot_types: types.clone(),
+        meter: Duration::from_secs(3600 * u64::from(entries.hours)),
+        tick: Duration::from_micros(tick),
+        memory,
+        settings,
+        machine,
+        switches: Switches {
+            host: false,
+            pendant: false,
+            estop: false,
+            servo: [false; AXES],
+            mode: Mode::Automatic,
+            palletizing: false,
+            machine_changed: false,
+            slaves_ready: true,
+            battery_low: false,
+        },
+        ports: Ports::default(),
+        arm,
+        synchronized: false,
+        tasks: std::array::from_fn(|_| Task::default()),
+        stopped: false,
+        pausing: false,
+        allowance: None,
+        jog: None,
+        jog_ready: false,
+        current: 0,
+        pallet: 1,
+        easy: 1,
+        counters: [0; COUNTERS],
+        timers: [None; TIMERS],
+        errors: Errors::default(),
+        card: Card::new(entries.card != Slot::None, Duration::from_secs(entries.card_seconds)),
+        pulses: Vec::new(),
+        outputs_at: Vec::new(),
+        presses: [None; AXES],
+        crossing: None,
+        watched: 0,
+        events: std::collections::VecDeque::new(),
+        trace: Trace::default(),
+        refusal: None,
+    })
+}
+
+fn programs(world: &mut World, entries: &Entries, at: &Place<'_>) -> Result<(), String> {
+    for (key, lines) in &entries.steps {
+        let task = at.key(key, TASKS, lines)?;
+        let steps: Result<Vec<Record>, String> = lines
+            .get_ref()
+            .iter()
+            .map(|line| {
+                let record = instruction(line.get_ref()).map_err(|error| at.wrong(line, error))?;
+                record.emit().map_err(|error| at.wrong(line, error))?;
+                Ok(record)
+            })
+            .collect();
+        program(world, task, steps?).map_err(|what| at.wrong(lines, what))?;
+    }
+    Ok(())
+}
+
+/// Puts a program in a task, which gets as many steps as it needs.
+fn program(world: &mut World, task: usize, steps: Vec<Record>) -> Result<(), String> {
+    if !(1..=TASKS).contains(&task) {
+        return Err("tasks are 1 to 4".to_owned());
+    }
+    let mut sizes: [usize; TASKS] = std::array::from_fn(|index| world.memory.size(index));
+    sizes[task - 1] = sizes[task - 1].max(steps.len());
+    // Task 1 has all steps at first: it gives what others need, so that easy programs keep their room.
+    let others: usize = sizes[1..].iter().sum();
+    sizes[0] = sizes[0].min(STEPS_WITH_EASY.saturating_sub(others)).max(world.memory.used(0));
+    if task == 1 {
+        sizes[0] = sizes[0].max(steps.len());
+    }
+    if sizes.iter().sum::<usize>() > MOST_STEPS {
+        return Err(format!("there are {MOST_STEPS} steps for all tasks together"));
+    }
+    let sizes = sizes.map(|size| format!("{size:04}"));
+    let [one, two, three, four] = &sizes;
+    write(world, &format!("WPAR E22 TASK01={one} TASK02={two} TASK03={three} TASK04={four}"))?;
+    let current = std::mem::replace(&mut world.current, task - 1);
+    let written = (1..).zip(steps).try_for_each(|(number, step)| edit::write_step(world, number, step));
+    world.current = current;
+    written
+}
+
+fn tables(world: &mut World, entries: &Entries, at: &Place<'_>) -> Result<(), String> {
+    for (key, rows) in &entries.points {
+        for (row, place) in rows {
+            let task = at.key(key, TASKS, place)?;
+            let row = at.key(row, super::memory::POINTS, place)?;
+            let values = place.get_ref().map(|place| format!("{place:+08.2}"));
+            let [x, y, z, r] = &values;
+            let current = std::mem::replace(&mut world.current, task - 1);
+            let written = write(world, &format!("WPAR T1 PT={row:03} X={x} Y={y} Z={z} R={r}"));
+            world.current = current;
+            written.map_err(|what| at.wrong(place, what))?;
+        }
+    }
+    for (key, speed) in &entries.speeds {
+        let row = at.key(key, 20, speed)?;
+        write(world, &format!("WPAR T2 V{row:02}={:06.1}", speed.get_ref())).map_err(|what| at.wrong(speed, what))?;
+    }
+    for (key, ramp) in &entries.ramps {
+        let row = at.key(key, 20, ramp)?;
+        write(world, &format!("WPAR T3 A{row:02}={:04.2}", ramp.get_ref())).map_err(|what| at.wrong(ramp, what))?;
+    }
+    Ok(())
+}
+
+/// Writes what a command of the host writes.
+fn write(world: &mut World, command: &str) -> Result<(), String> {
+    let request = Request::parse(&format!("@{command}")).map_err(|error| error.to_string())?;
+    request.check().map_err(|error| error.to_string())?;
+    if !matches!(request.command(), Command::Wpar | Command::Wstx | Command::Wplt | Command::Wesy) {
+        return Err("only WPAR, WSTX, WPLT and WESY write to the memory".to_owned());
+    }
+    edit::carry_out(world, &request).map(|_| ())
+}
+
+fn errors(world: &mut World, entries: &Entries, at: &Place<'_>) -> Result<(), String> {
+    let code = |text: &str| u8::from_str_radix(text, 16).ok().filter(|code| *code > 0);
+    for past in entries.history.iter().rev() {
+        let Past { code: text, after_seconds, power_cut } = past.get_ref();
+        let entry = match (text, power_cut) {
+            (None, true) => Some(Entry::PowerCut),
+            (Some(text), false) => {
+                code(text).map(|code| Entry::Error { code, at: Duration::from_secs(*after_seconds) })
+            }
+            _ => None,
+        };
+        world.errors.record(entry.ok_or_else(|| at.wrong(past, "an entry has a code from 01 to FF, or power_cut"))?);
+    }
+    if let Some(error) = &entries.error {
+        let code = code(error.get_ref()).ok_or_else(|| at.wrong(error, "an error has a code from 01 to FF"))?;
+        world.fail(code);
+    }
+    Ok(())
+}
+
+fn events(world: &mut World, entries: &[Spanned<Event>], at: &Place<'_>) -> Result<(), String> {
+    let mut sorted: Vec<_> = entries.iter().map(Spanned::get_ref).cloned().collect();
+    sorted.sort_by_key(|event| event.at_ms);
+    for entry in entries {
+        console::check(&entry.get_ref().line).map_err(|what| at.wrong(entry, what))?;
+    }
+    world.events = sorted.into_iter().map(|event| (Duration::from_millis(event.at_ms), event.line)).collect();
+    Ok(())
+}
+
+/// `0/01` and eight bits.
+fn port(key: &str, bits: &Spanned<String>, at: &Place<'_>) -> Result<(Port, Mask), String> {
+    let parts = key.split_once('/').and_then(|(station, port)| Some((station.parse().ok()?, port.parse().ok()?)));
+    let (station, port) = parts.ok_or_else(|| at.wrong(bits, format!("'{key}' is not a port like 0/01")))?;
+    let eight = u8::from_str_radix(bits.get_ref(), 2).ok().filter(|_| bits.get_ref().len() == 8);
+    let eight = eight.ok_or_else(|| at.wrong(bits, "a port has eight of 0 and 1"))?;
+    Ok((Port { station, port }, Mask::all(eight)))
+}
+
+/// A version like `4.00` in hundredths.
+fn hundredths(version: &Spanned<String>) -> Option<i32> {
+    let field = Command::Cver.row().answers.first()?.fields.last()?;
+    match field.read(version.get_ref()).ok()? {
+        Value::Number(number) => Some(number),
+        _ => None,
+    }
+}

@@ -1,0 +1,261 @@
+//! What follows from where the axes are: outputs by place, limits, things in the way.
+
+use std::time::Duration;
+
+use super::errors::code;
+use super::io::Port;
+use super::motion::AXES;
+use super::settings::Signal;
+use super::task::Wait;
+use super::trace::What;
+use super::world::World;
+use crate::controller::Now;
+use crate::controller::toyo::field::Mask;
+
+/// Places that differ by no more than this many mm are the same.
+pub(super) const NEAR: f64 = 1e-6;
+/// How long a motor can push with all its force.
+const OVERLOAD_AFTER: Duration = Duration::from_secs(1);
+
+/// An output that waits for an axis (OUTS).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OutputAt {
+    pub(super) task: usize,
+    pub(super) axis: usize,
+    pub(super) at_least: bool,
+    pub(super) place: f64,
+    pub(super) port: Port,
+    pub(super) mask: Mask,
+}
+
+/// An axis that pushes against something.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Press {
+    /// When it is judged.
+    pub(super) due: Option<Now>,
+    /// Whether it was judged to be locked.
+    pub(super) locked: bool,
+}
+
+impl World {
+    /// Adds to the trace, if somebody watches.
+    pub(super) fn note(&mut self, what: What) {
+        if self.trace.is_watched() {
+            self.trace.record(self.now, self.arm.position(self.now), what);
+        }
+    }
+
+    /// Sets outputs when an axis passes a place, or at once if it is there.
+    pub(super) fn output_at(&mut self, output: OutputAt) -> Result<(), u8> {
+        self.ports.output(output.port).ok_or(code::PORT)?;
+        self.outputs_at.push(output);
+        self.follow_outputs();
+        self.arm.touch();
+        Ok(())
+    }
+
+    /// Sets the outputs whose places are passed.
+    fn follow_outputs(&mut self) {
+        let place = self.arm.commanded(self.now);
+        let ports = &mut self.ports;
+        self.outputs_at.retain(|output| {
+            let passed = is_beyond(place[output.axis], output.at_least, output.place);
+            if passed {
+                ports.set_output(output.port, output.mask);
+            }
+            !passed
+        });
+    }
+
+    /// Ends the pulses that are due.
+    pub(super) fn end_pulses(&mut self) {
+        let (now, ports) = (self.now, &mut self.ports);
+        self.pulses.retain(|(at, port, mask)| {
+            if *at <= now {
+                ports.set_output(*port, *mask);
+            }
+            *at > now
+        });
+    }
+
+    /// Does what follows from where the axes have got to.
+    pub(super) fn crossings(&mut self) {
+        if self.crossing.is_some_and(|at| at <= self.now) {
+            self.crossing = None;
+            self.watched = u64::MAX;
+            self.follow_outputs();
+            self.follow_limit();
+            (0..AXES).for_each(|axis| self.follow_wall(axis));
+        }
+        for axis in 0..AXES {
+            if self.presses[axis].is_some_and(|press| press.due.is_some_and(|due| due <= self.now)) {
+                self.judge(axis);
+            }
+        }
+    }
+
+    fn follow_limit(&mut self) {
+        let place = self.arm.commanded(self.now);
+        let beyond = self.jog.and_then(|jog| {
+            let (bound, upwards) = jog.limit?;
+            is_past(place[jog.axis], upwards, bound).then(|| code::beyond(jog.axis, upwards))
+        });
+        if let Some(code) = beyond {
+            self.fail(code);
+        }
+    }
+
+    fn follow_wall(&mut self, axis: usize) {
+        let push = self.arm.push(axis, self.now);
+        if push <= 0.0 {
+            self.presses[axis] = None;
+            return;
+        }
+        if self.arm.homing.is_some_and(|homing| homing.axes[axis]) {
+            return self.fail(code::homing(axis));
+        }
+        let limited = self.tasks[self.arm.owners[axis]].limited.filter(|torque| torque.axis == axis);
+        if push >= self.machine.overflow[axis] - NEAR && limited.is_none_or(|torque| torque.overflow) {
+            return self.fail(code::overflow(axis));
+        }
+        if self.presses[axis].is_none() {
+            let due = self.now.saturating_add(limited.map_or(OVERLOAD_AFTER, |torque| torque.judge));
+            self.presses[axis] = Some(Press { due: Some(due), locked: false });
+        }
+    }
+
+    /// Judges an axis that has pushed for long enough.
+    fn judge(&mut self, axis: usize) {
+        if self.arm.push(axis, self.now) <= 0.0 {
+            self.presses[axis] = None;
+            return;
+        }
+        let owner = self.arm.owners[axis];
+        let limited = self.tasks[owner].limited.filter(|torque| torque.axis == axis);
+        let Some(torque) = limited else { return self.fail(code::overload(axis)) };
+        self.presses[axis] = Some(Press { due: None, locked: true });
+        if torque.torque_end || torque.lock_end {
+            self.arm.freeze_one(owner, self.now);
+            self.arm.drop_held(owner);
+            self.end_wait(owner);
+        }
+    }
+
+    /// Ends what has got to where it was going.
+    pub(super) fn arrivals(&mut self) {
+        self.arm.settle(self.now);
+        self.end_homing();
+        if !self.arm.is_moving(self.now) {
+            self.jog = None;
+        }
+        if self.is_held() {
+            return;
+        }
+        for index in 0..self.tasks.len() {
+            let task = &self.tasks[index];
+            if !task.running || task.stopped || self.arm.is_busy(index, self.now) || !self.has_arrived(index) {
+                continue;
+            }
+            match task.wait {
+                Wait::Motion => self.end_wait(index),
+                Wait::End => self.end(index),
+                _ => {}
+            }
+        }
+    }
+
+    /// Whether a task's axes are where they should be, and the move may end there.
+    fn has_arrived(&self, index: usize) -> bool {
+        if self.machine.tasks[index].axes.iter().any(|&axis| self.arm.push(axis, self.now) > 0.0) {
+            return false;
+        }
+        // A move that ends at the limit or locked does not end on arrival, unless it may.
+        self.tasks[index].limited.is_none_or(|torque| torque.arrival_end || !(torque.torque_end || torque.lock_end))
+    }
+
+    /// Drives the outputs that say how the controller is.
+    pub(super) fn refresh(&mut self) {
+        for place in 0..self.settings.signals.len() {
+            let (bit, signal) = self.settings.signals[place];
+            let on = self.signal(signal);
+            self.ports.switch(bit, on);
+        }
+        if self.trace.is_watched() {
+            let position = self.arm.position(self.now);
+            self.trace.outputs(self.now, position, self.ports.outputs());
+        }
+    }
+
+    fn signal(&self, signal: Signal) -> bool {
+        let axes = |task: usize| self.machine.tasks[task].axes.iter().copied();
+        let pressing = |task: usize| {
+            let limited = self.tasks[task].limited?;
+            self.presses[limited.axis].map(|press| (limited, press))
+        };
+        match signal {
+            Signal::Paused => self.is_held() && self.is_running(),
+            Signal::InputWait => self.status(4) & 0b100 != 0,
+            Signal::Ready => self.is_ready(),
+            Signal::Battery => self.switches.battery_low,
+            Signal::Positioned(task) => axes(task).len() > 0 && !self.arm.is_busy(task, self.now),
+            Signal::Origin(task) => axes(task).len() > 0 && axes(task).all(|axis| self.arm.known[axis]),
+            Signal::Load(task) => pressing(task).is_some_and(|(torque, _)| {
+                let [limit, load] = self.memory.content.numbers("T5", torque.table);
+                limit >= load
+            }),
+            Signal::Limit(task) => pressing(task).is_some(),
+            Signal::Locked(task) => pressing(task).is_some_and(|(_, press)| press.locked),
+            Signal::Area(axis) => {
+                let (at_least, place) = self.settings.areas[axis];
+                self.arm.known[axis] && is_beyond(self.arm.commanded(self.now)[axis], at_least, place)
+            }
+        }
+    }
+
+    /// Finds when an axis next passes a place that matters, if the moves have changed.
+    pub(super) fn watch(&mut self) {
+        if self.watched == self.arm.changes() {
+            return;
+        }
+        self.watched = self.arm.changes();
+        self.crossing = None;
+        if !self.arm.is_moving(self.now) {
+            // What is set against an axis at rest does not push.
+            (0..AXES).filter(|&axis| self.arm.push(axis, self.now) <= 0.0).for_each(|axis| self.presses[axis] = None);
+            return;
+        }
+        let mut first: Option<Now> = None;
+        let mut add = |at: Option<Now>| first = first.into_iter().chain(at).min();
+        for output in &self.outputs_at {
+            let test = |x| is_beyond(x, output.at_least, output.place);
+            add(self.arm.crossing(output.axis, test, self.now));
+        }
+        for (_, signal) in &self.settings.signals {
+            if let Signal::Area(axis) = *signal {
+                let (at_least, place) = self.settings.areas[axis];
+                add(self.arm.crossing(axis, |x| is_beyond(x, at_least, place), self.now));
+            }
+        }
+        if let Some((axis, (bound, upwards))) = self.jog.and_then(|jog| Some((jog.axis, jog.limit?))) {
+            add(self.arm.crossing(axis, |x| is_past(x, upwards, bound), self.now));
+        }
+        for axis in 0..AXES {
+            let Some((at, below)) = self.arm.wall(axis) else { continue };
+            let depth = |x: f64| if below { x - at } else { at - x };
+            let overflow = self.machine.overflow[axis];
+            add(self.arm.crossing(axis, |x| depth(x) > 0.0, self.now));
+            add(self.arm.crossing(axis, |x| depth(x) >= overflow, self.now));
+        }
+        self.crossing = first;
+    }
+}
+
+/// Whether a coordinate is on a side of a place, or there.
+fn is_beyond(coordinate: f64, at_least: bool, place: f64) -> bool {
+    if at_least { coordinate >= place - NEAR } else { coordinate <= place + NEAR }
+}
+
+/// Whether a coordinate is past a limit.
+fn is_past(coordinate: f64, upwards: bool, limit: f64) -> bool {
+    if upwards { coordinate > limit + NEAR } else { coordinate < limit - NEAR }
+}

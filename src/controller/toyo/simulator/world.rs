@@ -1,0 +1,445 @@
+//! The controller as a machine: switches, power, errors, what may be done when, and the passing of time.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use super::arm::{Arm, HOST};
+use super::card::Card;
+use super::console;
+use super::errors::{Errors, code};
+use super::io::{Port, Ports};
+use super::memory::{Memory, TASKS};
+use super::motion::{AXES, Place};
+use super::settings::{Machine, Settings, Special, axes_of};
+use super::task::{Task, Wait};
+use super::trace::{Trace, What};
+use super::watch::{OutputAt, Press};
+use crate::controller::Now;
+use crate::controller::toyo::field::Mask;
+use crate::controller::toyo::table::{FROM_3_36, Models};
+
+/// Counters, the first one of which nobody can name, and timers likewise.
+pub(super) const COUNTERS: usize = 100;
+pub(super) const TIMERS: usize = 10;
+/// What a timer shows at most, in 0.1 s.
+const MOST_TENTHS: u32 = 9999;
+/// In hundredths.
+const VERSION_3_36: i32 = 336;
+
+/// Everything an operator or the host can switch.
+#[derive(Debug, Clone)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+pub(super) struct Switches {
+    pub(super) host: bool,
+    pub(super) pendant: bool,
+    pub(super) estop: bool,
+    pub(super) servo: [bool; AXES],
+    pub(super) mode: Mode,
+    pub(super) palletizing: bool,
+    /// Whether parameter 2 was written since power came on.
+    pub(super) machine_changed: bool,
+    pub(super) slaves_ready: bool,
+    pub(super) battery_low: bool,
+}
+
+/// How programs run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Mode {
+    Automatic,
+    Step,
+    Program,
+}
+
+/// Which kind of program runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Sequential,
+    Palletizing,
+    Point,
+    Easy,
+}
+
+/// A JOG under way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Jog {
+    pub(super) axis: usize,
+    pub(super) word: &'static str,
+    /// Coordinate beyond which it must not get, and whether that is upwards.
+    pub(super) limit: Option<(f64, bool)>,
+}
+
+/// A controller with all that is in it.
+#[derive(Debug, Clone)]
+pub(super) struct World {
+    pub(super) now: Now,
+    pub(super) model: String,
+    /// In hundredths.
+    pub(super) version: i32,
+    /// Axes that are fitted.
+    pub(super) axes: usize,
+    pub(super) robot_types: Vec<i32>,
+    /// Power-on time before the start.
+    pub(super) meter: Duration,
+    /// How long an instruction takes.
+    pub(super) tick: Duration,
+    pub(super) memory: Memory,
+    pub(super) settings: Settings,
+    pub(super) machine: Machine,
+    pub(super) switches: Switches,
+    pub(super) ports: Ports,
+    pub(super) arm: Arm,
+    /// Whether synchronized axes found their origin together.
+    pub(super) synchronized: bool,
+    pub(super) tasks: [Task; TASKS],
+    /// Whether programs stand, and can go on.
+    pub(super) stopped: bool,
+    /// Whether the pause input holds programs.
+    pub(super) pausing: bool,
+    /// Steps that task 1 may still do in step mode.
+    pub(super) allowance: Option<u32>,
+    pub(super) jog: Option<Jog>,
+    /// Whether JOG was reset, as it must be once.
+    pub(super) jog_ready: bool,
+    /// The task that commands are about.
+    pub(super) current: usize,
+    /// The palletizing and the easy program chosen.
+    pub(super) pallet: usize,
+    pub(super) easy: usize,
+    pub(super) counters: [u16; COUNTERS],
+    /// When each timer was set going, and what it showed then.
+    pub(super) timers: [Option<(Now, u32)>; TIMERS],
+    pub(super) errors: Errors,
+    pub(super) card: Card,
+    /// Outputs to be set when their time is over.
+    pub(super) pulses: Vec<(Now, Port, Mask)>,
+    pub(super) outputs_at: Vec<OutputAt>,
+    /// Axes that push against something.
+    pub(super) presses: [Option<Press>; AXES],
+    /// When an axis next passes a place that matters, and of which state of the arm that is true.
+    pub(super) crossing: Option<Now>,
+    pub(super) watched: u64,
+    /// Lines of the console with the time at which they are carried out.
+    pub(super) events: VecDeque<(Now, String)>,
+    pub(super) trace: Trace,
+    /// The block that was refused last, and why.
+    pub(super) refusal: Option<(String, String)>,
+}
+
+impl World {
+    /// Lets time pass. What is due is done in its order.
+    pub(super) fn advance(&mut self, to: Now) {
+        while let Some(at) = self.next().filter(|&at| at <= to) {
+            self.now = self.now.max(at);
+            self.happen();
+        }
+        self.now = self.now.max(to);
+    }
+
+    /// When something is due.
+    pub(super) fn next(&self) -> Option<Now> {
+        let tasks = if self.is_held() { None } else { self.tasks.iter().filter_map(Task::due).min() };
+        let presses = self.presses.iter().flatten().filter_map(|press| press.due).min();
+        let pulses = self.pulses.iter().map(|(at, ..)| *at).min();
+        let event = self.events.front().map(|(at, _)| *at);
+        [tasks, self.arm.next_end(), self.crossing, presses, pulses, event, self.card.due()].into_iter().flatten().min()
+    }
+
+    /// Does what is due now.
+    fn happen(&mut self) {
+        while let Some((_, line)) = self.events.front().filter(|(at, _)| *at <= self.now).cloned() {
+            self.events.pop_front();
+            // That it can be carried out was tried when the start state was read; by now it may have become impossible.
+            if let Err(what) = console::execute(self, &line) {
+                self.trace.record(self.now, self.arm.position(self.now), What::Console(format!("{line}: {what}")));
+            }
+        }
+        self.card_done();
+        self.end_pulses();
+        self.crossings();
+        self.arrivals();
+        self.run_tasks();
+        self.settle();
+    }
+
+    /// Sees to what follows from a change by itself: waits that are over, outputs, places to watch.
+    pub(super) fn settle(&mut self) {
+        self.follow_pause();
+        self.end_waits();
+        self.refresh();
+        self.watch();
+    }
+
+    /// Puts power off and on.
+    pub(super) fn power_cycle(&mut self) {
+        self.arm.freeze(self.now);
+        self.errors.power_cut();
+        self.card.forget();
+        if !self.machine.absolute {
+            // Incremental encoders count from where they are when power comes.
+            let place = self.arm.position(self.now);
+            self.arm.known = [false; AXES];
+            for (axis, counted) in place.into_iter().enumerate() {
+                self.arm.sensors[axis] -= counted;
+                self.arm.rename(axis, 0.0);
+            }
+        }
+        self.arm.put(self.arm.position(self.now));
+        self.ports.clear_outputs();
+        self.ports.internal.fill(0);
+        self.counters.fill(0);
+        self.timers.fill(None);
+        self.pulses.clear();
+        self.outputs_at.clear();
+        self.presses.fill(None);
+        self.power_up();
+        self.settle();
+    }
+
+    /// What happens when power comes on.
+    pub(super) fn power_up(&mut self) {
+        self.machine = Machine::of(&self.memory.content);
+        self.settings = Settings::of(&self.memory.content);
+        for (task, axes) in self.machine.tasks.iter().enumerate() {
+            axes.axes.iter().for_each(|axis| self.arm.owners[*axis] = task);
+        }
+        self.synchronized = false;
+        self.switches = Switches {
+            host: false,
+            servo: std::array::from_fn(|axis| axis < self.axes && !self.switches.estop),
+            mode: Mode::Automatic,
+            palletizing: false,
+            machine_changed: false,
+            ..self.switches
+        };
+        self.reset_program();
+        self.jog_ready = false;
+        if axes_of(&self.machine) > self.axes {
+            self.fail(code::PARAMETER);
+        } else if self.machine.bad_roles {
+            self.fail(code::SYNC_PARAMETER);
+        }
+        if self.switches.estop {
+            self.fail(code::EMERGENCY_STOP);
+        }
+    }
+
+    /// Stops everything for an error.
+    pub(super) fn fail(&mut self, code: u8) {
+        let place = self.arm.position(self.now);
+        self.errors.raise(code, self.powered());
+        self.trace.record(self.now, place, What::Error(code));
+        if code < code::FIRST_SOFT {
+            self.arm.freeze(self.now);
+            self.switches.servo.fill(false);
+        } else {
+            self.arm.brake(self.now);
+        }
+        if let Some(axis) = code::loses_origin(code) {
+            self.arm.known[axis] = false;
+        }
+        self.end_host_motion();
+        for (index, task) in self.tasks.iter_mut().enumerate() {
+            // The first task stands at its step, and can go on; the others are over.
+            if index == 0 {
+                task.running = false;
+            } else {
+                task.reset();
+                self.arm.drop_held(index);
+            }
+        }
+        self.stopped = false;
+        self.jog_ready = false;
+        self.outputs_at.clear();
+    }
+
+    /// Stops what runs, so that it can go on.
+    pub(super) fn stop(&mut self) {
+        self.arm.brake(self.now);
+        self.end_host_motion();
+        if self.is_running() && !self.stopped {
+            self.stopped = true;
+            self.trace.record(self.now, self.arm.position(self.now), What::Stopped);
+        }
+    }
+
+    /// Lets what stands go on.
+    pub(super) fn go_on(&mut self) {
+        for index in 0..TASKS {
+            if self.tasks[index].running && !self.tasks[index].stopped {
+                self.resume_task(index);
+            }
+        }
+    }
+
+    /// Lets a task go on with the move it was interrupted in.
+    pub(super) fn resume_task(&mut self, index: usize) {
+        self.arm.resume(index, self.now);
+        let task = &mut self.tasks[index];
+        if let Wait::Pass(_) = task.wait {
+            task.wait = Wait::Motion;
+        }
+    }
+
+    /// Ends what moves without a program: JOG and return to origin.
+    pub(super) fn end_host_motion(&mut self) {
+        self.arm.drop_held(HOST);
+        self.jog = None;
+        if let Some(homing) = self.arm.homing.take() {
+            // A return to origin is done whole or not at all.
+            self.arm.drop_held(homing.owner);
+            if let Some(task) = self.tasks.get_mut(homing.owner) {
+                task.wait = Wait::Ready(self.now);
+            }
+        }
+    }
+
+    /// Forgets all programs under way; the next start is at the beginning.
+    pub(super) fn reset_program(&mut self) {
+        self.tasks.iter_mut().for_each(Task::reset);
+        (0..TASKS).for_each(|task| self.arm.drop_held(task));
+        self.stopped = false;
+        self.pausing = false;
+        self.allowance = None;
+        self.outputs_at.clear();
+        self.jog = None;
+    }
+
+    /// Whether any program is under way, standing or not.
+    pub(super) fn is_running(&self) -> bool {
+        self.tasks.iter().any(|task| task.running)
+    }
+
+    /// Whether programs are held, by STOP or by the pause input.
+    pub(super) const fn is_held(&self) -> bool {
+        self.stopped || self.pausing
+    }
+
+    /// Whether something is executed (TO 2-2, status 0 bit 1).
+    pub(super) fn is_executing(&self) -> bool {
+        (self.is_running() && !self.stopped) || self.arm.is_moving(self.now) || self.arm.homing.is_some()
+    }
+
+    pub(super) fn kind(&self) -> Kind {
+        match (self.settings.special, self.switches.palletizing) {
+            (Special::Easy, _) => Kind::Easy,
+            (Special::Point, _) => Kind::Point,
+            (Special::None, true) => Kind::Palletizing,
+            (Special::None, false) => Kind::Sequential,
+        }
+    }
+
+    /// Whether this controller has what some models have.
+    pub(super) fn has(&self, only_on: Models) -> bool {
+        only_on.is_empty()
+            || only_on.contains(&self.model.as_str())
+            || (only_on == FROM_3_36 && self.version >= VERSION_3_36)
+    }
+
+    /// SY01 of the outputs: error, positioning complete, origin, READY.
+    pub(super) fn system_outputs(&self) -> u8 {
+        let bits =
+            [self.errors.current().is_some(), !self.arm.is_moving(self.now), self.knows_origin(), self.is_ready()];
+        bits.iter().rev().fold(0, |byte, bit| byte << 1 | u8::from(*bit))
+    }
+
+    /// Whether all axes that are fitted know their origin.
+    pub(super) fn knows_origin(&self) -> bool {
+        self.arm.known[..self.axes].iter().all(|known| *known)
+    }
+
+    pub(super) fn has_servo(&self) -> bool {
+        self.switches.servo[..self.axes].iter().all(|on| *on)
+    }
+
+    /// Whether a start would be taken (status 4 bit 4).
+    pub(super) fn is_ready(&self) -> bool {
+        self.has_servo() && self.errors.current().is_none() && !self.switches.machine_changed
+    }
+
+    /// Power-on time.
+    pub(super) fn powered(&self) -> Duration {
+        self.meter.saturating_add(self.now)
+    }
+
+    /// What a timer shows, in 0.1 s.
+    pub(super) fn timer(&self, number: usize) -> u32 {
+        let Some(Some((since, from))) = self.timers.get(number) else { return 0 };
+        let tenths = u32::try_from(self.now.saturating_sub(*since).as_millis() / 100).unwrap_or(MOST_TENTHS);
+        from.saturating_add(tenths).min(MOST_TENTHS)
+    }
+
+    /// The offset that each axis goes by.
+    pub(super) fn offset(&self) -> Place {
+        std::array::from_fn(|axis| self.tasks[self.arm.owners[axis]].offset[axis])
+    }
+
+    /// A page of the status (TO 2-2).
+    pub(super) fn status(&self, page: i32) -> u8 {
+        let waits = self.tasks.iter().any(|task| task.running && matches!(task.wait, Wait::Test(_)));
+        let bits: [bool; 8] = match page {
+            0 => [
+                self.errors.current().is_some(),
+                self.is_executing(),
+                self.is_held() && self.is_running(),
+                self.arm.homing.is_some(),
+                self.knows_origin(),
+                !self.arm.is_moving(self.now),
+                false,
+                self.switches.machine_changed,
+            ],
+            1 => return self.errors.current().unwrap_or_default(),
+            2 => {
+                let kind = self.kind();
+                [
+                    matches!(kind, Kind::Palletizing | Kind::Easy),
+                    matches!(kind, Kind::Point | Kind::Easy),
+                    self.switches.mode == Mode::Step,
+                    self.switches.mode == Mode::Program,
+                    self.ports.is_on(self.settings.single),
+                    false,
+                    self.switches.pendant,
+                    self.switches.host,
+                ]
+            }
+            3 => [
+                self.has_servo(),
+                false,
+                false,
+                false,
+                self.switches.slaves_ready,
+                self.card.is_in(),
+                self.card.is_reading(),
+                self.card.is_writing(),
+            ],
+            _ => [
+                self.ports.is_on(self.settings.escape),
+                self.ports.is_on(self.settings.continuous),
+                waits,
+                self.ports.is_on(self.settings.pause),
+                self.is_ready(),
+                false,
+                false,
+                false,
+            ],
+        };
+        bits.iter().rev().fold(0, |byte, bit| byte << 1 | u8::from(*bit))
+    }
+
+    /// Holds programs while the pause input is on.
+    fn follow_pause(&mut self) {
+        let on = self.ports.is_on(self.settings.pause) && self.is_running();
+        if on && !self.pausing {
+            self.pausing = true;
+            if !self.stopped {
+                self.arm.brake(self.now);
+                self.end_host_motion();
+            }
+        } else if !on && self.pausing {
+            self.pausing = false;
+            if !self.stopped {
+                self.go_on();
+            }
+        }
+    }
+}
