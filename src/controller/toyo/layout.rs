@@ -1,5 +1,7 @@
 //! A block or a part of one: fixed words with fields between them.
 
+use std::ops::Range;
+
 use thiserror::Error;
 
 use super::field::{Field, FieldError, Mask, Value};
@@ -80,6 +82,16 @@ impl Layout {
     /// The values in a text. Outer blanks, and more blanks than needed between items, do not matter (ambiguity A7).
     pub fn parse(&self, text: &str) -> Result<Record, LayoutError> {
         let mut values = Vec::with_capacity(self.fields.len());
+        self.scan(text, |_, value, _| values.push(value))?;
+        Ok(Record { layout: *self, values })
+    }
+
+    /// Hands over every value in a text with its field and the bytes it takes, up to the first that does not fit.
+    pub fn scan(
+        &self,
+        text: &str,
+        mut found: impl FnMut(&'static Field, Value, Range<usize>),
+    ) -> Result<(), LayoutError> {
         let mut rest = text.trim_start_matches(' ');
         let at = |rest: &str| text.len() - rest.len();
         let mut words = self.text.split("{}");
@@ -91,11 +103,11 @@ impl Layout {
             let Some(field) = fields.next() else { break };
             let taken = field.take(rest);
             let (value, left) = taken.map_err(|error| LayoutError { at: at(rest), what: error.into() })?;
-            values.push(value);
+            found(field, value, at(rest)..at(left));
             rest = left;
         }
         match rest.trim_end_matches(' ') {
-            "" => Ok(Record { layout: *self, values }),
+            "" => Ok(()),
             found => Err(LayoutError { at: at(rest), what: Misfit::Rest { found: found.to_owned() } }),
         }
     }

@@ -2,6 +2,7 @@
 //!
 //! Sections are those of the manual, as "TO 2-4"; where it errs, the reading chosen is told as an ambiguity.
 
+pub mod describe;
 pub mod errors;
 pub mod field;
 pub mod layout;
