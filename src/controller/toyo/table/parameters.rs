@@ -189,7 +189,7 @@ const METHODS: &[Field] = &axes(Form::Word(&[word("0", "Z phase"), word("1", "or
 const LOGICS: &[Field] =
     &axes(Form::Word(&[word("0", "on when detected"), word("1", "off when detected")]), "", "logic");
 const LEADS: &[Field] = &axes(Form::Number(Number::fixed(2, 3, 1000, 99_999)), "mm", "lead");
-const DIVISIONS: &[Field] = &axes(Form::Number(Number::digits(4, 1, 9999)), "pulse/turn", "pulses of a turn");
+const DIVISIONS: &[Field] = &axes(Form::Number(Number::digits(4, 1, 9999)), "pulse/rev", "pulses of a turn");
 const MULTIPLIERS: &[Field] = &axes(Form::Number(Number::digits(1, 1, 4)), "", "multiplier");
 const TASK_RANKS: &[Field] = &[
     digits("task1", 1, 0, 4, "priority"),
