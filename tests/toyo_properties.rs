@@ -1,0 +1,290 @@
+//! Properties of the Toyo codec: what is written reads back in full width, nothing out of range is written, and no text
+//! at all makes anything panic.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+use armctl::controller::toyo::describe::{Sender, describe, summary};
+use armctl::controller::toyo::field::{Field, Form, Mask, Value};
+use armctl::controller::toyo::layout::{Layout, Record};
+use armctl::controller::toyo::program;
+use armctl::controller::toyo::request::{MOST, Request, instruction};
+use armctl::controller::toyo::table::commands::ROWS;
+use armctl::controller::toyo::table::instructions::INSTRUCTIONS;
+use armctl::controller::toyo::table::palletizing::RECORDS;
+use armctl::controller::toyo::table::parameters::PARAMETERS;
+use armctl::controller::toyo::table::{Op, Parameter};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::{Index, select};
+
+/// Every form there is, of both directions, with what stands before it in its block.
+fn layouts() -> Vec<(&'static str, Layout)> {
+    let requests = ROWS.iter().flat_map(|row| row.requests).map(|layout| ("@", *layout));
+    let answers = ROWS.iter().flat_map(|row| row.answers).map(|layout| ("@", *layout));
+    let parameters = PARAMETERS.iter().flat_map(|row| [("@WPAR ", row.layout), ("@RPAR ", row.key)]);
+    let instructions = INSTRUCTIONS.iter().map(|row| ("@WSTX 0001 ", row.layout));
+    let records = RECORDS.iter().map(|row| ("@WPLT 01 SNO=01 ", row.layout));
+    requests.chain(answers).chain(parameters).chain(instructions).chain(records).collect()
+}
+
+/// A value that a field may have, by a number.
+fn value(field: &Field, pick: u32) -> Value {
+    let [low, high, ..] = pick.to_le_bytes();
+    if field.starred && pick.is_multiple_of(8) {
+        return Value::Stars;
+    }
+    match field.form {
+        Form::Number(number) => {
+            let step = 10_i64.pow(number.spare.into());
+            let (least, most) = (i64::from(number.least) / step, i64::from(number.most) / step);
+            let units = (least + i64::from(pick) % (most - least + 1)) * step;
+            Value::Number(i32::try_from(units).unwrap())
+        }
+        Form::Hex => Value::Byte(low),
+        Form::Word(words) => Value::Word(words[usize::from(low) % words.len()].text),
+        Form::Bits => Value::Bits(low),
+        Form::Mask => Value::Mask(Mask { care: high, bits: low & high }),
+        Form::Token | Form::Text => Value::Text(format!("T{low}")),
+    }
+}
+
+/// Values for the fields of a form.
+fn values(layout: &Layout, picks: &[u32]) -> Vec<Value> {
+    layout.fields.iter().zip(picks).map(|(field, pick)| value(field, *pick)).collect()
+}
+
+fn picks() -> impl Strategy<Value = Vec<u32>> {
+    vec(any::<u32>(), 12)
+}
+
+/// Bytes that a value takes, told by its form alone.
+fn width(field: &Field, value: &Value) -> usize {
+    match (field.form, value) {
+        (Form::Number(number), _) => {
+            let point = usize::from(number.decimals > 0);
+            usize::from(number.signed) + usize::from(number.whole) + point + usize::from(number.decimals)
+        }
+        (Form::Hex, _) => 2,
+        (Form::Bits | Form::Mask, _) => 8,
+        (_, Value::Word(word)) => word.len(),
+        (_, Value::Text(text)) => text.len(),
+        (_, other) => panic!("{}: {other:?}", field.name),
+    }
+}
+
+/// Lines that often look like a block.
+fn line() -> impl Strategy<Value = String> {
+    let block = (any::<Index>(), picks(), vec((any::<Index>(), any::<char>()), 0..4), any::<Index>()).prop_map(
+        |(row, picks, changes, cut)| {
+            let (front, layout) = layouts()[row.index(layouts().len())];
+            let text = format!("{front}{}", layout.emit(&values(&layout, &picks)).unwrap());
+            let mut text: Vec<char> = text.chars().collect();
+            let whole = changes.is_empty();
+            for (at, c) in changes {
+                let at = at.index(text.len());
+                text[at] = c;
+            }
+            if !whole {
+                text.truncate(cut.index(text.len() + 1));
+            }
+            text.into_iter().collect()
+        },
+    );
+    prop_oneof![4 => block, 1 => any::<String>(), 1 => "@[A-Z]{4}( [A-Z0-9=+.<>/*-]{0,16}){0,6}"]
+}
+
+/// The records of a program without errors: every tag that is named is there, once; RSMV passes.
+fn steps() -> impl Strategy<Value = Vec<Record>> {
+    vec((select(&INSTRUCTIONS[..]), picks()), 0..60).prop_map(|rows| {
+        let mut tags = std::collections::BTreeSet::new();
+        let mut named = std::collections::BTreeSet::new();
+        let mut steps = Vec::new();
+        for (row, picks) in rows {
+            let mut values = values(&row.layout, &picks);
+            for value in values.iter_mut().filter(|_| row.op == Op::Rsmv) {
+                if *value == Value::Word("POST") {
+                    *value = Value::Word("PASS");
+                }
+            }
+            let record = row.layout.record(values).unwrap();
+            let own = ["tag", "then", "else"].map(|name| record.number(name));
+            if row.op != Op::Tag {
+                named.extend(own.into_iter().flatten());
+            } else if !tags.insert(own[0].unwrap()) {
+                continue;
+            }
+            steps.push(record);
+        }
+        for tag in named.difference(&tags) {
+            steps.push(Op::Tag.row().layout.record(vec![Value::Number(*tag)]).unwrap());
+        }
+        steps.push(Op::End.row().layout.record(Vec::new()).unwrap());
+        steps
+    })
+}
+
+proptest! {
+    #[test]
+    fn what_is_written_reads_back_in_full_width(row: Index, picks in picks()) {
+        let (front, layout) = layouts()[row.index(layouts().len())];
+        let values = values(&layout, &picks);
+        let text = layout.emit(&values).unwrap();
+        let record = layout.parse(&text).unwrap();
+        prop_assert_eq!(record.values(), &values[..], "{}", text);
+        prop_assert_eq!(record.emit().unwrap(), text.clone());
+        prop_assert_eq!(record.written(), text.clone());
+        let stars = values.contains(&Value::Stars);
+        let words: usize = layout.text.split("{}").map(str::len).sum();
+        let fields: usize = layout.fields.iter().zip(&values).filter(|_| !stars).map(|(field, value)| width(field, value)).sum();
+        prop_assert!(stars || text.len() == words + fields, "{}", text);
+        let block = format!("{front}{text}\r\n");
+        prop_assert!(block.len() <= MOST, "{}", block);
+        prop_assert!(block.split_ascii_whitespace().all(|item| item.len() <= 15), "{}", block);
+    }
+
+    #[test]
+    fn what_is_out_of_range_is_never_written(row: Index, picks in picks(), at: Index, wrong: i32) {
+        let with_fields: Vec<Layout> = layouts().into_iter().map(|(_, layout)| layout).filter(|layout| !layout.fields.is_empty()).collect();
+        let layout = row.get(&with_fields);
+        let mut values = values(layout, &picks);
+        let at = at.index(values.len());
+        let fits = match layout.fields[at].form {
+            Form::Number(number) => {
+                (number.least..=number.most).contains(&wrong) && wrong % 10_i32.pow(number.spare.into()) == 0
+            }
+            _ => false,
+        };
+        values[at] = Value::Number(wrong);
+        prop_assert_eq!(layout.emit(&values).is_ok(), fits, "{:?}", values);
+        values[at] = Value::Word("never");
+        prop_assert!(layout.emit(&values).is_err());
+        values.pop();
+        prop_assert!(layout.emit(&values).is_err());
+    }
+
+    #[test]
+    fn the_edges_of_every_range_are_kept(row: Index, picks in picks()) {
+        let (_, layout) = layouts()[row.index(layouts().len())];
+        let values = values(&layout, &picks);
+        for (at, field) in layout.fields.iter().enumerate() {
+            let Form::Number(number) = field.form else { continue };
+            let with = |edge: i32| {
+                let mut values = values.clone();
+                values[at] = Value::Number(edge);
+                layout.emit(&values)
+            };
+            prop_assert!(with(number.least).is_ok() && with(number.most).is_ok());
+            prop_assert!(with(number.least - 1).is_err() && with(number.most + 1).is_err());
+        }
+    }
+
+    #[test]
+    fn requests_read_back(row: Index, picks in picks()) {
+        let row = &ROWS[row.index(ROWS.len())];
+        for (form, layout) in row.requests.iter().enumerate() {
+            let request = Request::in_form(row.command, form, values(layout, &picks)).unwrap();
+            prop_assert_eq!(Request::parse(&request.text()), Ok(request));
+        }
+    }
+
+    #[test]
+    fn parameters_steps_and_records_read_back(picks in picks(), step in 1_i32..=5000, pallet in 1_i32..=16, row: Index) {
+        let parameter = &PARAMETERS[row.index(PARAMETERS.len())];
+        let whole = values(&parameter.layout, &picks);
+        let request = Request::parse(&Request::write_parameter(parameter, &whole).unwrap().text()).unwrap();
+        prop_assert_eq!(request.parameter().map(|row| row.id), Some(parameter.id));
+        let content = request.content().unwrap().unwrap();
+        prop_assert_eq!(content.values(), &whole[..]);
+        let read = Request::read_parameter(parameter, parameter.row().and_then(|row| content.number(row.name))).unwrap();
+        let answer = format!("@RPAR {}", content.written());
+        prop_assert!(read.answer(&answer).is_ok(), "{} {}", read.text(), answer);
+        let row = &INSTRUCTIONS[row.index(INSTRUCTIONS.len())];
+        let record = row.layout.record(values(&row.layout, &picks)).unwrap();
+        let request = Request::parse(&Request::write_step(step, &record).unwrap().text()).unwrap();
+        prop_assert_eq!(request.content().unwrap(), Some(record));
+        let record = &RECORDS[usize::try_from(pallet).unwrap() - 1];
+        let whole = values(&record.layout, &picks);
+        let request = Request::parse(&Request::write_pallet(pallet, record, &whole).unwrap().text()).unwrap();
+        let content = request.content().unwrap().unwrap();
+        prop_assert_eq!(content.values(), &whole[..]);
+    }
+
+    #[test]
+    fn any_line_is_judged(text in line(), other in line()) {
+        let _ = (instruction(&text), Parameter::of(&text));
+        if let Ok(request) = Request::parse(&text) {
+            let _ = (request.check(), request.content(), request.risk(), request.parameter());
+            let again = Request::parse(&request.text());
+            prop_assert!(again.is_ok() || request.text().len() + 2 > MOST, "{}", request.text());
+            for block in [&other, &text] {
+                if let Ok(armctl::controller::toyo::request::Answer::Data(record)) = request.answer(block) {
+                    let _ = request.answered(&record);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn any_line_is_explained(text in line(), asked in line()) {
+        let request = Request::parse(&asked).ok();
+        let line = text.trim_end_matches(['\r', '\n']);
+        for sender in [Sender::guess(&text), Sender::Host, Sender::Controller] {
+            for request in [None, request.as_ref()] {
+                let description = describe(&text, sender, request);
+                prop_assert!(description.problem.is_some() || !description.fields.is_empty());
+                for field in &description.fields {
+                    let raw: String = line.chars().skip(field.column - 1).take(field.width).collect();
+                    prop_assert_eq!(&raw, &field.raw, "{:?}", field);
+                }
+                let summary = summary(&text, sender, request);
+                prop_assert!(!summary.contains(char::is_control), "{}", summary);
+            }
+        }
+    }
+
+    #[test]
+    fn blocks_within_their_ranges_have_no_problem(row: Index, picks in picks()) {
+        let row = &ROWS[row.index(ROWS.len())];
+        // What stands there instead is of another table, or nobody knows (ambiguity C5).
+        let opaque = |layout: &&Layout| !layout.fields.iter().any(|field| ["body", "key", "text", "point"].contains(&field.name) && field.form == Form::Text);
+        for (layouts, sender) in [(row.requests, Sender::Host), (row.answers, Sender::Controller)] {
+            for layout in layouts.iter().filter(opaque) {
+                let text = format!("@{}", layout.emit(&values(layout, &picks)).unwrap());
+                prop_assert_eq!(describe(&text, sender, None).problem, None, "{}", text);
+            }
+        }
+    }
+
+    #[test]
+    fn programs_read_back(steps in steps(), numbered: bool, room in 0_usize..200) {
+        let listing = program::listing(&steps, numbered, &program::Rows::new());
+        let checked = program::check(listing.text.as_bytes(), program::MOST_STEPS);
+        prop_assert!(checked.errors().count() == 0, "{}{:?}", listing.text, checked.findings);
+        let read: Vec<Record> = checked.program.unwrap().steps.into_iter().map(|step| step.record).collect();
+        prop_assert_eq!(&read[..], &steps[..steps.len() - listing.left_out]);
+        let fits = program::check(listing.text.as_bytes(), room).program.is_some();
+        prop_assert_eq!(fits, read.len() <= room);
+    }
+
+    #[test]
+    fn any_bytes_are_a_program_or_told(bytes in vec(any::<u8>(), 0..400), lines in vec(text_line(), 0..40)) {
+        for text in [&bytes[..], lines.join("\n").as_bytes()] {
+            let checked = program::check(text, 100);
+            prop_assert_eq!(checked.program.is_some(), checked.errors().count() == 0);
+            for finding in &checked.findings {
+                prop_assert!(finding.line >= 1 && finding.column >= 1 && !finding.message.is_empty());
+            }
+            for step in checked.program.iter().flat_map(|program| &program.steps) {
+                prop_assert!(instruction(&step.text()).unwrap() == step.record && step.record.emit().is_ok());
+            }
+        }
+    }
+}
+
+/// Lines that often look like one of a program.
+fn text_line() -> impl Strategy<Value = String> {
+    let words = select(&INSTRUCTIONS[..]).prop_map(|row| row.word);
+    let mangled = (words, "( ?[a-zA-Z=<>0-9.+:#;-]{0,8}){0,5}").prop_map(|(word, rest)| format!("{word} {rest}"));
+    let whole = (steps(), any::<Index>()).prop_map(|(steps, at)| at.get(&steps).written().to_lowercase());
+    prop_oneof![mangled, whole, "[a-c]{1,2}(=[0-9]{1,4})?:", any::<String>()]
+}
