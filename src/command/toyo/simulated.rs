@@ -8,12 +8,15 @@ use crate::failure::Failure;
 use crate::transport::fault::LineFaultSpec;
 use crate::transport::sim::Peer;
 
-/// The start state: a file's, or the built-in one; busy as often as the faults say.
+/// The start state: a file's, or the built-in one with so many axes; busy as often as the faults say.
 pub fn start(file: Option<&Path>, axes: Option<u8>, faults: Option<&LineFaultSpec>) -> Result<Start, Failure> {
-    let start = file.map_or_else(|| Ok(Start::default()), load)?;
-    let start = match axes {
-        Some(axes) => start.with_axes(axes),
-        None => start,
+    let start = match (file, axes) {
+        (None, None) => Start::default(),
+        (None, Some(axes)) => Start::parse(&format!("axes = {axes}")).map_err(Failure::usage)?,
+        (Some(file), None) => load(file)?,
+        (Some(_), Some(_)) => {
+            return Err(Failure::usage("the number of axes is given twice").hint("write it into the state file alone"));
+        }
     };
     Ok(match faults {
         Some(faults) => start.with_busy(f64::from(faults.busy.per_10_000()) / 10_000.0),
