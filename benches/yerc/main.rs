@@ -10,11 +10,10 @@
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
 mod bare;
+#[path = "../common/mod.rs"]
+mod common;
 mod peers;
 mod process;
-mod table;
-
-use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, ensure};
 use armctl::command::yerc::Family as Yerc;
@@ -30,8 +29,9 @@ use armctl::settings::{Selection, Sources};
 use moto_hses_client::HsesClient;
 use tokio::runtime::Runtime;
 
+use common::table::{Goal, Row, Table};
+use common::{Work, in_turn, median, ratio, run, runtime};
 use peers::Controller;
-use table::{Goal, Row, Table};
 
 const MIB: u64 = 1024 * 1024;
 
@@ -51,29 +51,12 @@ const FULL: Effort =
 const QUICK: Effort =
     Effort { status_rounds: 3, exchanges: 200, download_rounds: 3, download: MIB / 2, starts: 5, big: 2 * MIB };
 
-/// What makes the table of a comparison.
-type Compare = fn(&Effort) -> anyhow::Result<Table>;
-
 /// The comparisons, by the word that chooses one.
-const COMPARISONS: [(&str, Compare); 4] =
+const COMPARISONS: [(&str, common::Compare<Effort>); 4] =
     [("status", status), ("download", download), ("start", start), ("memory", memory)];
 
 fn main() -> anyhow::Result<()> {
-    let args: Vec<String> = std::env::args().skip(1).collect();
-    // `cargo bench` says so; `cargo test` says nothing.
-    let is_quick = args.iter().any(|arg| arg == "--quick") || !args.iter().any(|arg| arg == "--bench");
-    let effort = if is_quick { QUICK } else { FULL };
-    let chosen: Vec<&String> = args.iter().filter(|arg| !arg.starts_with('-')).collect();
-    println!("{}", table::HEADER);
-    for (name, compare) in COMPARISONS {
-        if chosen.is_empty() || chosen.iter().any(|chosen| *chosen == name) {
-            println!("{}", compare(&effort).context(name)?);
-        }
-    }
-    if is_quick || cfg!(debug_assertions) {
-        println!("A short or unoptimized run: it shows that the comparisons work, the figures mean nothing.");
-    }
-    Ok(())
+    run(&COMPARISONS, &FULL, &QUICK)
 }
 
 /// Status round trips: our link, a bare echo of the same sizes, the client of `moto-hses-client`.
@@ -109,7 +92,7 @@ fn status(effort: &Effort) -> anyhow::Result<Table> {
     table.row(Row::new("bare blocking UDP echo, 32 bytes out, 40 back", per_second(&bare)));
     let ratio = ratio(&bare, &ours);
     table.row(Row::new("armctl, Link::ask(ReadStatus)", per_second(&ours)).against(ratio, Goal::AtLeast(0.8)));
-    let ahead = self::ratio(&other, &ours);
+    let ahead = common::ratio(&other, &ours);
     table.row(Row::new("moto-hses-client, read_status", per_second(&other)).against_ours(ahead, Goal::MoreThan(1.0)));
     Ok(table)
 }
@@ -178,11 +161,6 @@ fn memory(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// Runs as `armctl` does.
-fn runtime() -> anyhow::Result<Runtime> {
-    Ok(tokio::runtime::Builder::new_current_thread().enable_all().build()?)
-}
-
 /// Connects as a command does.
 fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
     let target = controller.url().parse()?;
@@ -193,42 +171,6 @@ fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
     let access = Access { granted: Risk::Read, dry_run: false, trace: None };
     let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
     Ok(runtime.block_on(Yerc::connect(robot, access, &screen))?)
-}
-
-/// What a contender does in a round.
-trait Work: FnMut() -> anyhow::Result<()> {}
-
-impl<F: FnMut() -> anyhow::Result<()>> Work for F {}
-
-/// The seconds that each contender took in each round, after one round that does not count.
-fn in_turn<const N: usize>(rounds: usize, mut contenders: [&mut dyn Work; N]) -> anyhow::Result<[Vec<f64>; N]> {
-    let mut times = [const { Vec::new() }; N];
-    for round in 0..=rounds {
-        for (work, times) in contenders.iter_mut().zip(&mut times) {
-            let time = clocked(*work)?;
-            if round > 0 {
-                times.push(time.as_secs_f64());
-            }
-        }
-    }
-    Ok(times)
-}
-
-fn clocked(work: &mut dyn Work) -> anyhow::Result<Duration> {
-    let start = Instant::now();
-    work()?;
-    Ok(start.elapsed())
-}
-
-/// How many times as fast as `base` the other one is, round by round.
-fn ratio(base: &[f64], other: &[f64]) -> f64 {
-    median(&base.iter().zip(other).map(|(base, other)| base / other).collect::<Vec<_>>())
-}
-
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a figure for people")]

@@ -1,0 +1,73 @@
+//! What the benchmarks share: who is measured when, and the report.
+
+pub mod table;
+
+use std::time::{Duration, Instant};
+
+use anyhow::Context as _;
+use tokio::runtime::Runtime;
+
+use table::Table;
+
+/// What makes the table of a comparison, with so much effort.
+pub type Compare<E> = fn(&E) -> anyhow::Result<Table>;
+
+/// Runs the comparisons that the command line names, or all.
+pub fn run<E>(comparisons: &[(&str, Compare<E>)], full: &E, quick: &E) -> anyhow::Result<()> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    // `cargo bench` says so; `cargo test` says nothing.
+    let is_quick = args.iter().any(|arg| arg == "--quick") || !args.iter().any(|arg| arg == "--bench");
+    let effort = if is_quick { quick } else { full };
+    let chosen: Vec<&String> = args.iter().filter(|arg| !arg.starts_with('-')).collect();
+    println!("{}", table::HEADER);
+    for (name, compare) in comparisons {
+        if chosen.is_empty() || chosen.iter().any(|chosen| *chosen == name) {
+            println!("{}", compare(effort).with_context(|| (*name).to_owned())?);
+        }
+    }
+    if is_quick || cfg!(debug_assertions) {
+        println!("A short or unoptimized run: it shows that the comparisons work, the figures mean nothing.");
+    }
+    Ok(())
+}
+
+/// Runs as `armctl` does.
+pub fn runtime() -> anyhow::Result<Runtime> {
+    Ok(tokio::runtime::Builder::new_current_thread().enable_all().build()?)
+}
+
+/// What a contender does in a round.
+pub trait Work: FnMut() -> anyhow::Result<()> {}
+
+impl<F: FnMut() -> anyhow::Result<()>> Work for F {}
+
+/// The seconds that each contender took in each round, after one round that does not count.
+pub fn in_turn<const N: usize>(rounds: usize, mut contenders: [&mut dyn Work; N]) -> anyhow::Result<[Vec<f64>; N]> {
+    let mut times = [const { Vec::new() }; N];
+    for round in 0..=rounds {
+        for (work, times) in contenders.iter_mut().zip(&mut times) {
+            let time = clocked(*work)?;
+            if round > 0 {
+                times.push(time.as_secs_f64());
+            }
+        }
+    }
+    Ok(times)
+}
+
+pub fn clocked(work: &mut dyn Work) -> anyhow::Result<Duration> {
+    let start = Instant::now();
+    work()?;
+    Ok(start.elapsed())
+}
+
+/// How many times as fast as `base` the other one is, round by round.
+pub fn ratio(base: &[f64], other: &[f64]) -> f64 {
+    median(&base.iter().zip(other).map(|(base, other)| base / other).collect::<Vec<_>>())
+}
+
+pub fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+}

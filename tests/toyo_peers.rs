@@ -1,0 +1,163 @@
+//! Programs that others wrote between `armctl` and the simulated Toyo controller: `socat` makes a serial port of a TCP
+//! connection, `ser2net` a TCP port of a serial one. Both carry bytes the way that adapters and device servers do.
+//!
+//! Where they are absent the tests say so and pass; under `CI=true` they must be there.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+use std::io::{BufRead as _, BufReader};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc;
+
+use armctl::command::toyo::simulated::{self, Simulated};
+use armctl::transport::stream_server::StreamServer;
+use serde_json::Value;
+
+/// A process that ends with the test.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        self.0.kill().unwrap_or_default();
+        self.0.wait().unwrap();
+    }
+}
+
+/// What a simulated controller is reached by.
+enum Reach {
+    Tcp,
+    PseudoTerminal,
+}
+
+/// Serves a simulated controller until the process ends; returns its address, or the path of its port.
+fn serve(reach: Reach) -> String {
+    let (tell, told) = mpsc::channel();
+    std::thread::spawn(move || {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+        runtime.block_on(async {
+            let (mut server, name) = match reach {
+                Reach::Tcp => {
+                    let any = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
+                    let (server, address) = StreamServer::tcp(any, None, None).await.unwrap();
+                    (server, address.to_string())
+                }
+                Reach::PseudoTerminal => StreamServer::pseudo_terminal(None, None).unwrap(),
+            };
+            let mut controller = Simulated::new(simulated::start(None, None, None).unwrap());
+            tell.send(name).unwrap();
+            loop {
+                server.turn(&mut controller).await.unwrap();
+            }
+        });
+    });
+    told.recv().unwrap()
+}
+
+/// Whether a program is there; in CI it must be.
+fn is_there(program: &str, ask: &str) -> bool {
+    let asked = Command::new(program).arg(ask).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    let is_there = asked.is_ok();
+    assert!(is_there || std::env::var_os("CI").is_none(), "{program} must be there in CI");
+    if !is_there {
+        eprintln!("skipped: {program} is not installed");
+    }
+    is_there
+}
+
+/// The data of a command line that must succeed.
+#[track_caller]
+fn data(target: &str, words: &[&str]) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_armctl"))
+        .args(["--json", "--yes", "-t", target, "toyo"])
+        .args(words)
+        .env_clear()
+        .env("HOME", folder.path())
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{words:?} over {target}: {errors}");
+    let envelope: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(envelope["simulated"], false);
+    envelope["data"].clone()
+}
+
+/// What a technician does first, over whatever lies between.
+fn works(target: &str) {
+    assert_eq!(data(target, &["status"])["homed"], false);
+    data(target, &["home"]);
+    let status = data(target, &["status"]);
+    assert_eq!((&status["homed"], &status["host_on"]), (&true.into(), &false.into()), "{status}");
+    data(target, &["point", "set", "1", "100", "20", "0", "0"]);
+    let point = &data(target, &["point", "get", "1"])["points"][0];
+    assert_eq!((&point["x_mm"], &point["y_mm"]), (&100.0.into(), &20.0.into()), "{point}");
+    data(target, &["run", "point", "1"]);
+    let place = data(target, &["position"]);
+    assert_eq!((&place["x_mm"], &place["y_mm"]), (&100.0.into(), &20.0.into()), "{place}");
+}
+
+#[test]
+fn through_socat() {
+    if !is_there("socat", "-V") {
+        return;
+    }
+    let address = serve(Reach::Tcp);
+    let folder = tempfile::tempdir().unwrap();
+    let port = folder.path().join("port");
+    let terminal = format!("pty,raw,echo=0,link={}", port.display());
+    let mut socat = Command::new("socat")
+        .args(["-d", "-d", &terminal, &format!("tcp:{address}")])
+        .stderr(Stdio::piped())
+        .spawn()
+        .map(Running)
+        .unwrap();
+    // It says when both ends are open.
+    let stderr = BufReader::new(socat.0.stderr.take().unwrap());
+    let mut lines = stderr.lines();
+    assert!(lines.by_ref().any(|line| line.unwrap().contains("starting data transfer")), "socat ended");
+    std::thread::spawn(move || lines.for_each(drop));
+    works(&format!("serial://{}", port.display()));
+}
+
+#[test]
+fn through_ser2net() {
+    if !is_there("ser2net", "-v") {
+        return;
+    }
+    let terminal = serve(Reach::PseudoTerminal);
+    let port = free_port();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("ser2net.yaml");
+    let lines = [
+        "connection: &toyo".to_owned(),
+        format!("  accepter: tcp,127.0.0.1,{port}"),
+        format!("  connector: serialdev,{terminal},9600e81,local"),
+    ];
+    std::fs::write(&file, lines.join("\n") + "\n").unwrap();
+    let _running = start_ser2net(&file);
+    // It says nothing when it listens.
+    while TcpStream::connect((Ipv4Addr::LOCALHOST, port)).is_err() {
+        std::thread::yield_now();
+    }
+    works(&format!("tcp://127.0.0.1:{port}"));
+}
+
+fn start_ser2net(file: &Path) -> Running {
+    let child = Command::new("ser2net")
+        .args(["-n", "-d", "-c"])
+        .arg(file)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    Running(child)
+}
+
+/// A port that nobody has now; `ser2net` cannot choose one itself.
+fn free_port() -> u16 {
+    TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap().port()
+}
