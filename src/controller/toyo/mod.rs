@@ -2,14 +2,17 @@
 //!
 //! Sections are those of the manual, as "TO 2-4"; where it errs, the reading chosen is told as an ambiguity.
 
+pub mod bulk;
 pub mod describe;
 pub mod errors;
 pub mod field;
+pub mod findings;
 pub mod layout;
 mod nearest;
 pub mod program;
 pub mod request;
 pub mod session;
 pub mod simulator;
+mod source;
 pub mod status;
 pub mod table;

@@ -1,7 +1,7 @@
 //! What runs after what: ends that are missing, steps that nothing reaches, jumps that only the controller knows.
 
-use super::findings::{Findings, Place};
 use super::tags::Resolved;
+use crate::controller::toyo::findings::{Findings, Place};
 use crate::controller::toyo::table::{Instruction, Op};
 
 /// Tells what looks wrong in a program without errors.

@@ -13,19 +13,18 @@
 //! instruction names a tag. Numbers may be short, words and keys in any case. Every instruction may begin with its step
 //! number, as lists of controllers have it.
 
-mod findings;
 mod flow;
 mod instruction;
 mod listing;
 mod reader;
-mod source;
 mod tags;
 #[cfg(test)]
 mod tests;
 
-pub use findings::{Finding, Severity};
 pub use listing::{Listing, Rows, listing, uses};
 
+use super::findings::Findings;
+pub use super::findings::{Finding, Severity};
 use super::layout::Record;
 use super::table::Instruction;
 
@@ -90,7 +89,7 @@ impl Checked {
 
 /// Reads the text of a program for a task with so many steps (TO 2-4, E22).
 pub fn check(text: &[u8], room: usize) -> Checked {
-    let mut findings = findings::Findings::default();
+    let mut findings = Findings::default();
     let read = reader::read(text, room, &mut findings);
     let program = tags::resolve(read, &mut findings);
     if findings.errors() == 0 {

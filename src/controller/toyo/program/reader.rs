@@ -1,9 +1,9 @@
 //! The lines of a file: step numbers, labels, instructions, comments.
 
 use super::MOST_STEPS;
-use super::findings::{Findings, Place};
 use super::instruction::{Cursor, Draft, TagUse, Target, is_label, read as read_instruction, shown};
-use super::source;
+use crate::controller::toyo::findings::{Findings, Place};
+use crate::controller::toyo::source;
 use crate::controller::toyo::table::Op;
 
 /// What the lines of a file say.

@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-use super::findings::{Findings, Place};
 use super::instruction::{Draft, Target};
 use super::reader::{Defined, Read};
 use super::{Label, Program, Step};
 use crate::controller::toyo::field::Value;
+use crate::controller::toyo::findings::{Findings, Place};
 use crate::controller::toyo::nearest::nearest;
 use crate::controller::toyo::table::Op;
 

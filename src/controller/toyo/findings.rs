@@ -1,8 +1,8 @@
-//! What there is to say about a text.
+//! What there is to say about a text that somebody wrote: a program, a table of points, a file of parameters.
 
 use std::fmt;
 
-/// Errors that are kept; a file with more is no program at all.
+/// Errors that are kept; a file with more is something else altogether.
 const MOST: usize = 100;
 
 /// Something to say about a place of a text.
@@ -23,7 +23,7 @@ pub struct Finding {
 /// How bad a finding is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
-    /// The text is no program.
+    /// The text cannot be used.
     Error,
     /// Probably not what was meant.
     Warning,
@@ -90,6 +90,13 @@ impl Findings {
     /// Whether more errors would not be shown.
     pub const fn is_full(&self) -> bool {
         self.errors >= MOST
+    }
+
+    /// The errors alone, in the order of the text.
+    pub fn into_errors(self) -> Vec<Finding> {
+        let mut errors = self.sorted();
+        errors.retain(|finding| finding.severity == Severity::Error);
+        errors
     }
 
     /// In the order of the text.

@@ -1,0 +1,436 @@
+//! Parameters and tables as TOML: names in place of ids, numbers in their units, words as on the line.
+//!
+//! ```toml
+//! [parameters]
+//! # P01: soft limit in plus direction, mm
+//! soft-limit-plus = { ax1 = 500.00, ax2 = 300.00, ax3 = 200.00, ax4 = 0.00 }
+//! # M09: language of the teach pendant (J Japanese, E English)
+//! pendant-language = "E"
+//!
+//! # T2: speed table, mm/s
+//! [speed-table]
+//! 5 = 250.0
+//! ```
+//!
+//! Ids may stand in place of names. Whatever has a name must have all its values, as a write sends them all.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+use std::ops::Range;
+
+use toml_edit::{Document, Item, TableLike, Value as Toml};
+
+use super::{Placed, Setting, plain};
+use crate::controller::toyo::field::{Field, Form, Value};
+use crate::controller::toyo::findings::{Finding, Findings, Place};
+use crate::controller::toyo::nearest::nearest;
+use crate::controller::toyo::program::MOST_STEPS;
+use crate::controller::toyo::source;
+use crate::controller::toyo::table::Parameter;
+use crate::controller::toyo::table::parameters::PARAMETERS;
+
+/// The table of all that has no rows.
+const SINGLE: &str = "parameters";
+
+/// Settings as TOML, in the manual's order; each with its id, what it is, and its unit in a comment.
+pub fn write(settings: &[Setting]) -> String {
+    let mut text = String::new();
+    let of = |parameter: &'static Parameter| settings.iter().filter(move |setting| setting.parameter == parameter);
+    for parameter in PARAMETERS.iter().filter(|parameter| parameter.row().is_none()) {
+        for setting in of(parameter) {
+            if text.is_empty() {
+                let _ = writeln!(text, "[{SINGLE}]");
+            }
+            let _ = writeln!(text, "{}\n{} = {}", comment(parameter), parameter.name, toml(setting));
+        }
+    }
+    for parameter in PARAMETERS.iter().filter(|parameter| parameter.row().is_some()) {
+        for (index, setting) in of(parameter).enumerate() {
+            if index == 0 {
+                let gap = if text.is_empty() { "" } else { "\n" };
+                let _ = writeln!(text, "{gap}{}\n[{}]", comment(parameter), parameter.name);
+            }
+            let _ = writeln!(text, "{} = {}", setting.row().unwrap_or_default(), toml(setting));
+        }
+    }
+    text
+}
+
+/// Settings in a TOML file: each once, known, whole, and in range.
+pub fn read(bytes: &[u8]) -> Result<Vec<Placed>, Vec<Finding>> {
+    let mut findings = Findings::default();
+    let text = source::lines(bytes, &mut findings).join("\n");
+    if findings.errors() > 0 {
+        return Err(findings.into_errors());
+    }
+    let mut reader = Reader { places: Places::new(&text), findings, settings: Vec::new(), seen: HashMap::new() };
+    match Document::parse(&text[..]) {
+        Ok(document) => reader.document(document.as_table()),
+        Err(error) => {
+            let at = reader.places.place(&error.span().unwrap_or_default());
+            reader.findings.error(at, error.message().replace('\n', ", "), None);
+        }
+    }
+    if reader.findings.errors() == 0 { Ok(reader.settings) } else { Err(reader.findings.into_errors()) }
+}
+
+/// What a parameter is, for people.
+fn comment(parameter: &Parameter) -> String {
+    let mut comment = format!("# {}: {}", parameter.id, parameter.about);
+    let mut told: Vec<String> = Vec::new();
+    for field in parameter.fields() {
+        let about = match field.form {
+            Form::Word(words) if words.iter().any(|word| word.text != word.about) => {
+                let words = words.iter().map(|word| format!("{} {}", word.text.trim_end(), word.about));
+                format!("; {}", words.collect::<Vec<_>>().join(", "))
+            }
+            _ if !field.unit.is_empty() => format!(", {}", field.unit),
+            _ => continue,
+        };
+        if !told.contains(&about) {
+            comment.push_str(&about);
+            told.push(about);
+        }
+    }
+    comment
+}
+
+/// The values of a setting: one alone, several as a table.
+fn toml(setting: &Setting) -> String {
+    let keys = setting.parameter.key.fields.len();
+    let pairs = setting.parameter.fields().iter().zip(setting.values.iter().skip(keys));
+    let mut values = pairs.map(|(field, value)| match value {
+        Value::Number(_) => (field.name, plain(field, value)),
+        _ => (field.name, format!("\"{}\"", plain(field, value))),
+    });
+    if setting.parameter.fields().len() == 1 {
+        return values.next().map(|(_, value)| value).unwrap_or_default();
+    }
+    let pairs: Vec<String> = values.map(|(name, value)| format!("{name} = {value}")).collect();
+    format!("{{ {} }}", pairs.join(", "))
+}
+
+struct Reader<'t> {
+    places: Places<'t>,
+    findings: Findings,
+    settings: Vec<Placed>,
+    /// Line of each parameter and row.
+    seen: HashMap<(&'static str, Option<i32>), usize>,
+}
+
+impl Reader<'_> {
+    fn document(&mut self, document: &toml_edit::Table) {
+        for (name, item) in document {
+            let at = self.key(document, name);
+            match (Parameter::named(name), item.as_table_like()) {
+                (None, Some(table)) if name == SINGLE => self.parameters(table),
+                // An id with a point in it is a table in a table.
+                (None, Some(table)) if name.eq_ignore_ascii_case("T4") => self.sheets(table),
+                (Some(parameter), Some(table)) if parameter.row().is_some() => self.rows(parameter, table),
+                (Some(parameter), None) if parameter.row().is_some() => {
+                    let message = format!("{name} is a table");
+                    self.findings.error(at, message, Some(format!("write [{}], and a row a line", parameter.name)));
+                }
+                (Some(_), _) => {
+                    let hint = format!("write [{SINGLE}] before it");
+                    self.findings.error(at, format!("{name} belongs into [{SINGLE}]"), Some(hint));
+                }
+                (None, None) if name == SINGLE => {
+                    self.findings.error(at, format!("{name} is a table"), Some(format!("write [{SINGLE}]")));
+                }
+                (None, _) => {
+                    let tables = PARAMETERS.iter().filter(|row| row.row().is_some()).map(|row| row.name);
+                    self.unknown(at, "table", name, tables.chain([SINGLE]));
+                }
+            }
+        }
+        self.steps_fit();
+    }
+
+    fn sheets(&mut self, tables: &dyn TableLike) {
+        for (name, item) in tables.iter() {
+            let at = self.key(tables, name);
+            match (Parameter::named(&format!("T4.{name}")), item.as_table_like()) {
+                (Some(parameter), Some(table)) => self.rows(parameter, table),
+                (Some(parameter), None) => {
+                    let hint = format!("write [{}], and a row a line", parameter.name);
+                    self.findings.error(at, format!("T4.{name} is a table"), Some(hint));
+                }
+                (None, _) => self.unknown(at, "table", name, ["S1", "S2", "S3", "S4", "S5"]),
+            }
+        }
+    }
+
+    fn parameters(&mut self, table: &dyn TableLike) {
+        for (name, item) in table.iter() {
+            let at = self.key(table, name);
+            match Parameter::named(name) {
+                Some(parameter) if parameter.row().is_some() => {
+                    let hint = format!("write [{}], and a row a line", parameter.name);
+                    self.findings.error(at, format!("{name} is a table of its own"), Some(hint));
+                }
+                Some(parameter) => self.setting(parameter, None, item, at),
+                None => self.unknown(at, "parameter", name, PARAMETERS.iter().map(|row| row.name)),
+            }
+        }
+    }
+
+    fn rows(&mut self, parameter: &'static Parameter, table: &dyn TableLike) {
+        let Some(field) = parameter.row() else { return };
+        for (name, item) in table.iter() {
+            let at = self.key(table, name);
+            match field.read(name) {
+                Ok(row) => self.setting(parameter, Some(row), item, at),
+                Err(error) => self.findings.error(at, error.to_string(), None),
+            }
+        }
+    }
+
+    /// One parameter, or one row.
+    fn setting(&mut self, parameter: &'static Parameter, row: Option<Value>, item: &Item, at: Place) {
+        let before = self.findings.errors();
+        let mut values: Vec<Value> = row.into_iter().collect();
+        match (parameter.fields(), item, item.as_table_like()) {
+            ([field], Item::Value(value), _) => values.extend(self.value(field, value)),
+            ([field], ..) => {
+                let message = format!("{} is one value: {}", parameter.name, field.expected());
+                self.findings.error(at, message, None);
+            }
+            (fields, _, Some(table)) => values.extend(self.fields(fields, table, at)),
+            (fields, ..) => {
+                let names: Vec<String> = fields.iter().map(|field| format!("{} = …", field.name)).collect();
+                let hint = format!("write {{ {} }}", names.join(", "));
+                self.findings.error(at, format!("{} has {} values", parameter.name, fields.len()), Some(hint));
+            }
+        }
+        let setting = Setting { parameter, values };
+        if let Some(other) = self.seen.insert((parameter.id, setting.row()), at.line) {
+            let what = setting.row().map_or_else(|| parameter.name.to_owned(), |row| format!("row {row}"));
+            self.findings.error(at, format!("{what} is there already, in line {other}"), None);
+        }
+        if self.findings.errors() == before {
+            self.settings.push((setting, at.line));
+        }
+    }
+
+    /// All fields of a parameter, in their order.
+    fn fields(&mut self, fields: &'static [Field], table: &dyn TableLike, at: Place) -> Vec<Value> {
+        for (name, _) in table.iter().filter(|(name, _)| !fields.iter().any(|field| field.name == *name)) {
+            let at = self.key(table, name);
+            self.unknown(at, "value", name, fields.iter().map(|field| field.name));
+        }
+        let mut values = Vec::with_capacity(fields.len());
+        for field in fields {
+            match table.get(field.name) {
+                Some(Item::Value(value)) => values.extend(self.value(field, value)),
+                Some(_) => {
+                    let at = self.key(table, field.name);
+                    self.findings.error(at, format!("{}: {} is expected", field.name, field.expected()), None);
+                }
+                None => self.findings.error(at, format!("{} is missing: {}", field.name, field.expected()), None),
+            }
+        }
+        values
+    }
+
+    /// One value. Numbers are taken as they are written, so that no decimal is lost.
+    fn value(&mut self, field: &Field, value: &Toml) -> Option<Value> {
+        let span = value.span().unwrap_or_default();
+        let text = match value {
+            Toml::String(text) if !matches!(field.form, Form::Number(_)) => Some(&text.value()[..]),
+            Toml::Integer(_) | Toml::Float(_) => self.places.text.get(span.clone()),
+            _ => None,
+        };
+        let read = match text {
+            Some(text) => field.read(text).map_err(|error| error.to_string()),
+            None => Err(format!("{}: {} is expected", field.name, field.expected())),
+        };
+        read.map_err(|message| self.findings.error(self.places.place(&span), message, None)).ok()
+    }
+
+    /// The tasks share the steps there are (TO 2-4, E22).
+    fn steps_fit(&mut self) {
+        for (setting, line) in self.settings.iter().filter(|(setting, _)| setting.parameter.id == "E22") {
+            let steps = setting.values.iter().map(|value| if let Value::Number(steps) = value { *steps } else { 0 });
+            let steps = steps.fold(0_usize, |sum, steps| sum + usize::try_from(steps).unwrap_or_default());
+            if steps > MOST_STEPS {
+                let message = format!("the tasks have {steps} steps together; there are {MOST_STEPS}");
+                self.findings.error(Place { line: *line, column: 1 }, message, None);
+            }
+        }
+    }
+
+    fn unknown(&mut self, at: Place, what: &str, name: &str, known: impl IntoIterator<Item = &'static str>) {
+        if self.findings.is_full() {
+            return self.findings.error(at, "", None);
+        }
+        let near = nearest(name, known).map(|near| format!("did you mean {near}?"));
+        self.findings.error(at, format!("there is no {what} '{}'", name.escape_debug()), near);
+    }
+
+    /// Where a key of a table is.
+    fn key(&self, table: &dyn TableLike, name: &str) -> Place {
+        self.places.place(&table.key(name).and_then(toml_edit::Key::span).unwrap_or_default())
+    }
+}
+
+/// Lines of a text, to find places quickly.
+struct Places<'t> {
+    text: &'t str,
+    /// Where each line begins.
+    lines: Vec<usize>,
+}
+
+impl<'t> Places<'t> {
+    fn new(text: &'t str) -> Self {
+        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
+        Self { text, lines }
+    }
+
+    fn place(&self, span: &Range<usize>) -> Place {
+        let line = self.lines.partition_point(|start| *start <= span.start);
+        let start = self.lines.get(line.saturating_sub(1)).copied().unwrap_or_default();
+        let column = self.text.get(start..span.start).map_or(0, |before| before.chars().count()) + 1;
+        Place { line, column }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn setting(id: &str, text: &str) -> Setting {
+        let parameter = Parameter::named(id).unwrap();
+        Setting { parameter, values: parameter.layout.parse(text).unwrap().values().to_vec() }
+    }
+
+    fn errors(text: &str) -> Vec<String> {
+        read(text.as_bytes()).unwrap_err().iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn what_is_written_is_readable_and_reads_back() {
+        let settings = [
+            setting("M09", "M09 E"),
+            setting("P01", "P01 AX1=+0500.00 AX2=+0300.00 AX3=+0200.00 AX4=-0000.05"),
+            setting("P13", "P13 AX1<=+0010.00 0/01/3"),
+            setting("T2", "T2 V05=0250.0"),
+            setting("T4.S4", "T4 S4 GRP=01 a Z=+0001.00 R=+0000.00"),
+        ];
+        let text = write(&settings);
+        assert_eq!(
+            text,
+            "\
+[parameters]
+# M09: language of the teach pendant; J Japanese, E English
+pendant-language = \"E\"
+# P01: soft limit in plus direction, mm
+soft-limit-plus = { ax1 = 500.00, ax2 = 300.00, ax3 = 200.00, ax4 = -0.05 }
+# P13: output bit by the place of axis 1; <= at most, >= at least, mm
+area-output-1 = { compare = \"<=\", place = 10.00, station = 0, port = 1, bit = 3 }
+
+# T2: speed table, mm/s
+[speed-table]
+5 = 250.0
+
+# T4.S4: MVM table: approach point; a absolute, i incremental, mm
+[mvm-approach]
+1 = { aim = \"a\", z = 1.00, r = 0.00 }
+"
+        );
+        let back = read(text.as_bytes()).unwrap();
+        assert_eq!(back.iter().map(|(setting, _)| setting.clone()).collect::<Vec<_>>(), settings);
+        assert_eq!(back.iter().map(|(_, line)| *line).collect::<Vec<_>>(), [3, 5, 7, 11, 15]);
+        assert_eq!(back[3].0.write().unwrap().text(), "@WPAR T2 V05=0250.0");
+        assert_eq!(write(&[]), "");
+        assert_eq!(read(b"").unwrap(), []);
+    }
+
+    #[test]
+    fn ids_and_other_ways_to_write_are_taken() {
+        let text = "[parameters]\nm09 = 'J'\nE05.ax1 = 0\nE05.ax2 = 1\nE05.ax3 = \"0\"\nE05.ax4 = 0\n\
+                    [T4.S1.7]\norigin = 1\np1 = 2\np2 = 3\np3 = 0\n[\"T4.S5\"]\n01 = 5\n[t2]\n\"5\" = 1\n";
+        let back = read(text.as_bytes()).unwrap();
+        let lines: Vec<String> = back.iter().map(|(setting, _)| setting.write().unwrap().text()).collect();
+        assert_eq!(
+            lines,
+            [
+                "@WPAR M09 J",
+                "@WPAR E05 AX1=0 AX2=1 AX3=0 AX4=0",
+                "@WPAR T4 S1 GRP=07 ORG=001 P1=002 P2=003 P3=000",
+                "@WPAR T4 S5 GRP=01 R=+0005.00",
+                "@WPAR T2 V05=0001.0",
+            ]
+        );
+    }
+
+    #[test]
+    fn mistakes_are_told_with_their_place() {
+        for (text, expected) in [
+            (
+                "[parameters]\nsoft-limit-plsu = 1",
+                "line 2, column 1: error: there is no parameter 'soft-limit-plsu' (did you mean soft-limit-plus?)",
+            ),
+            (
+                "[speed-tabel]\n1 = 1.0",
+                "line 1, column 2: error: there is no table 'speed-tabel' (did you mean speed-table?)",
+            ),
+            (
+                "pendant-language = \"J\"",
+                "line 1, column 1: error: pendant-language belongs into [parameters] (write [parameters] before it)",
+            ),
+            (
+                "[parameters]\nspeed-table = 1",
+                "line 2, column 1: error: speed-table is a table of its own (write [speed-table], and a row a line)",
+            ),
+            ("T2 = 5", "line 1, column 1: error: T2 is a table (write [speed-table], and a row a line)"),
+            ("parameters = 5", "line 1, column 1: error: parameters is a table (write [parameters])"),
+            ("[T4.S6]", "line 1, column 5: error: there is no table 'S6'"),
+            ("[speed-table]\n21 = 1.0", "line 2, column 1: error: row: 21 is out of range (a number, 1 to 20)"),
+            (
+                "[speed-table]\n1 = 0.9",
+                "line 2, column 5: error: speed: 0.9 is out of range (a number, 1.0 to 9999.9 mm/s)",
+            ),
+            ("[speed-table]\n1 = 1.05", "line 2, column 5: error: speed: '1.05' is not a number, 1.0 to 9999.9 mm/s"),
+            ("[speed-table]\n1 = \"1.0\"", "line 2, column 5: error: speed: a number, 1.0 to 9999.9 mm/s is expected"),
+            ("[speed-table]\n1 = inf", "line 2, column 5: error: speed: 'inf' is not a number, 1.0 to 9999.9 mm/s"),
+            ("[speed-table]\n1 = 1.0\n01 = 2.0", "line 3, column 1: error: row 1 is there already, in line 2"),
+            (
+                "[parameters]\nM09 = 'J'\npendant-language = 'E'",
+                "line 3, column 1: error: pendant-language is there already, in line 2",
+            ),
+            ("[parameters]\nM09 = 'X'", "line 2, column 7: error: language: 'X' is not J or E"),
+            ("[parameters]\nM09 = { language = 'J' }", "line 2, column 7: error: language: J or E is expected"),
+            (
+                "[parameters]\nP08 = 5.0",
+                "line 2, column 1: error: jog-speed-1 has 2 values (write { low = …, high = … })",
+            ),
+            (
+                "[parameters]\nP08 = { low = 5.0 }",
+                "line 2, column 1: error: high is missing: a number, 0.1 to 999.9 mm/s",
+            ),
+            (
+                "[parameters]\nP08 = { low = 5.0, high = 9.0, hihg = 1.0 }",
+                "line 2, column 32: error: there is no value 'hihg' (did you mean high?)",
+            ),
+            (
+                "[parameters]\nE22 = { task1 = 5000, task2 = 1, task3 = 0, task4 = 0 }",
+                "line 2, column 1: error: the tasks have 5001 steps together; there are 5000",
+            ),
+        ] {
+            assert_eq!(errors(text), [expected]);
+        }
+        assert_eq!(errors("[parameters]\nM09 = \nM10 = 'Q'\n").len(), 1, "what is no TOML is read no further");
+        assert_eq!(errors("[parameters]\nM09 = 1\nM10 = 'Q'\n[x]\n").len(), 3);
+        assert!(errors("[parameters]\nM09 = 'J'\nM09 = 'E'")[0].starts_with("line 3, column 1: error: duplicate key"));
+        assert_eq!(read(b"# \xFF").unwrap_err()[0].message, "byte FF is not UTF-8");
+    }
+
+    #[test]
+    fn fields_of_a_parameter_have_names_of_their_own() {
+        for row in &PARAMETERS {
+            let names: std::collections::BTreeSet<_> = row.layout.fields.iter().map(|field| field.name).collect();
+            assert_eq!(names.len(), row.layout.fields.len(), "{}", row.id);
+        }
+    }
+}
