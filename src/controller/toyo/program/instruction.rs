@@ -53,7 +53,7 @@ pub(super) struct Cursor<'t> {
 }
 
 /// Whether a field names a tag that must be there.
-fn is_tag(field: &Field) -> bool {
+pub(super) fn is_tag(field: &Field) -> bool {
     matches!(field.name, "tag" | "then" | "else")
 }
 
@@ -152,7 +152,7 @@ fn value(field: &Field, text: &str) -> Result<Value, FieldError> {
 }
 
 /// How an instruction is written: `JMPC TAG=<tag> CN<counter><compare><count>`.
-pub(super) fn form_of(row: &Instruction) -> String {
+fn form_of(row: &Instruction) -> String {
     let mut fields = row.layout.fields.iter();
     let mut form = String::new();
     for (index, words) in row.layout.text.split("{}").enumerate() {
@@ -175,9 +175,9 @@ pub(super) fn shown(text: &str) -> &str {
 const BLANKS: [char; 2] = [' ', '\t'];
 
 impl<'t> Cursor<'t> {
-    /// At a place of a line, counted in bytes. The line ends where its code does.
-    pub fn new(line: &'t str, number: usize, at: usize) -> Self {
-        let mut cursor = Self { line, number, at };
+    /// At the first character of a line that ends where its code does.
+    pub fn new(line: &'t str, number: usize) -> Self {
+        let mut cursor = Self { line, number, at: 0 };
         cursor.skip();
         cursor
     }
@@ -237,36 +237,25 @@ impl<'t> Cursor<'t> {
     fn pass(&mut self, words: &str) -> Result<(), String> {
         let start = self.at;
         for expected in words.chars().filter(|c| *c != ' ') {
+            if expected == '=' {
+                self.skip();
+            }
             match self.line[self.at..].chars().next() {
-                Some(found) if found.eq_ignore_ascii_case(&expected) => {
-                    self.at += found.len_utf8();
-                    if expected == '=' {
-                        self.skip();
-                    }
-                }
-                // Before the sign of equality, too.
-                Some(' ' | '\t') if expected == '=' => {
-                    self.skip();
-                    if !self.line[self.at..].starts_with('=') {
-                        return self.not(start, words);
-                    }
-                    self.take(1);
-                }
-                _ => return self.not(start, words),
+                Some(found) if found.eq_ignore_ascii_case(&expected) => self.at += found.len_utf8(),
+                _ => return Err(self.missing(start, words)),
             }
         }
         self.skip();
         Ok(())
     }
 
-    fn not(&mut self, start: usize, words: &str) -> Result<(), String> {
+    /// Goes back to where the words should be.
+    fn missing(&mut self, start: usize, words: &str) -> String {
         self.at = start;
-        let found = self.rest();
         let words = words.trim();
-        if found.is_empty() {
-            return Err(format!("{words} is missing"));
+        match self.rest().split(BLANKS).next() {
+            Some(found) if !found.is_empty() => format!("{words} is expected, not '{}'", shown(found)),
+            _ => format!("{words} is missing"),
         }
-        let found = found.split(BLANKS).next().unwrap_or_default();
-        Err(format!("{words} is expected, not '{}'", shown(found)))
     }
 }

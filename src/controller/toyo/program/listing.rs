@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
+use super::instruction::is_tag;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::table::{Op, Parameter};
 
@@ -56,7 +57,7 @@ pub fn listing(steps: &[Record], numbered: bool, rows: &Rows) -> Listing {
 /// What an instruction names, as people know it.
 fn comments(record: &Record, tags: &BTreeMap<i32, usize>, rows: &Rows) -> Vec<String> {
     let jumps = record.layout() != Op::Tag.row().layout;
-    let named = record.pairs().filter(|(field, _)| jumps && matches!(field.name, "tag" | "then" | "else"));
+    let named = record.pairs().filter(|(field, _)| jumps && is_tag(field));
     let steps = named.filter_map(|(field, _)| {
         let tag = record.number(field.name)?;
         Some(format!("{} {tag:03} is step {}", field.name, tags.get(&tag)?))

@@ -62,16 +62,18 @@ struct Reader<'f> {
 impl Reader<'_> {
     fn line(&mut self, line: &str, number: usize) {
         let code = line.find(['#', ';']).map_or(line, |end| &line[..end]);
-        let mut cursor = Cursor::new(code, number, 0);
-        if cursor.rest().is_empty() || !self.is_clean(code, number) {
+        let mut cursor = Cursor::new(code, number);
+        if cursor.rest().is_empty() {
             return;
         }
+        if !self.is_clean(code, number) {
+            return self.read.steps.push(Draft::empty(cursor.place()));
+        }
         let steps = self.read.steps.len();
-        let numbered = cursor.rest().starts_with(|c: char| c.is_ascii_digit());
-        if numbered {
+        if cursor.rest().starts_with(|c: char| c.is_ascii_digit()) {
             self.step_number(&mut cursor);
         }
-        loop {
+        while self.read.steps.len() <= MOST_STEPS && !self.findings.is_full() {
             let at = cursor.place();
             let Some(text) = cursor.before_colon() else { break };
             self.label(text, at);
@@ -110,14 +112,16 @@ impl Reader<'_> {
             self.findings.error(at, format!("'{}' is no step number", shown(text)), None);
             return;
         };
-        let expected = *self.first.get_or_insert(number.saturating_sub(steps)) + steps;
+        let is_first = self.first.is_none();
+        let first = *self.first.get_or_insert(number.saturating_sub(steps));
+        let expected = first + steps;
         if number != expected {
             let message = format!("step number {number} is expected to be {expected:04}: they run on by one");
             self.findings.error(at, message, Some("instructions need no step numbers".to_owned()));
             // What follows is measured by this one.
             self.first = Some(number.saturating_sub(steps));
-        } else if self.first != Some(1) && steps == 0 {
-            let message = format!("the file counts from {number}; its first instruction is step 1 nevertheless");
+        } else if is_first && first != 1 {
+            let message = format!("the file counts from {first}; its first instruction is step 1 nevertheless");
             self.findings.warning(at, message, None);
         }
     }

@@ -1,6 +1,7 @@
 //! Which tag a label is, and whether every tag that is named is there, once.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use super::instruction::{Draft, Target};
 use super::reader::{Defined, Read};
@@ -63,14 +64,14 @@ impl Tags {
     /// Every label, once.
     fn collect(&mut self, labels: &[Defined], findings: &mut Findings) {
         for label in labels {
-            let other = self.by_name.insert(label.name.to_lowercase(), self.list.len());
-            if let Some(other) = other {
-                let first = &self.list[other];
-                let message = format!("label {} is there already, in line {}", label.name, first.at.line);
-                findings.error(label.at, message, None);
-                self.by_name.insert(label.name.to_lowercase(), other);
-                continue;
-            }
+            match self.by_name.entry(label.name.to_lowercase()) {
+                Entry::Occupied(other) => {
+                    let line = self.list[*other.get()].at.line;
+                    findings.error(label.at, format!("label {} is there already, in line {line}", label.name), None);
+                    continue;
+                }
+                Entry::Vacant(free) => free.insert(self.list.len()),
+            };
             self.list.push(Known {
                 name: label.name.clone(),
                 at: label.at,
@@ -149,6 +150,7 @@ impl Tags {
         Some(Step { instruction, record: instruction.layout.record(values).ok()?, line: at.line })
     }
 
+    /// A jump uses its label, or needs its number.
     fn jump(&mut self, tag: i32, target: &Target, at: Place, findings: &mut Findings) {
         match target {
             Target::Label(name) => {
@@ -157,10 +159,8 @@ impl Tags {
                 }
             }
             Target::Number(_) => {
-                // No label has this number unless it was given, and those may be idle.
-                let is_there =
-                    usize::try_from(tag).ok().and_then(|tag| self.defined.get(tag)).is_some_and(Option::is_some);
-                if !is_there {
+                let place = usize::try_from(tag).ok().and_then(|tag| self.defined.get(tag));
+                if !place.is_some_and(Option::is_some) {
                     let hint = Some("a controller stops with error A1".to_owned());
                     findings.error(at, format!("there is no tag {tag:03} in the program"), hint);
                 }

@@ -141,6 +141,10 @@ fn mistakes_are_told_with_their_place_and_what_was_meant() {
             "RSMV a X=0 Y=0 Z=0 R=0 S V=0 POST",
             "line 1, column 1: warning: RSMV never stops at its place: POST is taken as PASS",
         ),
+        (
+            "NOP\n0007 NOP",
+            "line 2, column 1: warning: the file counts from 6; its first instruction is step 1 nevertheless",
+        ),
         ("0005 NOP", "line 1, column 1: warning: the file counts from 5; its first instruction is step 1 nevertheless"),
         ("ｍOV", "line 1, column 1: error: character '\\u{ff4d}' cannot be here (it is a wide character: write 'm')"),
         ("NOP \u{b}", "line 1, column 5: error: character '\\u{b}' cannot be here"),
