@@ -1,5 +1,7 @@
 //! What the benchmarks share: who is measured when, and the report.
 
+#![allow(dead_code, reason = "each benchmark uses its part")]
+
 pub mod table;
 
 use std::time::{Duration, Instant};
