@@ -50,8 +50,14 @@ fn value(field: &Field, pick: u32) -> Value {
 }
 
 /// Values for the fields of a form.
+/// Values for the fields of a layout; RSMV always passes (ambiguity R4).
 fn values(layout: &Layout, picks: &[u32]) -> Vec<Value> {
-    layout.fields.iter().zip(picks).map(|(field, pick)| value(field, *pick)).collect()
+    let passes = layout.text.starts_with(Op::Rsmv.row().word);
+    let values = layout.fields.iter().zip(picks).map(|(field, pick)| match value(field, *pick) {
+        Value::Word("POST") if passes => Value::Word("PASS"),
+        value => value,
+    });
+    values.collect()
 }
 
 fn picks() -> impl Strategy<Value = Vec<u32>> {
@@ -101,13 +107,7 @@ fn steps() -> impl Strategy<Value = Vec<Record>> {
         let mut named = std::collections::BTreeSet::new();
         let mut steps = Vec::new();
         for (row, picks) in rows {
-            let mut values = values(&row.layout, &picks);
-            for value in values.iter_mut().filter(|_| row.op == Op::Rsmv) {
-                if *value == Value::Word("POST") {
-                    *value = Value::Word("PASS");
-                }
-            }
-            let record = row.layout.record(values).unwrap();
+            let record = row.layout.record(values(&row.layout, &picks)).unwrap();
             let own = ["tag", "then", "else"].map(|name| record.number(name));
             if row.op != Op::Tag {
                 named.extend(own.into_iter().flatten());

@@ -164,6 +164,15 @@ impl Record {
         self.pairs().find(|(field, _)| field.name == name).map(|(_, value)| value)
     }
 
+    /// The same with another value in a field; without such a field, the same.
+    #[must_use]
+    pub fn with(mut self, name: &str, value: Value) -> Self {
+        if let Some(index) = self.layout.fields.iter().position(|field| field.name == name) {
+            self.values[index] = value;
+        }
+        self
+    }
+
     /// A number, in units of its last decimal; `None` if there is no such number.
     pub fn number(&self, name: &str) -> Option<i32> {
         if let Value::Number(number) = self.value(name)? { Some(*number) } else { None }

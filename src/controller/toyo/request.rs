@@ -5,7 +5,7 @@ use thiserror::Error;
 use super::field::Value;
 use super::layout::{Layout, LayoutError, Misfit, Record};
 use super::table::commands::{Command, Row};
-use super::table::{Instruction, Pallet, Parameter};
+use super::table::{Instruction, Op, Pallet, Parameter};
 use crate::controller::Risk;
 
 /// Most bytes of a block, `@` and line end included (TO 1-4; ambiguity A1).
@@ -281,7 +281,9 @@ pub fn instruction(text: &str) -> Result<Record, BlockError> {
     let word = text.split(' ').find(|word| !word.is_empty()).unwrap_or_default();
     let row = Instruction::named(word);
     let row = row.ok_or_else(|| BlockError::Unknown { what: "instruction", name: word.to_owned() })?;
-    Ok(row.layout.parse(text)?)
+    let record = row.layout.parse(text)?;
+    // It always passes by; the manual's template says POST, its legend PASS (ambiguity R4).
+    Ok(if row.op == Op::Rsmv { record.with("arrival", Value::Word("PASS")) } else { record })
 }
 
 fn parameter(text: &str) -> Result<&'static Parameter, BlockError> {
@@ -368,6 +370,12 @@ mod tests {
     fn the_current_step_has_a_number_of_its_own() {
         assert!(answer("@RSTX 0000", "@RSTX 0017 NOP").is_ok());
         assert!(answer("@RSTX 0001", "@RSTX 0017 NOP").is_err());
+    }
+
+    #[test]
+    fn rsmv_passes_by_however_it_is_written() {
+        let record = instruction("RSMV a X=+0000.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=00 POST").unwrap();
+        assert!(record.emit().unwrap().ends_with(" PASS"));
     }
 
     #[test]
