@@ -9,6 +9,7 @@ use std::time::Duration;
 pub mod text;
 pub mod toyo;
 pub mod yerc;
+pub mod yrcx;
 
 /// A moment, as time passed since an origin of the driver's choice. It never runs backwards.
 pub type Now = Duration;

@@ -1,0 +1,199 @@
+//! Alarms: a group and a category, written `12.600` (chapter 2, section 1.2).
+//!
+//! The remote I/O manual names only a few alarms and sends the reader to the controller's manual for the rest. The names
+//! of the groups and of the fieldbus alarms are common knowledge of this maker's controllers; what a cause or a remedy is
+//! follows from the remote I/O manual or is worded as a hint.
+
+use std::fmt;
+use std::str::FromStr;
+
+use thiserror::Error;
+
+/// An alarm number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Alarm {
+    /// The group, in WO1 of an abnormal end.
+    pub group: u16,
+    /// The category within the group, in WO2.
+    pub category: u16,
+}
+
+/// What is known about an alarm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Known {
+    /// Its number.
+    pub alarm: Alarm,
+    /// What it says.
+    pub text: &'static str,
+    /// What usually causes it; empty where no source tells.
+    pub causes: &'static [&'static str],
+    /// What to do about it.
+    pub remedies: &'static [&'static str],
+}
+
+/// A text that is no alarm number.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("'{found}' is no alarm number, e.g. 12.600")]
+pub struct AlarmError {
+    /// What was given.
+    pub found: String,
+}
+
+/// The stop input ended a motion (4.2.6).
+pub const STOP_INPUT: Alarm = Alarm::new(12, 400);
+/// The words of the command are not valid (4.2.1).
+pub const INPUT_FORMAT: Alarm = Alarm::new(4, 202);
+
+impl Alarm {
+    /// An alarm by group and category.
+    pub const fn new(group: u16, category: u16) -> Self {
+        Self { group, category }
+    }
+
+    /// What the group is about.
+    pub fn group_text(self) -> Option<&'static str> {
+        GROUPS.iter().find(|(group, _)| *group == self.group).map(|(_, text)| *text)
+    }
+
+    /// What is known about this very alarm.
+    pub fn known(self) -> Option<&'static Known> {
+        KNOWN.iter().find(|known| known.alarm == self)
+    }
+
+    /// The alarm in words, as far as known.
+    pub fn text(self) -> &'static str {
+        self.known().map(|known| known.text).or_else(|| self.group_text()).unwrap_or("unknown alarm group")
+    }
+}
+
+impl fmt::Display for Alarm {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}.{}", self.group, self.category)
+    }
+}
+
+impl FromStr for Alarm {
+    type Err = AlarmError;
+
+    /// Reads `12.600` or `12:600`; the manual writes both (4.7.17).
+    fn from_str(text: &str) -> Result<Self, AlarmError> {
+        let number = |digits: &str| if digits.starts_with('+') { None } else { digits.parse().ok() };
+        text.split_once(['.', ':'])
+            .and_then(|(group, category)| Some(Self::new(number(group)?, number(category)?)))
+            .ok_or_else(|| AlarmError { found: text.chars().take(40).collect() })
+    }
+}
+
+/// The groups.
+const GROUPS: [(u16, &str); 17] = [
+    (0, "operation message"),
+    (1, "system event"),
+    (2, "robot operation"),
+    (3, "program file"),
+    (4, "data input"),
+    (5, "program syntax"),
+    (6, "program execution"),
+    (9, "memory"),
+    (10, "environment or hardware"),
+    (12, "option board"),
+    (14, "communication"),
+    (17, "motor control"),
+    (19, "YC-Link/E"),
+    (21, "serious software fault"),
+    (22, "serious hardware fault"),
+    (26, "gripper"),
+    (28, "driver interface"),
+];
+
+const LINK_CAUSES: &[&str] =
+    &["the master closed the connection or stopped sending", "cable, switch or power of the network"];
+const LINK_REMEDIES: &[&str] =
+    &["hold the link open with one resident session", "open the link again, then reset the alarm"];
+const UNIT_REMEDIES: &[&str] = &["switch the controller off and on", "check the option unit and its settings"];
+
+/// The alarms that the sources name.
+pub const KNOWN: [Known; 19] = [
+    Known {
+        alarm: Alarm::new(2, 334),
+        text: "over soft limit",
+        causes: &["the target or the way to it lies outside an axis's range"],
+        remedies: &["check the point and the soft limits", "jog the axis back into its range"],
+    },
+    Known {
+        alarm: INPUT_FORMAT,
+        text: "input format error",
+        causes: &["a word of the command holds what the command does not take, e.g. both position outputs at once"],
+        remedies: &["compare the words sent with the section of the command: armctl decode yrcx"],
+    },
+    Known {
+        alarm: Alarm::new(12, 75),
+        text: "illegal remote command",
+        causes: &["the code in WI0 does not exist"],
+        remedies: &["check the code, and that words arrive in the right order and byte order"],
+    },
+    Known {
+        alarm: Alarm::new(12, 76),
+        text: "remote command not enabled",
+        causes: &[
+            "the programming box has control: only references are taken then",
+            "a safety setting disables the dedicated inputs, and with them every remote command",
+        ],
+        remedies: &["give control back at the programming box", "check mode and safety settings"],
+    },
+    Known {
+        alarm: STOP_INPUT,
+        text: "stopped by the stop input",
+        causes: &["SI(06) went off: somebody stopped the motion"],
+        remedies: &["switch SI(06) on again before the next motion"],
+    },
+    link(541, "DeviceNet link error"),
+    link(542, "DeviceNet link error, too long"),
+    link(551, "EtherNet/IP link error"),
+    link(552, "EtherNet/IP link error, too long"),
+    link(561, "PROFIBUS link error"),
+    link(562, "PROFIBUS link error, too long"),
+    link(571, "PROFINET link error"),
+    link(572, "PROFINET link error, too long"),
+    Known {
+        alarm: Alarm::new(12, 600),
+        text: "emergency stop on",
+        causes: &["an emergency stop was pressed, or SI(00) is off", "a connection was opened with SI(00) off"],
+        remedies: &["release it, switch SI(00) on, reset the alarm, switch the servos on"],
+    },
+    unit(761),
+    unit(762),
+    unit(763),
+    unit(764),
+    unit(765),
+];
+
+const fn link(category: u16, text: &'static str) -> Known {
+    Known { alarm: Alarm::new(12, category), text, causes: LINK_CAUSES, remedies: LINK_REMEDIES }
+}
+
+const fn unit(category: u16) -> Known {
+    let text = "network unit did not initialize";
+    Known { alarm: Alarm::new(12, category), text, causes: &[], remedies: UNIT_REMEDIES }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_both_ways() {
+        assert_eq!("12.600".parse(), Ok(Alarm::new(0x000C, 0x0258)));
+        assert_eq!("2:334".parse(), Ok(Alarm::new(0x0002, 0x014E)));
+        assert_eq!(Alarm::new(12, 75).to_string(), "12.75");
+        for junk in ["", "12", "12.", ".6", "a.b", "-1.2", "1.2.3", "70000.1", "12.+6"] {
+            assert!(junk.parse::<Alarm>().is_err(), "{junk}");
+        }
+    }
+
+    #[test]
+    fn texts_fall_back_to_the_group() {
+        assert_eq!(Alarm::new(12, 600).text(), "emergency stop on");
+        assert_eq!(Alarm::new(17, 1).text(), "motor control");
+        assert_eq!(Alarm::new(99, 1).text(), "unknown alarm group");
+    }
+}

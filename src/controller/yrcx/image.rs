@@ -1,0 +1,132 @@
+//! What master and controller show each other (chapter 1, section 1): 16 command words, 7 words of bits, one reserved.
+
+use crate::controller::Now;
+
+/// Words of a remote command or its answer: WI0 to WI15, WO0 to WO15.
+pub const COMMAND_WORDS: usize = 16;
+
+/// Words of the whole image, a reserved one at the end included.
+pub const IMAGE_WORDS: usize = 24;
+
+/// The word that holds the dedicated signals (SI(00) to SI(17), SO(00) to SO(17)).
+pub const DEDICATED_WORD: usize = 16;
+
+/// WI0 to WI15, or WO0 to WO15.
+pub type Words = [u16; COMMAND_WORDS];
+
+/// All that one side shows the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Image(pub [u16; IMAGE_WORDS]);
+
+impl Image {
+    /// Bytes on the wire.
+    pub const BYTES: usize = IMAGE_WORDS * 2;
+
+    /// Reads an image of exactly [`Self::BYTES`] bytes, low byte first.
+    pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        let bytes: &[u8; Self::BYTES] = bytes.try_into().ok()?;
+        let mut words = [0; IMAGE_WORDS];
+        for (word, pair) in words.iter_mut().zip(bytes.chunks_exact(2)) {
+            *word = u16::from_le_bytes([pair[0], pair[1]]);
+        }
+        Some(Self(words))
+    }
+
+    /// The bytes of the wire, low byte first.
+    pub fn to_bytes(self) -> [u8; Self::BYTES] {
+        let mut bytes = [0; Self::BYTES];
+        for (pair, word) in bytes.chunks_exact_mut(2).zip(self.0) {
+            pair.copy_from_slice(&word.to_le_bytes());
+        }
+        bytes
+    }
+
+    /// The words of the remote command.
+    pub fn command(&self) -> Words {
+        let mut words = [0; COMMAND_WORDS];
+        words.copy_from_slice(&self.0[..COMMAND_WORDS]);
+        words
+    }
+
+    /// Replaces the words of the remote command; the bits stay as they are.
+    pub fn set_command(&mut self, words: &Words) {
+        self.0[..COMMAND_WORDS].copy_from_slice(words);
+    }
+}
+
+/// The image that goes to the controller, and what of it has left already.
+///
+/// The driver sends [`next`](Self::next) in its cycle and then says so with [`sent`](Self::sent). Sessions change `next`
+/// and look at what was sent: a command word must not overtake its data, and edges keep their distance.
+#[derive(Debug, Clone, Default)]
+pub struct Output {
+    /// What is to be shown from the next cycle on.
+    pub next: Image,
+    sent: Option<Image>,
+    edge: Option<Now>,
+}
+
+impl Output {
+    /// An output that begins with `image`; nothing of it has left yet.
+    pub fn new(image: Image) -> Self {
+        Self { next: image, sent: None, edge: None }
+    }
+
+    /// Tells that `next` as it stands left at `now`.
+    pub fn sent(&mut self, now: Now) {
+        let dedicated = |image: &Image| image.0[DEDICATED_WORD];
+        if self.sent.as_ref().map(dedicated) != Some(dedicated(&self.next)) {
+            self.edge = Some(now);
+        }
+        self.sent = Some(self.next);
+    }
+
+    /// Tells that the link is down: whatever comes next is seen afresh by the controller.
+    pub fn unlinked(&mut self) {
+        self.sent = None;
+    }
+
+    /// The image that the controller was shown last; `None` before the first one, and while the link is down.
+    pub fn last_sent(&self) -> Option<&Image> {
+        self.sent.as_ref()
+    }
+
+    /// When a dedicated signal last changed on the wire.
+    pub fn last_edge(&self) -> Option<Now> {
+        self.edge
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn the_low_byte_comes_first() {
+        // Chapter 2, 1.1: "12" in WI4 is 0x3231; 0x01234567 from WI4 is 0x4567, 0x0123.
+        let mut image = Image::default();
+        image.0[4] = 0x3231;
+        let bytes = image.to_bytes();
+        assert_eq!(&bytes[8..10], b"12");
+        assert_eq!(Image::from_bytes(&bytes), Some(image));
+        assert_eq!(Image::from_bytes(&bytes[..47]), None);
+        assert_eq!(Image::from_bytes(&[0; 50]), None);
+    }
+
+    #[test]
+    fn edges_are_those_of_the_dedicated_word_on_the_wire() {
+        let at = Duration::from_millis;
+        let mut output = Output::default();
+        output.sent(at(1));
+        assert_eq!(output.last_edge(), Some(at(1)), "the first image is an edge for all that the controller knows");
+        output.next.0[0] = 1;
+        output.next.0[17] = 1;
+        output.sent(at(2));
+        assert_eq!(output.last_edge(), Some(at(1)));
+        output.next.0[DEDICATED_WORD] = 1;
+        assert_eq!(output.last_sent().unwrap().0[DEDICATED_WORD], 0);
+        output.sent(at(3));
+        assert_eq!(output.last_edge(), Some(at(3)));
+    }
+}

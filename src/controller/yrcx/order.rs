@@ -1,0 +1,141 @@
+//! A remote command ready to be sent: WI0 to WI15 that the manual allows.
+
+use super::codec::{self, Side, WordError};
+use super::image::Words;
+use super::table::parameter::Parameter;
+use super::table::{Command, Row, Rule};
+use super::value::{Key, Value, Values};
+use crate::controller::Risk;
+
+/// A command with valid words.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Order {
+    row: &'static Row,
+    values: Values,
+    words: Words,
+}
+
+/// A command in the making.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Draft {
+    command: Command,
+    values: Values,
+}
+
+impl Command {
+    /// Begins an order: `Command::MovePtp.order().with(Key::Point, 19).with(Key::SpeedPercent, 50).build()`.
+    pub fn order(self) -> Draft {
+        Draft { command: self, values: Values::default() }
+    }
+}
+
+impl Draft {
+    /// Sets a field. Flags that tell whether a field is there follow by themselves. Text is read in the field's unit.
+    #[must_use]
+    pub fn with(mut self, key: Key, value: impl Into<Value>) -> Self {
+        self.values.set(key, value);
+        self
+    }
+
+    /// Sets a field if there is something to set.
+    #[must_use]
+    pub fn with_some(self, key: Key, value: Option<impl Into<Value>>) -> Self {
+        match value {
+            Some(value) => self.with(key, value),
+            None => self,
+        }
+    }
+
+    /// Checks all of it and makes the words.
+    pub fn build(self) -> Result<Order, WordError> {
+        let row = self.command.row();
+        let mut words = codec::encode(Side::Command, row.request(), &self.values, None)?;
+        words[0] |= row.code;
+        Order::parse(&words)
+    }
+}
+
+impl Order {
+    /// Reads the words of a command. Refuses what the manual does not allow to be sent.
+    pub fn parse(words: &Words) -> Result<Self, WordError> {
+        let unknown =
+            || WordError::at(Side::Command, Some(0), None, format!("{:#06X} is no code of a remote command", words[0]));
+        let row = Row::of(words[0]).ok_or_else(unknown)?;
+        let values = codec::decode_strictly(row.request(), words)?;
+        for rule in row.rules {
+            rule.check(row, &values)?;
+        }
+        Ok(Self { row, values, words: *words })
+    }
+
+    /// Its row.
+    pub fn row(&self) -> &'static Row {
+        self.row
+    }
+
+    /// Which command it is.
+    pub fn command(&self) -> Command {
+        self.row.command
+    }
+
+    /// What it does to the world.
+    pub fn risk(&self) -> Risk {
+        self.row.risk
+    }
+
+    /// What its fields hold, defaults included.
+    pub fn values(&self) -> &Values {
+        &self.values
+    }
+
+    /// WI0 to WI15.
+    pub fn words(&self) -> &Words {
+        &self.words
+    }
+
+    /// Whether the answer goes on until the status reset (4.7.4).
+    pub fn is_continuous(&self) -> bool {
+        self.values.int(Key::Continuous) == Some(1)
+    }
+}
+
+impl Rule {
+    /// Checks what the fields of a command hold.
+    fn check(self, row: &Row, values: &Values) -> Result<(), WordError> {
+        let int = |key| values.int(key).unwrap_or_default();
+        let wrong = |key, problem: String| {
+            let word = row.request().find(|field| field.key == key).map(|field| field.word);
+            Err(WordError::at(Side::Command, word, Some(key), problem))
+        };
+        match self {
+            Self::PalletSize => {
+                let places = [Key::CountX, Key::CountY, Key::CountZ].map(|key| i64::from(int(key)));
+                match places.iter().product::<i64>() {
+                    1..=32_767 => Ok(()),
+                    product => wrong(Key::CountX, format!("X times Y times Z is {product}; 1 to 32767 fit a pallet")),
+                }
+            }
+            Self::ParameterAxis => {
+                let Some(parameter) = Parameter::of(int(Key::Parameter)) else { return Ok(()) };
+                match (parameter.per_axis, int(Key::Axes)) {
+                    (true, 0) => wrong(Key::Axes, format!("{} belongs to an axis; name one", parameter.name)),
+                    (false, 1..) => {
+                        wrong(Key::Axes, format!("{} belongs to the robot, not to an axis", parameter.name))
+                    }
+                    _ => Ok(()),
+                }
+            }
+            Self::ParameterValue => {
+                let Some(parameter) = Parameter::of(int(Key::Parameter)) else { return Ok(()) };
+                let (least, most) = parameter.span;
+                match int(Key::Value) {
+                    value if (least..=most).contains(&value) => Ok(()),
+                    value => wrong(
+                        Key::Value,
+                        format!("{value} is out of range for {}; allowed: {least} to {most}", parameter.name),
+                    ),
+                }
+            }
+        }
+    }
+}

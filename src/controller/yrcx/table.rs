@@ -1,0 +1,164 @@
+//! The table of remote commands: every code with its words, ranges, answer and danger (chapter 2, sections 3 and 4).
+//!
+//! Commands are built, answers read, words explained and the controller simulated by these rows; there is no second
+//! list. Where the manual's tables and detail pages disagree about a code, the detail pages and examples are followed.
+
+mod field;
+mod layouts;
+pub mod parameter;
+mod rows;
+
+pub use field::{Charset, Field, Form, Need, Show, When};
+pub use rows::{Command, ROWS};
+
+use super::value::Key;
+use crate::controller::Risk;
+
+/// The status reset in WI0; also "no command".
+pub const STATUS_RESET: u16 = 0x0000;
+
+/// How long a command may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Pace {
+    /// Ends at once; for a program start, as soon as it is accepted (chapter 2, 1.2).
+    Quick,
+    /// Ends when servos or motor power have switched.
+    Power,
+    /// Ends when the motion ends, whenever that is.
+    Motion,
+    /// Goes on until the stop input goes off (4.2.6).
+    Jog,
+}
+
+/// What fields must fulfil together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Rule {
+    /// X times Y times Z places is at most 32767 (4.3.3).
+    PalletSize,
+    /// One axis for a parameter of an axis, none for one of the robot (4.4.2).
+    ParameterAxis,
+    /// The value is within the parameter's range (4.4.2).
+    ParameterValue,
+}
+
+/// One remote command.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Which one.
+    pub command: Command,
+    /// Bits 11 to 0 of WI0.
+    pub code: u16,
+    /// Its name for programs, such as `move-ptp`.
+    pub id: &'static str,
+    /// In words.
+    pub name: &'static str,
+    /// Section of the manual, in chapter 2.
+    pub section: &'static str,
+    /// What it does to the world.
+    pub risk: Risk,
+    /// How long it may take.
+    pub pace: Pace,
+    /// Words WI.
+    pub request: &'static [&'static [Field]],
+    /// Words WO at a normal end.
+    pub answer: &'static [&'static [Field]],
+    /// What fields must fulfil together.
+    pub rules: &'static [Rule],
+}
+
+impl Row {
+    /// The row of the code in WI0, whatever the robot.
+    pub fn of(wi0: u16) -> Option<&'static Self> {
+        let row = ROWS.iter().find(|row| row.code == wi0 & 0x0FFF)?;
+        (wi0 & 0xF000 == 0 || row.has_robot()).then_some(row)
+    }
+
+    /// The row of a name.
+    pub fn named(id: &str) -> Option<&'static Self> {
+        ROWS.iter().find(|row| row.id == id)
+    }
+
+    /// The category, 1 to 7; 0 for the status reset.
+    pub const fn category(&self) -> u16 {
+        if self.code == STATUS_RESET { 0 } else { (self.code >> 8) + 1 }
+    }
+
+    /// The fields of the command.
+    pub fn request(&self) -> impl Iterator<Item = &'static Field> + Clone + use<> {
+        self.request.iter().copied().flatten()
+    }
+
+    /// The fields of the answer.
+    pub fn answer(&self) -> impl Iterator<Item = &'static Field> + Clone + use<> {
+        self.answer.iter().copied().flatten()
+    }
+
+    /// Whether bits 15 to 12 of WI0 name a robot.
+    pub fn has_robot(&self) -> bool {
+        self.request().any(|field| field.key == Key::Robot)
+    }
+
+    /// Whether it is taken while the programming box has control: references only (chapter 2, 3). The reference of
+    /// program execution (4.6.4) is missing in that list and so is not.
+    pub const fn enabled_under_programming_box(&self) -> bool {
+        matches!(self.risk, Risk::Read) && !matches!(self.command, Command::ProgramShow)
+    }
+
+    /// The code as the manual writes it, such as `0xR001`.
+    pub fn code_text(&self) -> String {
+        if self.has_robot() { format!("0xR{:03X}", self.code) } else { format!("0x{:04X}", self.code) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_are_111_commands_with_one_row_each() {
+        assert_eq!(ROWS.len(), 111);
+        for (at, row) in ROWS.iter().enumerate() {
+            assert!(ROWS[..at].iter().all(|other| other.code < row.code && other.id != row.id), "{}", row.id);
+            assert_eq!(row.command.row().code, row.code);
+            assert_eq!(Row::of(row.code).unwrap().id, row.id);
+            assert_eq!(Row::named(row.id).unwrap().code, row.code);
+        }
+        let counts = [0, 1, 2, 3, 4, 5, 6, 7].map(|n| ROWS.iter().filter(|row| row.category() == n).count());
+        assert_eq!(counts, [1, 48, 10, 20, 3, 7, 19, 3]);
+    }
+
+    #[test]
+    fn a_robot_is_named_only_where_there_is_a_place_for_it() {
+        assert!(Row::of(0x4001).is_some());
+        assert!(Row::of(0x1042).is_none(), "motor power is that of the whole system");
+        assert!(Row::of(0x1111).is_none(), "the layout of 4.3.5 has a robot, all else has not");
+        assert!(Row::of(0x4516).is_some(), "4.7.18 has a robot, the tables have not");
+        assert!(Row::of(0x0999).is_none());
+    }
+
+    #[test]
+    fn reads_are_the_references() {
+        for row in ROWS.iter().filter(|row| row.command != Command::StatusReset) {
+            assert_eq!(row.risk == Risk::Read, row.name.starts_with("read "), "{}", row.id);
+        }
+    }
+
+    #[test]
+    fn fields_stay_in_the_words_and_do_not_overlap() {
+        for row in ROWS {
+            for layout in [row.request().collect::<Vec<_>>(), row.answer().collect()] {
+                let mut taken: Vec<(usize, u16, Option<When>)> = Vec::new();
+                for field in layout {
+                    assert!(field.word + field.size() <= 16, "{} {}", row.id, field.key);
+                    for word in field.word..field.word + field.size() {
+                        let free = taken.iter().all(|(other, mask, when)| {
+                            *other != word || mask & field.mask() == 0 || (*when != field.when && when.is_some())
+                        });
+                        assert!(free, "{} {}", row.id, field.key);
+                        taken.push((word, field.mask(), field.when));
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,491 @@
+//! Fields of words: where they stand, what they hold, when they count.
+
+use crate::controller::yerc::units::{self, Unit};
+use crate::controller::yrcx::value::{Key, Value};
+
+/// A field of a command or an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Field {
+    /// Its name for programs.
+    pub key: Key,
+    /// Its name for people.
+    pub name: &'static str,
+    /// The first word, 0 to 15.
+    pub word: usize,
+    /// How it is written.
+    pub form: Form,
+    /// The values allowed, as spans of what travels; empty: all that fit.
+    pub spans: &'static [(i32, i32)],
+    /// What another field must be for this one to count; its words are 0 otherwise.
+    pub when: Option<When>,
+    /// Whether it may be left out; 0 is sent then.
+    pub need: Need,
+}
+
+/// Whether a field may be left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Need {
+    /// It must be given.
+    Required,
+    /// It may be left out.
+    Optional,
+    /// It must be given if this axis moves, by the axes that the command names: a missing one would be a move to 0.
+    OfAxis(u8),
+}
+
+/// How a field is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// Bits of one word, without sign.
+    Bits {
+        /// The lowest.
+        low: u8,
+        /// How many.
+        width: u8,
+        /// What they mean.
+        show: Show,
+    },
+    /// 16 bits with sign.
+    Short(Unit),
+    /// 32 bits with sign in two words, the low word first (chapter 2, 1.1).
+    Long(Unit),
+    /// IEEE 754 single in two words, the low word first.
+    Real,
+    /// 16 characters in eight words, the first in the low byte.
+    Text(Charset),
+}
+
+/// What bits mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Show {
+    /// A number.
+    Number(Unit),
+    /// A number that is always this one.
+    Fixed(u16),
+    /// One of these.
+    Choice(&'static [(u16, &'static str)]),
+    /// A set of axes or elements, bit 0 the first.
+    Set {
+        /// Fewest to be named.
+        least: u32,
+        /// Most to be named.
+        most: u32,
+    },
+    /// Two decimal digits, four bits each.
+    Digits,
+    /// High byte and low byte of a version.
+    Version,
+    /// A revision.
+    Revision,
+    /// One digit before and three digits after the point of a version.
+    FpgaVersion,
+    /// A static variable: SGI0 to SGI31 are 0 to 31, SGR0 to SGR31 are 256 to 287 (4.4.1).
+    Variable,
+    /// A program line; of the COMMON program from 10000 (4.6.4).
+    Line,
+}
+
+/// Which characters a text takes, and what fills it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Charset {
+    /// 0x20 to 0x7E; filled with NUL as in the manual's examples (4.3.2).
+    Comment,
+    /// A to Z, 0 to 9, underscore; filled with spaces as the text of 4.6.1 asks.
+    Program,
+}
+
+/// A condition on another field, of the same words or of the command that is answered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct When {
+    /// The other field.
+    pub key: Key,
+    /// Its least value.
+    pub least: i32,
+    /// Its greatest value.
+    pub most: i32,
+    /// Whether giving this field sets the other one by itself.
+    pub sets: bool,
+}
+
+/// A whole number without unit.
+pub const PLAIN: Unit = Unit { symbol: "", decimals: 0 };
+/// Whole percent.
+pub const PERCENT: Unit = Unit { symbol: "%", decimals: 0 };
+/// Percent in steps of 0.01.
+pub const FINE_PERCENT: Unit = Unit { symbol: "%", decimals: 2 };
+/// Millimetres in steps of 0.001.
+pub const MM: Unit = units::MILLIMETRE;
+/// Encoder pulses.
+pub const PULSE: Unit = units::PULSE;
+/// Whole millimetres a second.
+pub const MM_S: Unit = Unit { symbol: "mm/s", decimals: 0 };
+/// Milliseconds.
+pub const MS: Unit = Unit { symbol: "ms", decimals: 0 };
+
+/// Characters of a text.
+const TEXT_CHARS: usize = 16;
+
+/// Names of static variables, with the number of the first of each kind.
+const VARIABLES: [(&str, i32); 2] = [("SGI", 0), ("SGR", 0x100)];
+
+impl Field {
+    const fn new(key: Key, name: &'static str, word: usize, form: Form) -> Self {
+        Self { key, name, word, form, spans: &[], when: None, need: Need::Required }
+    }
+
+    /// Bits of a word with a meaning.
+    pub const fn bits(key: Key, name: &'static str, word: usize, low: u8, width: u8, show: Show) -> Self {
+        Self::new(key, name, word, Form::Bits { low, width, show })
+    }
+
+    /// A whole word.
+    pub const fn word(key: Key, name: &'static str, word: usize, show: Show) -> Self {
+        Self::bits(key, name, word, 0, 16, show)
+    }
+
+    /// A whole word with a number without sign.
+    pub const fn number(key: Key, name: &'static str, word: usize) -> Self {
+        Self::word(key, name, word, Show::Number(PLAIN))
+    }
+
+    /// 16 bits with sign.
+    pub const fn short(key: Key, name: &'static str, word: usize, unit: Unit) -> Self {
+        Self::new(key, name, word, Form::Short(unit))
+    }
+
+    /// 32 bits with sign.
+    pub const fn long(key: Key, name: &'static str, word: usize, unit: Unit) -> Self {
+        Self::new(key, name, word, Form::Long(unit))
+    }
+
+    /// A single-precision number.
+    pub const fn real(key: Key, name: &'static str, word: usize) -> Self {
+        Self::new(key, name, word, Form::Real)
+    }
+
+    /// A text.
+    pub const fn text(key: Key, name: &'static str, word: usize, charset: Charset) -> Self {
+        Self::new(key, name, word, Form::Text(charset))
+    }
+
+    /// Allows these values only.
+    #[must_use]
+    pub const fn within(mut self, spans: &'static [(i32, i32)]) -> Self {
+        self.spans = spans;
+        self
+    }
+
+    /// Counts only if `key` has this value, and sets it so when given.
+    #[must_use]
+    pub const fn sets(mut self, key: Key, value: i32) -> Self {
+        self.when = Some(When { key, least: value, most: value, sets: true });
+        self
+    }
+
+    /// Counts only if `key` has one of these values.
+    #[must_use]
+    pub const fn when(mut self, key: Key, least: i32, most: i32) -> Self {
+        self.when = Some(When { key, least, most, sets: false });
+        self
+    }
+
+    /// May be left out.
+    #[must_use]
+    pub const fn optional(mut self) -> Self {
+        self.need = Need::Optional;
+        self
+    }
+
+    /// May be left out if the axis does not move.
+    #[must_use]
+    pub const fn of_axis(mut self, axis: u8) -> Self {
+        self.need = Need::OfAxis(axis);
+        self
+    }
+
+    /// Words it takes.
+    pub const fn size(&self) -> usize {
+        match self.form {
+            Form::Bits { .. } | Form::Short(_) => 1,
+            Form::Long(_) | Form::Real => 2,
+            Form::Text(_) => TEXT_CHARS / 2,
+        }
+    }
+
+    /// The bits it takes of each of its words.
+    pub const fn mask(&self) -> u16 {
+        match self.form {
+            Form::Bits { low, width, .. } => (u16::MAX >> (16 - width)) << low,
+            _ => u16::MAX,
+        }
+    }
+
+    /// What it is measured in; empty for what is no measure.
+    pub const fn symbol(&self) -> &'static str {
+        match self.form {
+            Form::Bits { show: Show::Number(unit), .. } | Form::Short(unit) | Form::Long(unit) => unit.symbol,
+            _ => "",
+        }
+    }
+
+    /// Reads it from words; any words.
+    pub fn read(&self, words: &[u16; 16]) -> Value {
+        let word = |at: usize| words.get(self.word + at).copied().unwrap_or_default();
+        let long = || u32::from(word(1)) << 16 | u32::from(word(0));
+        match self.form {
+            Form::Bits { low, show, .. } => {
+                let raw = i32::from((word(0) & self.mask()) >> low);
+                Value::Int(if show == Show::Digits { (raw >> 4) * 10 + (raw & 0xF) } else { raw })
+            }
+            Form::Short(_) => Value::Int(word(0).cast_signed().into()),
+            Form::Long(_) => Value::Int(long().cast_signed()),
+            Form::Real => Value::Real(f32::from_bits(long())),
+            Form::Text(_) => {
+                let bytes: Vec<u8> = (0..self.size()).flat_map(|at| word(at).to_le_bytes()).collect();
+                let length = bytes.iter().rposition(|byte| !matches!(byte, 0 | b' ')).map_or(0, |last| last + 1);
+                let printable = |byte: &u8| {
+                    if matches!(byte, b' '..=b'~') { char::from(*byte) } else { char::REPLACEMENT_CHARACTER }
+                };
+                Value::Text(bytes[..length].iter().map(printable).collect())
+            }
+        }
+    }
+
+    /// Writes a value into words. Says what is wrong with one that does not fit; [`Self::accept`] says what else may be.
+    pub fn write(&self, words: &mut [u16; 16], value: &Value) -> Result<(), String> {
+        let mut put = |at: usize, bits: u16| {
+            if let Some(word) = words.get_mut(self.word + at) {
+                *word = *word & !self.mask() | bits;
+            }
+        };
+        let low_word_first =
+            |bits: u32| [bits & 0xFFFF, bits >> 16].map(|half| u16::try_from(half).unwrap_or_default());
+        match (self.form, value) {
+            (Form::Bits { low, show, .. }, Value::Int(number)) => {
+                let raw = if show == Show::Digits { ((number / 10) << 4) | (number % 10) } else { *number };
+                let raw = u16::try_from(raw).ok().filter(|raw| *raw <= self.mask() >> low);
+                put(0, raw.ok_or_else(|| format!("{number} does not fit"))? << low);
+            }
+            (Form::Short(_), Value::Int(number)) => {
+                put(0, i16::try_from(*number).map_err(|_| format!("{number} does not fit"))?.cast_unsigned());
+            }
+            (Form::Long(_), Value::Int(number)) => {
+                for (at, bits) in low_word_first(number.cast_unsigned()).into_iter().enumerate() {
+                    put(at, bits);
+                }
+            }
+            (Form::Real, Value::Real(number)) => {
+                for (at, bits) in low_word_first(number.to_bits()).into_iter().enumerate() {
+                    put(at, bits);
+                }
+            }
+            (Form::Text(charset), Value::Text(text)) => {
+                let mut bytes = [charset.fill(); TEXT_CHARS];
+                let place = bytes.get_mut(..text.len()).ok_or("more than 16 characters")?;
+                place.copy_from_slice(text.as_bytes());
+                for (at, pair) in bytes.chunks_exact(2).enumerate() {
+                    put(at, u16::from_le_bytes([pair[0], pair[1]]));
+                }
+            }
+            _ => return Err("not the kind of value that this field takes".to_owned()),
+        }
+        Ok(())
+    }
+
+    /// Says why a value may not be sent, if so.
+    pub fn accept(&self, value: &Value) -> Result<(), String> {
+        match (value, self.form) {
+            (Value::Int(number), form) => {
+                if !self.spans.is_empty() && !self.spans.iter().any(|(least, most)| (least..=most).contains(&number)) {
+                    return Err(format!("{} is out of range; {}", self.show(value), self.allowed()));
+                }
+                match form {
+                    Form::Bits { show: Show::Choice(choices), .. }
+                        if !choices.iter().any(|(code, _)| i32::from(*code) == *number) =>
+                    {
+                        Err(format!("{number} is not defined; {}", self.allowed()))
+                    }
+                    Form::Bits { show: Show::Set { least, most }, .. } => match number.count_ones() {
+                        count if count < least => Err(format!("{count} named; {}", self.allowed())),
+                        count if count > most => Err(format!("{count} named; {}", self.allowed())),
+                        _ => Ok(()),
+                    },
+                    Form::Bits { show: Show::Fixed(fixed), .. } if i32::from(fixed) != *number => {
+                        Err(format!("{number} where {fixed} is fixed"))
+                    }
+                    _ => Ok(()),
+                }
+            }
+            (Value::Real(number), _) if !number.is_finite() => Err(format!("{number} is no number to send")),
+            (Value::Text(text), Form::Text(charset)) => charset.accept(text),
+            _ => Ok(()),
+        }
+    }
+
+    /// What may be sent, in words.
+    pub fn allowed(&self) -> String {
+        let spans = match self.form {
+            Form::Bits { show: Show::Choice(choices), .. } => {
+                let names = choices.iter().map(|(code, name)| format!("{code} = {name}"));
+                return format!("there are {}", names.collect::<Vec<_>>().join(", "));
+            }
+            Form::Bits { show: Show::Set { least, most }, .. } if least == most => {
+                return format!("name exactly {least}");
+            }
+            Form::Bits { show: Show::Set { least, most }, .. } => return format!("name {least} to {most}"),
+            Form::Bits { show: Show::Fixed(fixed), .. } => return format!("it is always {fixed}"),
+            Form::Text(charset) => return charset.allowed().to_owned(),
+            Form::Real => return "allowed: a single-precision number".to_owned(),
+            _ if !self.spans.is_empty() => self.spans,
+            Form::Bits { low, .. } => &[(0, i32::from(self.mask() >> low))][..],
+            Form::Short(_) => &[(-32_768, 32_767)],
+            Form::Long(_) => &[(i32::MIN, i32::MAX)],
+        };
+        let shown = |number: i32| self.show(&Value::Int(number));
+        let span = |(least, most): &(i32, i32)| {
+            if least == most { shown(*least) } else { format!("{} to {}", shown(*least), shown(*most)) }
+        };
+        let spans = spans.iter().map(span).collect::<Vec<_>>().join(", ");
+        format!("allowed: {spans} {}", self.symbol()).trim_end().to_owned()
+    }
+
+    /// A value in words, without its unit.
+    pub fn show(&self, value: &Value) -> String {
+        let number = match value {
+            Value::Int(number) => *number,
+            Value::Real(number) => return number.to_string(),
+            Value::Text(text) => return text.clone(),
+        };
+        match self.form {
+            Form::Bits { show, .. } => show.words(number),
+            Form::Short(unit) | Form::Long(unit) => unit.show(number).to_string(),
+            Form::Real | Form::Text(_) => number.to_string(),
+        }
+    }
+
+    /// Reads what people type: a number in the field's unit, the name of a choice, a list of axes such as `1,3`, SGI5
+    /// for a variable. Whether it may be sent is checked later, with the rest of the command.
+    pub fn parse(&self, text: &str) -> Result<Value, String> {
+        let number = |unit: Unit| unit.parse(text).map(Value::Int).map_err(|error| error.to_string());
+        match self.form {
+            Form::Bits { show, .. } => match show {
+                Show::Choice(choices) => match choices.iter().find(|(_, name)| name.eq_ignore_ascii_case(text)) {
+                    Some((code, _)) => Ok(Value::Int(i32::from(*code))),
+                    None => number(PLAIN).map_err(|_| format!("'{text}' is unknown; {}", self.allowed())),
+                },
+                Show::Set { .. } => set_of(text),
+                Show::Version | Show::FpgaVersion => version(text),
+                Show::Revision => {
+                    PLAIN.parse(text.strip_prefix('R').unwrap_or(text)).map(Value::Int).map_err(|e| e.to_string())
+                }
+                Show::Line => match text.strip_suffix(" of COMMON") {
+                    Some(line) => {
+                        PLAIN.parse(line).map(|line| Value::Int(line + COMMON_LINES)).map_err(|e| e.to_string())
+                    }
+                    None => number(PLAIN),
+                },
+                Show::Number(unit) => number(unit),
+                Show::Variable => VARIABLES
+                    .iter()
+                    .find_map(|(prefix, first)| {
+                        let index = text.strip_prefix(prefix)?.parse::<u8>().ok().filter(|index| *index < 32)?;
+                        Some(Value::Int(first + i32::from(index)))
+                    })
+                    .map_or_else(|| number(PLAIN), Ok),
+                Show::Fixed(_) | Show::Digits => number(PLAIN),
+            },
+            Form::Short(unit) | Form::Long(unit) => number(unit),
+            Form::Real => text.parse().map(Value::Real).map_err(|_| format!("'{text}' is no number")),
+            Form::Text(_) => Ok(Value::Text(text.to_owned())),
+        }
+    }
+}
+
+impl Show {
+    fn words(self, number: i32) -> String {
+        match self {
+            Self::Number(unit) => unit.show(number).to_string(),
+            Self::Choice(choices) => choices
+                .iter()
+                .find(|(code, _)| i32::from(*code) == number)
+                .map_or_else(|| format!("undocumented ({number})"), |(_, name)| (*name).to_owned()),
+            Self::Set { .. } => match (0..16).filter(|bit| number >> bit & 1 == 1).map(|bit| (bit + 1).to_string()) {
+                bits if number == 0 => bits.chain([NOTHING.to_owned()]).collect(),
+                bits => bits.collect::<Vec<_>>().join(","),
+            },
+            // The digits printed in 4.7.1 do not tell binary from decimal digits; hexadecimal shows the latter right,
+            // and the former below 10.
+            Self::Version => format!("V{:x}.{:02x}", number >> 8, number & 0xFF),
+            Self::Revision => format!("R{number:04}"),
+            Self::FpgaVersion => format!("V{:x}.{:03x}", number >> 12, number & 0xFFF),
+            Self::Variable => {
+                let [(integer, _), (real, first)] = VARIABLES;
+                match number {
+                    0..=31 => format!("{integer}{number}"),
+                    0x100..=0x11F => format!("{real}{}", number - first),
+                    _ => format!("undocumented ({number})"),
+                }
+            }
+            Self::Line if number > COMMON_LINES => format!("{} of COMMON", number - COMMON_LINES),
+            Self::Fixed(_) | Self::Digits | Self::Line => number.to_string(),
+        }
+    }
+}
+
+/// An empty set.
+const NOTHING: &str = "none";
+
+/// Added to the line while the COMMON program runs (4.6.4).
+const COMMON_LINES: i32 = 10_000;
+
+impl Charset {
+    const fn fill(self) -> u8 {
+        match self {
+            Self::Comment => 0,
+            Self::Program => b' ',
+        }
+    }
+
+    const fn allowed(self) -> &'static str {
+        match self {
+            Self::Comment => "allowed: up to 16 ASCII characters",
+            Self::Program => "allowed: 1 to 16 of A-Z, 0-9 and _",
+        }
+    }
+
+    fn accept(self, text: &str) -> Result<(), String> {
+        let fits = match self {
+            Self::Comment => text.bytes().all(|byte| matches!(byte, b' '..=b'~')),
+            Self::Program => {
+                !text.is_empty() && text.bytes().all(|byte| matches!(byte, b'A'..=b'Z' | b'0'..=b'9' | b'_'))
+            }
+        };
+        if fits && text.len() <= TEXT_CHARS {
+            Ok(())
+        } else {
+            Err(format!("'{}' does not fit; {}", text.chars().take(40).collect::<String>(), self.allowed()))
+        }
+    }
+}
+
+/// A version such as `V1.08`.
+fn version(text: &str) -> Result<Value, String> {
+    let digits = text.strip_prefix('V').unwrap_or(text).replacen('.', "", 1);
+    let number = u16::from_str_radix(&digits, 16).map_err(|_| format!("'{text}' is no version such as V1.08"))?;
+    Ok(Value::from(number))
+}
+
+/// A set such as `1,3`.
+fn set_of(text: &str) -> Result<Value, String> {
+    let mut set = 0;
+    if text == NOTHING {
+        return Ok(Value::Int(set));
+    }
+    for item in text.split(',') {
+        match item.trim().parse::<u8>() {
+            Ok(number @ 1..=16) => set |= 1 << (number - 1),
+            _ => return Err(format!("'{text}' is no list such as 1,3")),
+        }
+    }
+    Ok(Value::Int(set))
+}

@@ -1,0 +1,73 @@
+//! The parameters that remote commands reach (4.4.2). The manual lists neither 261 nor 263.
+
+/// One parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Parameter {
+    /// Its number.
+    pub number: u16,
+    /// Its name in the robot language.
+    pub name: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+    /// What it is measured in; empty where the manual does not say.
+    pub unit: &'static str,
+    /// Whether it belongs to an axis; to the robot otherwise.
+    pub per_axis: bool,
+    /// Least and greatest value. A payload ends at what the robot carries, which only the controller knows.
+    pub span: (i32, i32),
+}
+
+impl Parameter {
+    /// The parameter of a number.
+    pub fn of(number: i32) -> Option<&'static Self> {
+        PARAMETERS.iter().find(|parameter| i32::from(parameter.number) == number)
+    }
+}
+
+const PAYLOAD: (i32, i32) = (0, i32::MAX);
+const DISTANCE: (i32, i32) = (1, 9_999_999);
+const RATIO: (i32, i32) = (1, 100);
+
+/// Every parameter.
+pub const PARAMETERS: [Parameter; 14] = [
+    robot(1, "WEIGHT", "payload of the robot", "kg"),
+    robot(2, "WEIGHTG", "payload of the robot", "g"),
+    axis(257, "ACCEL", "acceleration coefficient", "", RATIO),
+    // Spelled so in the manual.
+    axis(258, "DECCEL", "deceleration ratio", "", RATIO),
+    axis(259, "TOLE", "tolerance", "pulses", (1, 16_384)),
+    axis(260, "OUTPOS", "OUT effective position", "pulses", DISTANCE),
+    axis(262, "AXWGHT", "payload of the axis", "kg", PAYLOAD),
+    axis(264, "ARCHP1", "arch start position", "pulses", DISTANCE),
+    axis(265, "ARCHP2", "arch end position", "pulses", DISTANCE),
+    axis(266, "PSHFRC", "push force", "", (-1000, 1000)),
+    axis(267, "PSHTIME", "push time", "", (1, 32_767)),
+    axis(268, "PSHMTD", "push method: 0 off, 1 on", "", (0, 1)),
+    axis(269, "PSHJGSP", "push judgment speed ratio: 0 off", "", (0, 100)),
+    axis(270, "PSHSPD", "push speed ratio", "", RATIO),
+];
+
+/// Their names by number.
+pub(super) const NAMES: [(u16, &str); PARAMETERS.len()] = {
+    let mut names = [(0, ""); PARAMETERS.len()];
+    let mut at = 0;
+    while at < names.len() {
+        names[at] = (PARAMETERS[at].number, PARAMETERS[at].name);
+        at += 1;
+    }
+    names
+};
+
+const fn robot(number: u16, name: &'static str, meaning: &'static str, unit: &'static str) -> Parameter {
+    Parameter { number, name, meaning, unit, per_axis: false, span: PAYLOAD }
+}
+
+const fn axis(
+    number: u16,
+    name: &'static str,
+    meaning: &'static str,
+    unit: &'static str,
+    span: (i32, i32),
+) -> Parameter {
+    Parameter { number, name, meaning, unit, per_axis: true, span }
+}

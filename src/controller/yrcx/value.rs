@@ -1,0 +1,277 @@
+//! What the words of commands and answers hold, by name.
+
+use std::fmt;
+
+/// Declares the keys with their names.
+macro_rules! keys {
+    ($($key:ident $name:literal,)*) => {
+        /// The name of a field. A command has a field at most once at a time, so that the name finds it.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Key {
+            $(#[doc = concat!("`", $name, "`")] $key,)*
+        }
+
+        impl Key {
+            /// Every key.
+            pub const ALL: &[Self] = &[$(Self::$key,)*];
+
+            /// The name in JSON and in error texts.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$key => $name,)*
+                }
+            }
+        }
+    };
+}
+
+keys! {
+    Robot "robot",
+    AxisFlag "axis_flag",
+    SpeedMode "speed_mode",
+    AccelFlag "accel_flag",
+    DecelFlag "decel_flag",
+    PushForceFlag "push_force_flag",
+    PushTimeFlag "push_time_flag",
+    Axes "axes",
+    SpeedOfMax "speed_of_max_percent",
+    SpeedPercent "speed_percent",
+    SpeedMmS "speed_mm_s",
+    Accel "accel_percent",
+    Decel "decel_percent",
+    Report "report",
+    HandSystem "hand_system",
+    Point "point",
+    Point2 "point_2",
+    Axis1 "axis_1",
+    Axis2 "axis_2",
+    Axis3 "axis_3",
+    Axis4 "axis_4",
+    Axis5 "axis_5",
+    Axis6 "axis_6",
+    Target "target",
+    Distance "distance",
+    ArchAxis "arch_axis",
+    ArchUnit "arch_unit",
+    ArchPosition "arch_position",
+    ArchStart "arch_start",
+    ArchEnd "arch_end",
+    Pallet "pallet",
+    WorkPosition "work_position",
+    Direction "direction",
+    InchingAmount "inching_amount",
+    Unit "unit",
+    OriginAxes "origin_axes",
+    Shift "shift",
+    Hand "hand",
+    Arm "arm",
+    Torque "torque_percent",
+    PushForce "push_force_percent",
+    PushTime "push_time_ms",
+    PushResult "push_result",
+    Comment "comment",
+    CountX "nx",
+    CountY "ny",
+    CountZ "nz",
+    FirstPoint "first_point",
+    Owner "owner",
+    Data1 "data_1",
+    Data2 "data_2",
+    Data3 "data_3",
+    Data4 "data_4",
+    Variable "variable",
+    Variable2 "variable_2",
+    Value "value",
+    Parameter "parameter",
+    Element "element",
+    PortType "port_type",
+    Port "port",
+    PortBit "port_bit",
+    Selection "selection",
+    Program "program",
+    Task "task",
+    Priority "priority",
+    ProgramName "program_name",
+    Line "line",
+    HostVersion "host_version",
+    HostRevision "host_revision",
+    FpgaVersion "fpga_version",
+    DriverVersion1 "driver_version_1",
+    DriverVersion2 "driver_version_2",
+    DriverVersion3 "driver_version_3",
+    DriverVersion4 "driver_version_4",
+    RobotType "robot_type",
+    Continuous "continuous",
+    TaskRange "task_range",
+    Task1 "task_1",
+    Task2 "task_2",
+    Task3 "task_3",
+    Task4 "task_4",
+    Task5 "task_5",
+    Task6 "task_6",
+    Task7 "task_7",
+    Task8 "task_8",
+    History "history",
+    AlarmGroup "alarm_group",
+    AlarmCategory "alarm_category",
+    Place1 "place_1",
+    Place1Number "place_1_number",
+    Place2 "place_2",
+    Place2Number "place_2_number",
+    AutoSpeed "auto_speed_percent",
+    ManualSpeed "manual_speed_percent",
+    ProgramSpeed "program_speed_percent",
+    MotorType "motor_type",
+    System "system",
+    Year "year",
+    Month "month",
+    Day "day",
+    Hour "hour",
+    Minute "minute",
+    Second "second",
+    Controller "controller",
+    Slot1 "slot_1",
+    Slot2 "slot_2",
+    Slot3 "slot_3",
+    Slot4 "slot_4",
+}
+
+impl Key {
+    /// The axes that share a layout of four, in order.
+    pub const AXES: [Self; 4] = [Self::Axis1, Self::Axis2, Self::Axis3, Self::Axis4];
+
+    /// The key of a name.
+    pub fn of(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|key| key.name() == name)
+    }
+}
+
+impl fmt::Display for Key {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// What a field holds.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A whole number: as it travels, so in steps of 0.001 mm or 0.01 % where the field says so; the number of a choice;
+    /// a set of axes as bits, bit 0 for axis 1.
+    Int(i32),
+    /// A single-precision number; only a real static variable.
+    Real(f32),
+    /// A comment or a program name. Where another field is given text, it is read as [`Field::parse`] reads it.
+    ///
+    /// [`Field::parse`]: super::table::Field::parse
+    Text(String),
+}
+
+impl From<i32> for Value {
+    fn from(number: i32) -> Self {
+        Self::Int(number)
+    }
+}
+
+impl From<u16> for Value {
+    fn from(number: u16) -> Self {
+        Self::Int(number.into())
+    }
+}
+
+impl From<bool> for Value {
+    fn from(on: bool) -> Self {
+        Self::Int(on.into())
+    }
+}
+
+impl From<f32> for Value {
+    fn from(number: f32) -> Self {
+        Self::Real(number)
+    }
+}
+
+impl From<&str> for Value {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
+impl From<String> for Value {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+/// Values by their keys, in the order of the words.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Values(Vec<(Key, Value)>);
+
+impl Values {
+    /// The value of a key.
+    pub fn value(&self, key: Key) -> Option<&Value> {
+        self.0.iter().find(|(known, _)| *known == key).map(|(_, value)| value)
+    }
+
+    /// The whole number of a key.
+    pub fn int(&self, key: Key) -> Option<i32> {
+        match self.value(key)? {
+            Value::Int(number) => Some(*number),
+            Value::Real(_) | Value::Text(_) => None,
+        }
+    }
+
+    /// The text of a key.
+    pub fn text(&self, key: Key) -> Option<&str> {
+        match self.value(key)? {
+            Value::Text(text) => Some(text),
+            Value::Int(_) | Value::Real(_) => None,
+        }
+    }
+
+    /// The numbers of four axes, if all are there: a position, or a state of each axis.
+    pub fn axes(&self) -> Option<[i32; 4]> {
+        let [first, second, third, fourth] = Key::AXES.map(|key| self.int(key));
+        Some([first?, second?, third?, fourth?])
+    }
+
+    /// Sets a value; the last one counts.
+    pub fn set(&mut self, key: Key, value: impl Into<Value>) {
+        let value = value.into();
+        match self.0.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, known)) => *known = value,
+            None => self.0.push((key, value)),
+        }
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = (Key, &Value)> {
+        self.0.iter().map(|(key, value)| (*key, value))
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+impl<V: Into<Value>> FromIterator<(Key, V)> for Values {
+    fn from_iter<I: IntoIterator<Item = (Key, V)>>(pairs: I) -> Self {
+        let mut values = Self::default();
+        for (key, value) in pairs {
+            values.set(key, value);
+        }
+        values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique() {
+        for key in Key::ALL {
+            assert_eq!(Key::of(key.name()), Some(*key));
+        }
+    }
+}
