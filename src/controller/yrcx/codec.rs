@@ -73,7 +73,7 @@ impl WordError {
 }
 
 /// Fields in the order of a layout.
-pub trait Layout: Iterator<Item = &'static Field> + Clone {}
+pub(super) trait Layout: Iterator<Item = &'static Field> + Clone {}
 
 impl<I: Iterator<Item = &'static Field> + Clone> Layout for I {}
 

@@ -63,20 +63,23 @@ pub struct Output {
     /// What is to be shown from the next cycle on.
     pub next: Image,
     sent: Option<Image>,
-    edge: Option<Now>,
+    /// When the bits of each word after the command last changed on the wire.
+    edges: [Option<Now>; IMAGE_WORDS - COMMAND_WORDS],
 }
 
 impl Output {
     /// An output that begins with `image`; nothing of it has left yet.
     pub fn new(image: Image) -> Self {
-        Self { next: image, sent: None, edge: None }
+        Self { next: image, ..Self::default() }
     }
 
     /// Tells that `next` as it stands left at `now`.
     pub fn sent(&mut self, now: Now) {
-        let dedicated = |image: &Image| image.0[DEDICATED_WORD];
-        if self.sent.as_ref().map(dedicated) != Some(dedicated(&self.next)) {
-            self.edge = Some(now);
+        for (at, edge) in (COMMAND_WORDS..).zip(&mut self.edges) {
+            // The first image may differ from all that the controller knew before.
+            if self.sent.is_none_or(|sent| sent.0[at] != self.next.0[at]) {
+                *edge = Some(now);
+            }
         }
         self.sent = Some(self.next);
     }
@@ -91,9 +94,9 @@ impl Output {
         self.sent.as_ref()
     }
 
-    /// When a dedicated signal last changed on the wire.
-    pub fn last_edge(&self) -> Option<Now> {
-        self.edge
+    /// When a bit of this word of the image (16 to 23) last changed on the wire.
+    pub fn last_edge(&self, word: usize) -> Option<Now> {
+        self.edges.get(word.checked_sub(COMMAND_WORDS)?).copied().flatten()
     }
 }
 
@@ -115,18 +118,20 @@ mod tests {
     }
 
     #[test]
-    fn edges_are_those_of_the_dedicated_word_on_the_wire() {
+    fn edges_count_for_their_word() {
         let at = Duration::from_millis;
         let mut output = Output::default();
         output.sent(at(1));
-        assert_eq!(output.last_edge(), Some(at(1)), "the first image is an edge for all that the controller knows");
+        assert_eq!(output.last_edge(DEDICATED_WORD), Some(at(1)), "the first image is an edge");
         output.next.0[0] = 1;
         output.next.0[17] = 1;
         output.sent(at(2));
-        assert_eq!(output.last_edge(), Some(at(1)));
+        assert_eq!(output.last_edge(DEDICATED_WORD), Some(at(1)));
+        assert_eq!(output.last_edge(17), Some(at(2)));
         output.next.0[DEDICATED_WORD] = 1;
         assert_eq!(output.last_sent().unwrap().0[DEDICATED_WORD], 0);
         output.sent(at(3));
-        assert_eq!(output.last_edge(), Some(at(3)));
+        assert_eq!(output.last_edge(DEDICATED_WORD), Some(at(3)));
+        assert_eq!((output.last_edge(0), output.last_edge(24)), (None, None));
     }
 }

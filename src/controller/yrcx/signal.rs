@@ -8,6 +8,7 @@ use std::fmt;
 use thiserror::Error;
 
 use super::image::{DEDICATED_WORD, Image};
+use crate::controller::Risk;
 
 /// Whose input or output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -61,6 +62,8 @@ pub struct Dedicated {
     pub trigger: Trigger,
     /// What it does, or says.
     pub effect: &'static str,
+    /// What switching it on does to the world; for an output, looking at it.
+    pub risk: Risk,
 }
 
 /// A text or a number that is no signal.
@@ -149,6 +152,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         "emergency stop input",
         Trigger::WhileOff,
         "off puts the controller into emergency stop; no substitute for a hard-wired safety circuit",
+        Risk::Write,
     ),
     given(
         input::SERVO_ON,
@@ -156,30 +160,55 @@ pub const DEDICATED: [Dedicated; 20] = [
         "servo ON input",
         Trigger::Rise,
         "cancels the emergency stop state and switches the servos on; SI(00) must be on and every stop released",
+        Risk::Motion,
     ),
-    given(input::STOP, "stop", "stop input", Trigger::WhileOff, "off stops programs and jogs; must be on to run"),
+    given(
+        input::STOP,
+        "stop",
+        "stop input",
+        Trigger::WhileOff,
+        "off stops programs and jogs; must be on to run",
+        Risk::Write,
+    ),
     given(
         input::SEQUENCE_CONTROL,
         "sequence-control",
         "sequence control input",
         Trigger::WhileOn,
         "runs the sequence program",
+        Risk::Motion,
     ),
-    given(input::AUTO_START, "auto-start", "auto operation start input", Trigger::Rise, "runs the robot program"),
+    given(
+        input::AUTO_START,
+        "auto-start",
+        "auto operation start input",
+        Trigger::Rise,
+        "runs the robot program",
+        Risk::Motion,
+    ),
     given(
         input::ORIGIN,
         "origin",
         "return-to-origin input (incremental type axis)",
         Trigger::Rise,
         "returns incremental axes to origin; semi-absolute axes do an absolute search",
+        Risk::Motion,
     ),
-    given(input::PROGRAM_RESET, "program-reset", "program reset input", Trigger::Rise, "resets the robot program"),
+    given(
+        input::PROGRAM_RESET,
+        "program-reset",
+        "program reset input",
+        Trigger::Rise,
+        "resets the robot program",
+        Risk::Write,
+    ),
     given(
         input::ALARM_RESET,
         "alarm-reset",
         "alarm reset input",
         Trigger::Rise,
         "resets the alarm; if that does not help, the power must be switched off and on",
+        Risk::Write,
     ),
     given(
         input::ORIGIN_ABSOLUTE,
@@ -187,6 +216,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         "return-to-origin input (absolute type axis)",
         Trigger::Rise,
         "returns absolute axes to origin; with parameter DI17 at ABS/ORG the incremental ones after them",
+        Risk::Motion,
     ),
     says(
         output::EMERGENCY_STOP,
@@ -232,12 +262,13 @@ const fn given(
     text: &'static str,
     trigger: Trigger,
     effect: &'static str,
+    risk: Risk,
 ) -> Dedicated {
-    Dedicated { signal, name, text, trigger, effect }
+    Dedicated { signal, name, text, trigger, effect, risk }
 }
 
 const fn says(signal: Signal, name: &'static str, text: &'static str, effect: &'static str) -> Dedicated {
-    Dedicated { signal, name, text, trigger: Trigger::State, effect }
+    Dedicated { signal, name, text, trigger: Trigger::State, effect, risk: Risk::Read }
 }
 
 /// The image of a master that asks for nothing: emergency stop and stop inputs on, so that neither acts, all else off.
@@ -322,6 +353,15 @@ impl Signal {
     /// Its name, or `SI(20)`.
     pub fn name(self) -> String {
         self.dedicated().map_or_else(|| self.to_string(), |dedicated| dedicated.name.to_owned())
+    }
+
+    /// What switching it does to the world. Off is never more than a write; general-purpose inputs mean what programs
+    /// make of them.
+    pub fn risk(self, on: bool) -> Risk {
+        match self.dedicated() {
+            Some(dedicated) if on => dedicated.risk,
+            _ => Risk::Write,
+        }
     }
 
     /// Whether it is on.

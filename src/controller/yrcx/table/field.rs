@@ -235,7 +235,12 @@ impl Field {
         match self.form {
             Form::Bits { low, show, .. } => {
                 let raw = i32::from((word(0) & self.mask()) >> low);
-                Value::Int(if show == Show::Digits { (raw >> 4) * 10 + (raw & 0xF) } else { raw })
+                Value::Int(match (raw >> 4, raw & 0xF) {
+                    _ if show != Show::Digits => raw,
+                    (tens @ 0..=9, units @ 0..=9) => tens * 10 + units,
+                    // No decimal digits: a number that is never allowed.
+                    _ => 100 + raw,
+                })
             }
             Form::Short(_) => Value::Int(word(0).cast_signed().into()),
             Form::Long(_) => Value::Int(long().cast_signed()),
@@ -262,7 +267,11 @@ impl Field {
             |bits: u32| [bits & 0xFFFF, bits >> 16].map(|half| u16::try_from(half).unwrap_or_default());
         match (self.form, value) {
             (Form::Bits { low, show, .. }, Value::Int(number)) => {
-                let raw = if show == Show::Digits { ((number / 10) << 4) | (number % 10) } else { *number };
+                let raw = match number {
+                    0..=99 if show == Show::Digits => ((number / 10) << 4) | (number % 10),
+                    _ if show == Show::Digits => return Err(format!("{number} has more than two digits")),
+                    _ => *number,
+                };
                 let raw = u16::try_from(raw).ok().filter(|raw| *raw <= self.mask() >> low);
                 put(0, raw.ok_or_else(|| format!("{number} does not fit"))? << low);
             }

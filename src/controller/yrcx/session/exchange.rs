@@ -1,0 +1,383 @@
+//! One remote command from the ready status back to it (chapter 2, sections 1.2 and 2).
+
+use std::time::Duration;
+
+use super::{ImageSession, Next, Policy, edge_due};
+use crate::controller::yrcx::answer::{Answer, Status};
+use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Output, Words};
+use crate::controller::yrcx::order::Order;
+use crate::controller::yrcx::signal::input;
+use crate::controller::yrcx::table::{Pace, STATUS_RESET};
+use crate::controller::yrcx::value::Values;
+use crate::controller::{Now, Risk};
+
+/// How an exchange ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// The answer, or why there is none.
+    pub ended: Ended,
+    /// WO0 to WO15 as they came with the end status.
+    pub words: Option<Words>,
+    /// From the first time that the command was sent to the end status.
+    pub elapsed: Duration,
+    /// A status that was found before the command: another master's command, or one of ours from before.
+    pub leftover: Option<Status>,
+    /// Whether the run status was seen; a short command may never show it.
+    pub ran: bool,
+    /// Whether the controller is ready again.
+    pub released: bool,
+    /// Whether the stop input was left off, because the end of the motion was not seen.
+    pub stop_held: bool,
+}
+
+/// How an exchange ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ended {
+    /// The controller answered, be it with an alarm.
+    Answered(Answer),
+    /// The command was not sent. Nothing was done.
+    NotSent(Hindrance),
+    /// Continuous output was ended as asked.
+    Stopped,
+    /// No answer to a command that may be repeated without harm.
+    NoAnswer(Silence),
+    /// No answer to a command that changes something: it may or may not have been carried out, or still be under way.
+    OutcomeUnknown(Silence),
+}
+
+/// Why a command was not sent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hindrance {
+    /// No image came.
+    NoImage,
+    /// The link went down, or sends nothing.
+    LinkLost,
+    /// The controller was not ready: it runs another command, or holds another status in spite of the status reset.
+    NotReady(Status),
+    /// The operator did not want it any more.
+    Interrupted,
+}
+
+/// Why there is no answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Silence {
+    /// The link went down after the command was sent.
+    LinkLost,
+    /// The controller stayed ready, as if there were no command.
+    NotTaken,
+    /// The command still ran when patience was over.
+    TooLong,
+    /// The run status went away without an end status.
+    Vanished,
+    /// The status is none that the manual has.
+    Undocumented(u16),
+    /// The operator did not want to wait any longer; for a motion, the stop input went off before.
+    Interrupted,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    /// Data words are shown without a command word, until the controller is ready for it.
+    Prepare,
+    /// The command word is shown.
+    Command,
+    /// The status reset is shown, since then.
+    Release(Now),
+    Over,
+}
+
+/// A remote command and its answer.
+#[derive(Debug, Clone)]
+pub struct Exchange {
+    order: Order,
+    policy: Policy,
+    phase: Phase,
+    started: Option<Now>,
+    /// The last image that came.
+    input: Option<Image>,
+    linked: bool,
+    /// When the command word left for the first time.
+    sent: Option<Now>,
+    /// When the status last made sense.
+    sane: Now,
+    interrupted: Option<Now>,
+    /// Whether the stop input is off because of the interrupt.
+    stopping: bool,
+    running: Option<Answer>,
+    outcome: Outcome,
+}
+
+impl Exchange {
+    /// Will carry out `order`.
+    pub fn new(order: Order, policy: Policy) -> Self {
+        let outcome = Outcome {
+            ended: Ended::NotSent(Hindrance::NoImage),
+            words: None,
+            elapsed: Duration::ZERO,
+            leftover: None,
+            ran: false,
+            released: false,
+            stop_held: false,
+        };
+        Self {
+            order,
+            policy,
+            phase: Phase::Prepare,
+            started: None,
+            input: None,
+            linked: true,
+            sent: None,
+            sane: Now::ZERO,
+            interrupted: None,
+            stopping: false,
+            running: None,
+            outcome,
+        }
+    }
+
+    /// The order it carries out.
+    pub fn order(&self) -> &Order {
+        &self.order
+    }
+
+    /// The answer as soon as it is there, which is before the controller is ready again.
+    pub fn answer(&self) -> Option<&Answer> {
+        match (self.phase, &self.outcome.ended) {
+            (Phase::Release(_) | Phase::Over, Ended::Answered(answer)) => Some(answer),
+            _ => None,
+        }
+    }
+
+    /// What continuous output shows, if it changed since the last call (4.7.4).
+    pub fn running(&mut self) -> Option<Answer> {
+        self.running.take()
+    }
+
+    /// The operator wants it to end. What was not sent is not sent any more. A motion is stopped with SI(06), and its end
+    /// awaited; continuous output is ended; any other command is over in a moment anyway.
+    pub fn interrupt(&mut self, now: Now) {
+        self.interrupted.get_or_insert(now);
+    }
+
+    fn status(&self) -> Option<Status> {
+        self.input.map(|image| Status::of(image.0[0]))
+    }
+
+    /// Shows the data words beside the status reset, and the command word once the controller is ready and has them.
+    fn prepare(&mut self, now: Now, output: &mut Output) {
+        let mut words = *self.order.words();
+        words[0] = Status::Ready.word();
+        output.next.set_command(&words);
+        if self.interrupted.is_some() {
+            return self.finish(now, output, Ended::NotSent(Hindrance::Interrupted));
+        }
+        if !self.linked {
+            return self.finish(now, output, Ended::NotSent(Hindrance::LinkLost));
+        }
+        let data_sent = output.last_sent().is_some_and(|sent| sent.command() == words);
+        match self.status() {
+            // The status reset is what is shown already.
+            Some(Status::Ready) if data_sent && self.order.row().code == STATUS_RESET => {
+                return self.finish(now, output, Ended::Answered(Answer::Done(Values::default())));
+            }
+            Some(Status::Ready) if data_sent => {
+                output.next.set_command(self.order.words());
+                self.sane = now;
+                self.phase = Phase::Command;
+                return;
+            }
+            Some(Status::Ready) | None => {}
+            Some(status) => self.outcome.leftover = self.outcome.leftover.or(Some(status)),
+        }
+        if now >= self.started_or(now).saturating_add(self.policy.ready) {
+            let hindrance = match self.status() {
+                Some(Status::Ready) | None => Hindrance::NoImage,
+                Some(status) => Hindrance::NotReady(status),
+            };
+            self.finish(now, output, Ended::NotSent(hindrance));
+        }
+    }
+
+    /// Holds the command word until the end status.
+    fn command(&mut self, now: Now, output: &mut Output) {
+        let shown = output.last_sent().is_some_and(|sent| sent.command() == *self.order.words());
+        if self.sent.is_none() && shown {
+            self.sent = Some(now);
+            self.sane = now;
+        }
+        if !self.linked {
+            // Without `sent` the driver may have sent it and not yet have told: count it as sent.
+            return self.finish(now, output, self.unanswered(Silence::LinkLost));
+        }
+        let status = self.status().unwrap_or(Status::Ready);
+        if self.sent.is_none() {
+            if status != Status::Ready || self.interrupted.is_some() {
+                // Somebody else's, since ours has not left: back to where no command word is shown.
+                self.phase = Phase::Prepare;
+                self.prepare(now, output);
+            } else if now >= self.deadline() {
+                self.finish(now, output, Ended::NotSent(Hindrance::LinkLost));
+            }
+            return;
+        }
+        if status.is_end() {
+            return self.take_end(now, output);
+        }
+        if status == Status::Running {
+            self.outcome.ran = true;
+            self.sane = now;
+        }
+        match self.interrupted {
+            Some(_) if self.order.is_continuous() => return self.finish(now, output, Ended::Stopped),
+            Some(since) if self.moves() => {
+                self.hold_stop(output);
+                if now >= since.saturating_add(self.policy.stop) {
+                    return self.finish(now, output, self.unanswered(Silence::Interrupted));
+                }
+            }
+            _ => {}
+        }
+        if now >= self.deadline() {
+            let silence = match status {
+                Status::Running => Silence::TooLong,
+                Status::Other(word) => Silence::Undocumented(word),
+                _ if self.outcome.ran => Silence::Vanished,
+                _ => Silence::NotTaken,
+            };
+            self.finish(now, output, self.unanswered(silence));
+        }
+    }
+
+    fn take_end(&mut self, now: Now, output: &mut Output) {
+        let words = self.input.unwrap_or_default().command();
+        if let Some(answer) = Answer::parse(&self.order, &words) {
+            self.outcome.words = Some(words);
+            self.finish(now, output, Ended::Answered(answer));
+        }
+    }
+
+    /// Ends it, good or bad: from here on only the status reset is shown.
+    fn finish(&mut self, now: Now, output: &mut Output, ended: Ended) {
+        if self.stopping && !matches!(ended, Ended::Answered(_)) {
+            // It may still move: the stop input stays off.
+            self.outcome.stop_held = true;
+            self.stopping = false;
+        }
+        self.outcome.ended = ended;
+        self.outcome.elapsed = now.saturating_sub(self.sent.unwrap_or(now));
+        output.next.set_command(&[0; COMMAND_WORDS]);
+        self.phase = Phase::Release(now);
+        self.release(now, output);
+    }
+
+    /// Waits for the ready status, and gives the stop input back.
+    fn release(&mut self, now: Now, output: &mut Output) {
+        let Phase::Release(since) = self.phase else { return };
+        let never_sent = matches!(self.outcome.ended, Ended::NotSent(_));
+        let reset_sent = output.last_sent().is_some_and(|sent| sent.command() == [0; COMMAND_WORDS]);
+        self.outcome.released = self.linked && reset_sent && self.status() == Some(Status::Ready);
+        let patient = self.linked && now < since.saturating_add(self.policy.release);
+        if !self.linked && self.stopping {
+            self.outcome.stop_held = true;
+            self.stopping = false;
+        }
+        if self.stopping && edge_due(now, output, input::STOP).is_none() {
+            input::STOP.set(&mut output.next, true);
+            self.stopping = false;
+        }
+        let restored = !self.stopping
+            && output.last_sent().is_none_or(|sent| input::STOP.is_on(sent) == input::STOP.is_on(&output.next));
+        if never_sent || (restored && self.outcome.released) || !patient {
+            self.phase = Phase::Over;
+        }
+    }
+
+    fn hold_stop(&mut self, output: &mut Output) {
+        if !self.stopping && input::STOP.is_on(&output.next) {
+            input::STOP.set(&mut output.next, false);
+            self.stopping = true;
+        }
+    }
+
+    fn moves(&self) -> bool {
+        matches!(self.order.row().pace, Pace::Motion | Pace::Jog)
+    }
+
+    fn unanswered(&self, silence: Silence) -> Ended {
+        match self.order.risk() {
+            Risk::Read => Ended::NoAnswer(silence),
+            Risk::Write | Risk::Motion => Ended::OutcomeUnknown(silence),
+        }
+    }
+
+    fn started_or(&self, now: Now) -> Now {
+        self.started.unwrap_or(now)
+    }
+
+    /// When patience with a command that was sent is over.
+    fn deadline(&self) -> Now {
+        let sane = self.sane.saturating_add(self.policy.accept);
+        if self.status() != Some(Status::Running) {
+            return sane;
+        }
+        match (self.policy.longest(self.order.row().pace), self.order.is_continuous()) {
+            (Some(longest), false) => self.sent.unwrap_or(self.sane).saturating_add(longest),
+            _ => Now::MAX,
+        }
+    }
+
+    /// The next moment at which something is due without an image.
+    fn due(&self, now: Now, output: &Output) -> Now {
+        match self.phase {
+            Phase::Prepare => self.started_or(now).saturating_add(self.policy.ready),
+            Phase::Command => match self.interrupted {
+                Some(since) if self.moves() => self.deadline().min(since.saturating_add(self.policy.stop)),
+                _ => self.deadline(),
+            },
+            Phase::Release(since) => {
+                let over = since.saturating_add(self.policy.release);
+                match edge_due(now, output, input::STOP) {
+                    Some(edge) if self.stopping => over.min(edge),
+                    _ => over,
+                }
+            }
+            Phase::Over => now,
+        }
+    }
+}
+
+impl ImageSession for Exchange {
+    type Outcome = Outcome;
+
+    fn poll(&mut self, now: Now, output: &mut Output) -> Next<Outcome> {
+        self.started.get_or_insert(now);
+        match self.phase {
+            Phase::Prepare => self.prepare(now, output),
+            Phase::Command => self.command(now, output),
+            Phase::Release(_) => self.release(now, output),
+            Phase::Over => {}
+        }
+        match self.phase {
+            Phase::Over => Next::Done(self.outcome.clone()),
+            _ => Next::Wait(self.due(now, output)),
+        }
+    }
+
+    fn handle(&mut self, _now: Now, input: &Image) {
+        if !self.linked || self.phase == Phase::Over {
+            return;
+        }
+        if self.phase == Phase::Command && self.order.is_continuous() && self.input != Some(*input) {
+            let running = Answer::parse(&self.order, &input.command());
+            self.running = running.filter(|answer| matches!(answer, Answer::Running(_))).or(self.running.take());
+        }
+        self.input = Some(*input);
+    }
+
+    fn lost(&mut self, _now: Now) {
+        self.linked = false;
+    }
+}
+
+#[cfg(test)]
+mod tests;

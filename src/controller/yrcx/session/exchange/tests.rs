@@ -1,0 +1,421 @@
+//! Exchanges with a small scripted controller, in virtual time: the master sends every 20 ms, the controller scans every
+//! 5 ms and shows its image every 20 ms.
+
+use std::time::Duration;
+
+use super::*;
+use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
+use crate::controller::yrcx::signal::{Side, Signal, resting};
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Values};
+
+const STEP: u64 = 5;
+const RPI: u64 = 20;
+
+fn ms(ms: u64) -> Duration {
+    Duration::from_millis(ms)
+}
+
+/// What the controller does with the next command.
+#[derive(Debug, Clone)]
+#[expect(clippy::struct_excessive_bools, reason = "a script is made of switches")]
+struct Script {
+    /// How long it runs; `None` for ever.
+    runs: Option<u64>,
+    /// Whether it shows the run status.
+    shows_run: bool,
+    /// What it answers.
+    answer: Words,
+    /// Whether it takes commands at all.
+    takes: bool,
+    /// Whether the status reset works.
+    resets: bool,
+    /// What it shows while it runs, from WO1.
+    running: Words,
+    /// Whether it takes one command only.
+    once: bool,
+}
+
+impl Default for Script {
+    fn default() -> Self {
+        let mut answer = [0; 16];
+        answer[0] = 0x0200;
+        Self { runs: Some(100), shows_run: true, answer, takes: true, resets: true, running: [0; 16], once: false }
+    }
+}
+
+/// A controller, an order, and what was seen.
+struct World {
+    script: Script,
+    exchange: Exchange,
+    output: Output,
+    now: u64,
+    /// The controller's image and when the command ends.
+    shown: Image,
+    started: Option<u64>,
+    /// Every image that was sent, when it differed from the one before.
+    sent: Vec<(u64, Image)>,
+    /// The link goes down at this moment.
+    cut: Option<u64>,
+    interrupt: Option<u64>,
+    updates: Vec<Values>,
+}
+
+impl World {
+    fn new(order: Order, script: Script) -> Self {
+        Self {
+            script,
+            exchange: Exchange::new(order, Policy::default()),
+            output: Output::new(resting()),
+            now: 0,
+            shown: Image::default(),
+            started: None,
+            sent: Vec::new(),
+            cut: None,
+            interrupt: None,
+            updates: Vec::new(),
+        }
+    }
+
+    fn run(&mut self) -> Outcome {
+        let mut wake = Now::ZERO;
+        for _ in 0..200_000 {
+            let now = ms(self.now);
+            let mut poll = now >= wake;
+            if self.cut == Some(self.now) {
+                self.exchange.lost(now);
+                self.output.unlinked();
+                poll = true;
+            }
+            if self.interrupt == Some(self.now) {
+                self.exchange.interrupt(now);
+                poll = true;
+            }
+            let linked = self.cut.is_none_or(|cut| self.now < cut);
+            if linked && self.now.is_multiple_of(RPI) {
+                if self.sent.last().is_none_or(|(_, last)| *last != self.output.next) {
+                    self.sent.push((self.now, self.output.next));
+                }
+                self.output.sent(now);
+                poll = true;
+            }
+            if let Some(sent) = self.output.last_sent().copied() {
+                self.scan(&sent);
+            }
+            if linked && self.now % RPI == 10 {
+                self.exchange.handle(now, &self.shown);
+                if let Some(Answer::Running(values)) = self.exchange.running() {
+                    self.updates.push(values);
+                }
+                poll = true;
+            }
+            if poll {
+                match self.exchange.poll(now, &mut self.output) {
+                    Next::Done(outcome) => {
+                        assert_eq!(self.output.next.command(), [0; 16], "no command word is left behind");
+                        return outcome;
+                    }
+                    Next::Wait(until) => {
+                        assert!(until > now, "waits for {until:?} at {now:?}");
+                        wake = until;
+                    }
+                }
+            }
+            self.now += STEP;
+        }
+        panic!("never over");
+    }
+
+    fn scan(&mut self, image: &Image) {
+        let wi0 = image.0[0];
+        let status = Status::of(self.shown.0[0]);
+        let mut show = |status: Status, words: &Words| {
+            let mut words = *words;
+            words[0] = status.word();
+            self.shown.set_command(&words);
+        };
+        match (self.started, wi0) {
+            (None, 0) if status != Status::Ready && self.script.resets => show(Status::Ready, &[0; 16]),
+            (None, code) if code != 0 && status == Status::Ready && self.script.takes => {
+                self.started = Some(self.now);
+                if self.script.shows_run {
+                    show(Status::Running, &self.script.running);
+                }
+            }
+            (Some(_), 0) if self.exchange.order().is_continuous() => {
+                show(Status::Ready, &[0; 16]);
+                self.started = None;
+            }
+            (Some(started), _) => {
+                if self.script.shows_run {
+                    show(Status::Running, &self.script.running);
+                }
+                if !input::STOP.is_on(image) && self.script.answer[0] == 0x0200 {
+                    self.script.answer = [0; 16];
+                    self.script.answer[..3].copy_from_slice(&[0x4000, STOP_INPUT.group, STOP_INPUT.category]);
+                    self.script.runs = Some(self.now - started + 50);
+                }
+                if self.script.runs.is_some_and(|runs| self.now >= started + runs) {
+                    let answer = self.script.answer;
+                    show(Status::of(answer[0]), &answer);
+                    self.started = None;
+                    self.script.takes = !self.script.once;
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// WI0 of every image that differed, and whether its data words are those of the order.
+    fn commands(&self) -> Vec<(u16, bool)> {
+        let data = |image: &Image| image.command()[1..] == self.exchange.order().words()[1..];
+        let mut seen: Vec<(u16, bool)> = self.sent.iter().map(|(_, image)| (image.0[0], data(image))).collect();
+        seen.dedup();
+        seen
+    }
+}
+
+fn move_to_19() -> Order {
+    Command::MovePtp.order().with(Key::Point, 19).with(Key::SpeedPercent, 50).build().unwrap()
+}
+
+fn servo_status() -> Order {
+    Command::ServoStatus.order().build().unwrap()
+}
+
+#[test]
+fn data_goes_first_then_the_command_then_the_reset() {
+    let mut world = World::new(move_to_19(), Script::default());
+    let outcome = world.run();
+    assert_eq!(world.commands(), [(0, false), (0, true), (1, true), (0, false)]);
+    assert_eq!(outcome.ended, Ended::Answered(Answer::Done(Values::default())));
+    assert!(outcome.ran && outcome.released && !outcome.stop_held);
+    assert_eq!(outcome.leftover, None);
+    assert_eq!(outcome.words.unwrap()[0], 0x0200);
+    assert!((ms(100)..ms(140)).contains(&outcome.elapsed), "{:?}", outcome.elapsed);
+}
+
+#[test]
+fn the_command_is_sent_once_however_long_it_runs() {
+    let mut world = World::new(move_to_19(), Script { runs: Some(300_000), ..Script::default() });
+    let outcome = world.run();
+    assert!(matches!(outcome.ended, Ended::Answered(Answer::Done(_))));
+    assert_eq!(world.commands(), [(0, false), (0, true), (1, true), (0, false)]);
+}
+
+#[test]
+fn the_run_status_may_be_missed() {
+    let mut answer = [0; 16];
+    answer[..8].copy_from_slice(&[0x0200, 0, 1, 1, 2, 1, 9, 9]);
+    let script = Script { runs: Some(0), shows_run: false, answer, ..Script::default() };
+    let outcome = World::new(servo_status(), script).run();
+    assert!(!outcome.ran);
+    let Ended::Answered(Answer::Done(values)) = outcome.ended else { panic!("{outcome:?}") };
+    assert_eq!(values.axes(), Some([1, 1, 2, 1]), "the answer of the scan that shows the end");
+}
+
+#[test]
+fn a_command_without_data_goes_as_soon_as_the_controller_is_ready() {
+    let mut world = World::new(servo_status(), Script { runs: Some(0), shows_run: false, ..Script::default() });
+    let ready = Image::default();
+    world.exchange.handle(ms(0), &ready);
+    world.output.sent(ms(0));
+    let outcome = world.run();
+    let (at, image) = world.sent[0];
+    assert_eq!((at, image.0[0]), (0, 0), "the first image was on its way");
+    let (at, image) = world.sent[1];
+    assert_eq!((at, image.0[0]), (20, 0x0503));
+    assert!(outcome.elapsed <= ms(10));
+    assert!(world.exchange.answer().is_some());
+}
+
+#[test]
+fn a_refusal_is_an_answer() {
+    let mut answer = [0; 16];
+    answer[..3].copy_from_slice(&[0x4000, 12, 76]);
+    let outcome = World::new(move_to_19(), Script { answer, ..Script::default() }).run();
+    let refused = Answer::Refused { alarm: Alarm::new(12, 76), positions: Values::default() };
+    assert_eq!(outcome.ended, Ended::Answered(refused));
+    assert!(outcome.released);
+}
+
+#[test]
+fn an_end_status_of_another_master_is_reset_first() {
+    for status in [Status::NormalEnd, Status::AbnormalEnd] {
+        let mut world = World::new(move_to_19(), Script::default());
+        world.shown.0[..3].copy_from_slice(&[status.word(), 7, 7]);
+        world.exchange.handle(ms(0), &world.shown.clone());
+        let outcome = world.run();
+        assert_eq!(outcome.leftover, Some(status));
+        assert!(matches!(outcome.ended, Ended::Answered(Answer::Done(_))));
+        assert_eq!(world.commands(), [(0, false), (0, true), (1, true), (0, false)]);
+    }
+}
+
+#[test]
+fn a_status_reset_waits_for_the_ready_status() {
+    let reset = || Command::StatusReset.order().build().unwrap();
+    let mut world = World::new(reset(), Script::default());
+    world.shown.0[0] = Status::AbnormalEnd.word();
+    world.exchange.handle(ms(0), &world.shown.clone());
+    let outcome = world.run();
+    assert_eq!(outcome.ended, Ended::Answered(Answer::Done(Values::default())));
+    assert_eq!(outcome.leftover, Some(Status::AbnormalEnd));
+    let mut world = World::new(reset(), Script { runs: None, ..Script::default() });
+    world.shown.0[0] = Status::Running.word();
+    world.started = Some(0);
+    assert_eq!(world.run().ended, Ended::NotSent(Hindrance::NotReady(Status::Running)));
+}
+
+#[test]
+fn a_running_command_of_another_master_is_left_alone() {
+    let mut world = World::new(move_to_19(), Script { runs: None, ..Script::default() });
+    world.shown.0[0] = Status::Running.word();
+    world.started = Some(0);
+    let outcome = world.run();
+    assert_eq!(outcome.ended, Ended::NotSent(Hindrance::NotReady(Status::Running)));
+    assert!(world.commands().iter().all(|(wi0, _)| *wi0 == 0));
+    assert_eq!(world.now, 3000);
+}
+
+#[test]
+fn an_answer_that_is_not_ours_is_not_taken() {
+    // The status comes up between our decision to send and the sending.
+    let mut exchange = Exchange::new(servo_status(), Policy::default());
+    let mut output = Output::new(resting());
+    output.sent(ms(0));
+    exchange.handle(ms(1), &Image::default());
+    exchange.poll(ms(1), &mut output);
+    assert_eq!(output.next.0[0], 0x0503);
+    let mut foreign = Image::default();
+    foreign.0[0] = 0x0200;
+    exchange.handle(ms(2), &foreign);
+    exchange.poll(ms(2), &mut output);
+    assert_eq!(output.next.0[0], 0, "back to the reset");
+    assert_eq!(exchange.answer(), None);
+}
+
+#[test]
+fn a_lost_link_is_told_by_what_was_sent() {
+    let before = |cut, order: Order| {
+        let mut world = World::new(order, Script { runs: None, ..Script::default() });
+        world.cut = Some(cut);
+        world.run().ended
+    };
+    assert_eq!(before(5, move_to_19()), Ended::NotSent(Hindrance::LinkLost));
+    assert_eq!(before(200, move_to_19()), Ended::OutcomeUnknown(Silence::LinkLost));
+    assert_eq!(before(200, servo_status()), Ended::NoAnswer(Silence::LinkLost));
+}
+
+#[test]
+fn a_link_lost_after_the_end_does_not_take_the_answer_away() {
+    let mut world = World::new(move_to_19(), Script { runs: Some(100), resets: false, ..Script::default() });
+    world.cut = Some(200);
+    let outcome = world.run();
+    assert!(matches!(outcome.ended, Ended::Answered(Answer::Done(_))));
+    assert!(!outcome.released);
+}
+
+#[test]
+fn silence_has_its_reason() {
+    let ended = |order: Order, script| World::new(order, script).run();
+    let deaf = Script { takes: false, ..Script::default() };
+    let outcome = ended(servo_status(), deaf.clone());
+    assert_eq!(outcome.ended, Ended::NoAnswer(Silence::NotTaken));
+    assert!(outcome.released);
+    assert_eq!(ended(move_to_19(), deaf).ended, Ended::OutcomeUnknown(Silence::NotTaken));
+
+    let endless = Script { runs: None, ..Script::default() };
+    assert_eq!(ended(servo_status(), endless).ended, Ended::NoAnswer(Silence::TooLong));
+
+    let mut answer = [0; 16];
+    answer[0] = 0x1234;
+    let odd = Script { answer, ..Script::default() };
+    assert_eq!(ended(move_to_19(), odd).ended, Ended::OutcomeUnknown(Silence::Undocumented(0x1234)));
+
+    // Ready without an end status, and deaf from then on.
+    let vanishing = Script { answer: [0; 16], once: true, ..Script::default() };
+    assert_eq!(ended(move_to_19(), vanishing).ended, Ended::OutcomeUnknown(Silence::Vanished));
+}
+
+#[test]
+fn an_interrupt_stops_a_motion_and_gives_the_stop_input_back() {
+    let order = Command::JogPulse
+        .order()
+        .with(Key::Axes, "1")
+        .with(Key::Direction, "-")
+        .with(Key::Report, "pulse")
+        .build()
+        .unwrap();
+    let mut world = World::new(order, Script { runs: None, ..Script::default() });
+    world.interrupt = Some(500);
+    let outcome = world.run();
+    let Ended::Answered(Answer::Refused { alarm, positions }) = outcome.ended else { panic!("{outcome:?}") };
+    assert_eq!((alarm, positions.axes()), (STOP_INPUT, Some([0; 4])));
+    assert!(outcome.released && !outcome.stop_held);
+    let edges: Vec<(u64, bool)> = world.stop_edges();
+    let [(_, true), (off, false), (on, true)] = edges[..] else { panic!("{edges:?}") };
+    assert!((500..=520).contains(&off));
+    assert!(on - off >= 100, "{edges:?}");
+    assert!(world.sent.iter().all(|(_, image)| input::EMERGENCY_STOP.is_on(image)));
+}
+
+#[test]
+fn a_motion_that_does_not_end_keeps_the_stop_input_off() {
+    let mut answer = [0; 16];
+    answer[0] = 0x4000;
+    let mut world = World::new(move_to_19(), Script { runs: None, answer, ..Script::default() });
+    world.interrupt = Some(500);
+    let outcome = world.run();
+    assert_eq!(outcome.ended, Ended::OutcomeUnknown(Silence::Interrupted));
+    assert!(outcome.stop_held);
+    assert!(!input::STOP.is_on(&world.output.next));
+}
+
+#[test]
+fn an_interrupt_before_the_command_is_sent_leaves_no_trace() {
+    let mut world = World::new(move_to_19(), Script::default());
+    world.shown.0[0] = Status::Running.word();
+    world.started = Some(0);
+    world.interrupt = Some(50);
+    assert_eq!(world.run().ended, Ended::NotSent(Hindrance::Interrupted));
+    assert_eq!(world.stop_edges().len(), 1);
+}
+
+#[test]
+fn continuous_output_goes_on_until_it_is_ended() {
+    let order = Command::PositionPulse.order().with(Key::Continuous, "on").build().unwrap();
+    let mut running = [0; 16];
+    running[4] = 5;
+    let mut world = World::new(order, Script { runs: None, running, ..Script::default() });
+    world.interrupt = Some(60_000);
+    let outcome = world.run();
+    assert_eq!(outcome.ended, Ended::Stopped);
+    assert!(outcome.released, "the status reset ends it");
+    assert_eq!(world.updates.len(), 1, "told once while nothing changes");
+    assert_eq!(world.updates[0].axes(), Some([5, 0, 0, 0]));
+    assert_eq!(world.stop_edges().len(), 1, "nothing moves, nothing is stopped");
+}
+
+#[test]
+fn bits_beside_the_command_stay_as_they_are() {
+    let mut world = World::new(move_to_19(), Script::default());
+    let general = Signal::parse(Side::Input, "57").unwrap();
+    general.set(&mut world.output.next, true);
+    let bits = world.output.next.0[16..].to_vec();
+    world.run();
+    assert!(world.sent.iter().all(|(_, image)| image.0[16..] == bits));
+}
+
+impl World {
+    fn stop_edges(&self) -> Vec<(u64, bool)> {
+        let mut edges: Vec<(u64, bool)> = Vec::new();
+        for (at, image) in &self.sent {
+            let on = input::STOP.is_on(image);
+            if edges.last().is_none_or(|(_, last)| *last != on) {
+                edges.push((*at, on));
+            }
+        }
+        edges
+    }
+}

@@ -1,0 +1,255 @@
+//! Properties of the YRCX family: what may be sent comes back as it was, no words make anything panic, and whatever a
+//! controller shows, a command goes out once and its words go away again.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+use std::time::Duration;
+
+use armctl::controller::yrcx::answer::Answer;
+use armctl::controller::yrcx::describe;
+use armctl::controller::yrcx::image::{Image, Output, Words};
+use armctl::controller::yrcx::order::Order;
+use armctl::controller::yrcx::sequence::{Procedure, Sequence};
+use armctl::controller::yrcx::session::{Ended, Exchange, ImageSession, Next, Policy};
+use armctl::controller::yrcx::signal::{Side, Signal, input, resting};
+use armctl::controller::yrcx::table::{Charset, Field, Form, ROWS, Row, Show};
+use armctl::controller::yrcx::value::{Key, Value, Values};
+use proptest::prelude::*;
+
+/// Words of a command that begin with a code, mostly.
+fn any_command() -> impl Strategy<Value = Words> {
+    let code = prop_oneof![
+        4 => (0..ROWS.len(), 0_u16..5).prop_map(|(row, robot)| {
+            let row = &ROWS[row];
+            row.code | if row.has_robot() { robot << 12 } else { 0 }
+        }),
+        1 => any::<u16>(),
+    ];
+    (code, any::<Words>()).prop_map(|(code, mut words)| {
+        words[0] = code;
+        words
+    })
+}
+
+/// A command that may be sent, of any row.
+fn any_order() -> impl Strategy<Value = Order> {
+    (0..ROWS.len(), any::<Words>(), any::<[u32; 8]>()).prop_filter_map("a rule of the row", |(row, words, dice)| {
+        Order::parse(&repaired(&ROWS[row], words, &dice)).ok()
+    })
+}
+
+/// Makes every field valid that counts, and clears the rest.
+fn repaired(row: &Row, random: Words, dice: &[u32; 8]) -> Words {
+    let mut words = random;
+    words[0] = row.code | (random[0] & 0xF000 & if row.has_robot() { 0xF000 } else { 0 });
+    for field in row.request() {
+        if counts(row, field, &words) && field.accept(&field.read(&words)).is_err() {
+            let die = dice[(field.word + field.name.len()) % 8];
+            field.write(&mut words, &valid(field, die)).unwrap();
+        }
+    }
+    let mut keep = [0; 16];
+    keep[0] = 0x0FFF;
+    for field in row.request().filter(|field| counts(row, field, &words)) {
+        keep[field.word..field.word + field.size()].iter_mut().for_each(|word| *word |= field.mask());
+    }
+    words.iter_mut().zip(keep).for_each(|(word, keep)| *word &= keep);
+    words
+}
+
+fn counts(row: &Row, field: &Field, words: &Words) -> bool {
+    field.when.is_none_or(|when| {
+        let other = row.request().find(|other| other.key == when.key).unwrap();
+        matches!(other.read(words), Value::Int(number) if (when.least..=when.most).contains(&number))
+    })
+}
+
+fn valid(field: &Field, die: u32) -> Value {
+    let pick = |count: usize| usize::try_from(die).unwrap() % count;
+    match field.form {
+        Form::Bits { show: Show::Choice(choices), .. } => Value::from(choices[pick(choices.len())].0),
+        Form::Bits { show: Show::Fixed(fixed), .. } => Value::from(fixed),
+        Form::Bits { width, show: Show::Set { least, .. }, .. } if least == 1 => {
+            Value::from(1_i32 << pick(usize::from(width)))
+        }
+        Form::Bits { show: Show::Set { .. }, .. } => Value::Int(0),
+        Form::Text(Charset::Program) => Value::from(["A", "PICK_2", "ABCDEFGHIJKLMNO9"][pick(3)]),
+        Form::Text(Charset::Comment) => Value::from(["", "WAIT ORG", "~ 0123456789abc!"][pick(3)]),
+        Form::Real => Value::Real(1.5),
+        _ => {
+            let (least, most) = field.spans[pick(field.spans.len())];
+            Value::Int(least + i32::try_from(die % (most.abs_diff(least) + 1)).unwrap())
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn any_words_are_read_without_a_panic(wi in any_command(), wo in any::<Words>(), status in 0_usize..5) {
+        let mut wo = wo;
+        wo[0] = [0x0000, 0x0100, 0x0200, 0x4000, wo[0]][status];
+        describe::command(&wi);
+        describe::command_summary(&wi);
+        describe::answer(&wo, Some(&wi));
+        describe::answer(&wo, None);
+        describe::answer_summary(&wo);
+        if let Ok(order) = Order::parse(&wi) {
+            prop_assert_eq!(order.words(), &wi);
+            Answer::parse(&order, &wo);
+        }
+    }
+
+    #[test]
+    fn orders_come_back_from_their_words_and_values(order in any_order()) {
+        let read = Order::parse(order.words()).unwrap();
+        prop_assert_eq!(&read, &order);
+        let mut draft = order.command().order();
+        for (key, value) in order.values().iter() {
+            draft = draft.with(key, value.clone());
+        }
+        prop_assert_eq!(draft.build().unwrap(), order);
+    }
+
+    #[test]
+    fn orders_come_back_from_what_people_read(order in any_order()) {
+        let fields = order.row().request().filter(|field| counts(order.row(), field, order.words()));
+        let mut draft = order.command().order();
+        for field in fields {
+            let text = field.show(order.values().value(field.key).unwrap());
+            draft = draft.with(field.key, text);
+        }
+        prop_assert_eq!(draft.build().unwrap(), order);
+    }
+
+    #[test]
+    fn answers_come_back_from_their_words(order in any_order(), mut wo in any::<Words>()) {
+        wo[0] = 0x0200;
+        let answer = Answer::parse(&order, &wo).unwrap();
+        let Answer::Done(values) = &answer else { panic!("done is done") };
+        prop_assert_eq!(values.iter().count(), keys(values));
+        // Numbers that are not in the manual are read, but not written.
+        if let Ok(words) = answer.words(&order) {
+            let again = Answer::parse(&order, &words).unwrap();
+            // A text may end in fill characters.
+            prop_assert_eq!(again.words(&order).unwrap(), words);
+        }
+    }
+
+    #[test]
+    fn a_command_goes_out_once_whatever_the_controller_shows(
+        order in any_order(),
+        events in prop::collection::vec((1_u64..400, 0_usize..9), 1..60),
+    ) {
+        let policy = Policy { motion: Some(Duration::from_secs(20)), ..Policy::default() };
+        let code = order.words()[0];
+        let mut exchange = Exchange::new(order, policy);
+        let mut output = Output::new(resting());
+        let mut now = Duration::ZERO;
+        let mut events = events.into_iter();
+        let mut shown = Vec::new();
+        let ended = loop {
+            match exchange.poll(now, &mut output) {
+                Next::Done(outcome) => break outcome,
+                Next::Wait(until) => {
+                    prop_assert!(until > now);
+                    match events.next() {
+                        Some((wait, event)) => {
+                            now += Duration::from_millis(wait);
+                            let mut image = Image::default();
+                            match event {
+                                0..4 => image.0[0] = [0x0000, 0x0100, 0x0200, 0x4000][event],
+                                4 => image.0[0] = 0x0777,
+                                5 => exchange.interrupt(now),
+                                6 if wait > 390 => exchange.lost(now),
+                                _ => {
+                                    shown.push(output.next.0[0]);
+                                    output.sent(now);
+                                }
+                            }
+                            if event <= 4 {
+                                exchange.handle(now, &image);
+                            }
+                        }
+                        None => {
+                            shown.push(output.next.0[0]);
+                            output.sent(now);
+                            now = until;
+                        }
+                    }
+                }
+            }
+            prop_assert!(input::EMERGENCY_STOP.is_on(&output.next));
+            prop_assert!(now < Duration::from_secs(120));
+        };
+        shown.push(output.next.0[0]);
+        shown.dedup();
+        prop_assert!(output.next.command() == [0; 16]);
+        prop_assert_eq!(input::STOP.is_on(&output.next), !ended.stop_held);
+        let times = shown.iter().filter(|wi0| **wi0 == code && code != 0).count();
+        prop_assert!(times <= 1, "{:04X?}", shown);
+        if times == 1 {
+            prop_assert!(!matches!(ended.ended, Ended::NotSent(_)), "{:?}", ended.ended);
+        }
+    }
+
+    #[test]
+    fn procedures_end_and_leave_no_input_raised(
+        chart in 0_usize..7,
+        events in prop::collection::vec((1_u64..400, any::<u16>(), 0_usize..4), 0..40),
+    ) {
+        let procedure = Procedure::charts()[chart].clone();
+        let stops = matches!(procedure.name, "stop" | "emergency-stop");
+        let mut sequence = Sequence::new(procedure, Duration::from_secs(5));
+        let mut output = Output::new(resting());
+        let mut now = Duration::ZERO;
+        let mut events = events.into_iter();
+        let mut edges: Vec<(Duration, u16)> = Vec::new();
+        loop {
+            match sequence.poll(now, &mut output) {
+                Next::Done(_) => break,
+                Next::Wait(until) => {
+                    prop_assert!(until > now);
+                    let (wait, word, event) = events.next().unwrap_or((20, 0, 0));
+                    now += Duration::from_millis(wait);
+                    if event == 1 {
+                        let mut image = Image::default();
+                        image.0[16] = word;
+                        sequence.handle(now, &image);
+                    } else {
+                        let dedicated = output.next.0[16];
+                        if edges.last().is_none_or(|(_, last)| *last != dedicated) {
+                            edges.push((now, dedicated));
+                        }
+                        output.sent(now);
+                    }
+                }
+            }
+            prop_assert!(now < Duration::from_secs(120));
+        }
+        prop_assert!(edges.windows(2).all(|pair| pair[1].0 - pair[0].0 >= Duration::from_millis(100)), "{:?}", edges);
+        if !stops {
+            prop_assert_eq!(output.next, resting());
+        }
+        for signal in Signal::all(Side::Input).filter(|signal| ![input::STOP, input::EMERGENCY_STOP].contains(signal)) {
+            prop_assert!(!signal.is_on(&output.next));
+        }
+    }
+}
+
+fn keys(values: &Values) -> usize {
+    let mut keys: Vec<Key> = values.iter().map(|(key, _)| key).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    keys.len()
+}
+
+#[test]
+fn every_command_can_be_made() {
+    for row in ROWS {
+        let made = (0_u16..50).any(|seed| {
+            let dice = std::array::from_fn(|n| u32::from(seed) * 7 + u32::try_from(n).unwrap());
+            Order::parse(&repaired(row, [seed; 16], &dice)).is_ok_and(|order| order.command() == row.command)
+        });
+        assert!(made, "{}", row.id);
+    }
+}
