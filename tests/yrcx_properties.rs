@@ -9,9 +9,11 @@ use armctl::controller::yrcx::answer::Answer;
 use armctl::controller::yrcx::describe;
 use armctl::controller::yrcx::image::{Image, Output, Words};
 use armctl::controller::yrcx::order::Order;
-use armctl::controller::yrcx::sequence::{Procedure, Sequence};
+use armctl::controller::yrcx::procedure::Procedure;
+use armctl::controller::yrcx::sequence::Sequence;
 use armctl::controller::yrcx::session::{Ended, Exchange, ImageSession, Next, Policy};
 use armctl::controller::yrcx::signal::{Side, Signal, input, resting};
+use armctl::controller::yrcx::table::parameter::Parameter;
 use armctl::controller::yrcx::table::{Charset, Field, Form, ROWS, Row, Show};
 use armctl::controller::yrcx::value::{Key, Value, Values};
 use proptest::prelude::*;
@@ -38,14 +40,25 @@ fn any_order() -> impl Strategy<Value = Order> {
     })
 }
 
-/// Makes every field valid that counts, and clears the rest.
+/// Makes every field valid that counts, and clears the rest. Parameters get the axis and the value that they need.
 fn repaired(row: &Row, random: Words, dice: &[u32; 8]) -> Words {
     let mut words = random;
     words[0] = row.code | (random[0] & 0xF000 & if row.has_robot() { 0xF000 } else { 0 });
     for field in row.request() {
         if counts(row, field, &words) && field.accept(&field.read(&words)).is_err() {
-            let die = dice[(field.word + field.name.len()) % 8];
-            field.write(&mut words, &valid(field, die)).unwrap();
+            let value = valid(field, dice[(field.word + field.name.len()) % 8]);
+            field.write(&mut words, &value).unwrap();
+        }
+    }
+    let parameter = row.request().find(|field| field.key == Key::Parameter).map(|field| field.read(&words));
+    if let Some(Value::Int(number)) = parameter {
+        let parameter = Parameter::of(number).unwrap();
+        for field in row.request() {
+            match field.key {
+                Key::Axes => field.write(&mut words, &Value::Int(parameter.per_axis.into())).unwrap(),
+                Key::Value => field.write(&mut words, &Value::Int(parameter.span.1)).unwrap(),
+                _ => {}
+            }
         }
     }
     let mut keep = [0; 16];
@@ -69,9 +82,7 @@ fn valid(field: &Field, die: u32) -> Value {
     match field.form {
         Form::Bits { show: Show::Choice(choices), .. } => Value::from(choices[pick(choices.len())].0),
         Form::Bits { show: Show::Fixed(fixed), .. } => Value::from(fixed),
-        Form::Bits { width, show: Show::Set { least, .. }, .. } if least == 1 => {
-            Value::from(1_i32 << pick(usize::from(width)))
-        }
+        Form::Bits { width, show: Show::Set { least: 1, .. }, .. } => Value::from(1_i32 << pick(usize::from(width))),
         Form::Bits { show: Show::Set { .. }, .. } => Value::Int(0),
         Form::Text(Charset::Program) => Value::from(["A", "PICK_2", "ABCDEFGHIJKLMNO9"][pick(3)]),
         Form::Text(Charset::Comment) => Value::from(["", "WAIT ORG", "~ 0123456789abc!"][pick(3)]),
@@ -152,28 +163,19 @@ proptest! {
                 Next::Done(outcome) => break outcome,
                 Next::Wait(until) => {
                     prop_assert!(until > now);
-                    match events.next() {
-                        Some((wait, event)) => {
-                            now += Duration::from_millis(wait);
+                    let event = events.next();
+                    now = event.map_or(until, |(wait, _)| now + Duration::from_millis(wait));
+                    match event {
+                        Some((_, status @ 0..5)) => {
                             let mut image = Image::default();
-                            match event {
-                                0..4 => image.0[0] = [0x0000, 0x0100, 0x0200, 0x4000][event],
-                                4 => image.0[0] = 0x0777,
-                                5 => exchange.interrupt(now),
-                                6 if wait > 390 => exchange.lost(now),
-                                _ => {
-                                    shown.push(output.next.0[0]);
-                                    output.sent(now);
-                                }
-                            }
-                            if event <= 4 {
-                                exchange.handle(now, &image);
-                            }
+                            image.0[0] = [0x0000, 0x0100, 0x0200, 0x4000, 0x0777][status];
+                            exchange.handle(now, &image);
                         }
-                        None => {
+                        Some((_, 5)) => exchange.interrupt(now),
+                        Some((391.., 6)) => exchange.lost(now),
+                        _ => {
                             shown.push(output.next.0[0]);
                             output.sent(now);
-                            now = until;
                         }
                     }
                 }
@@ -226,7 +228,7 @@ proptest! {
             }
             prop_assert!(now < Duration::from_secs(120));
         }
-        prop_assert!(edges.windows(2).all(|pair| pair[1].0 - pair[0].0 >= Duration::from_millis(100)), "{:?}", edges);
+        prop_assert!(edges.windows(2).all(|pair| pair[1].0 >= pair[0].0 + Duration::from_millis(100)), "{:?}", edges);
         if !stops {
             prop_assert_eq!(output.next, resting());
         }

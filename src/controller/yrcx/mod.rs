@@ -12,6 +12,7 @@ pub mod codec;
 pub mod describe;
 pub mod image;
 pub mod order;
+pub mod procedure;
 pub mod sequence;
 pub mod session;
 pub mod signal;
