@@ -12,8 +12,9 @@ use std::collections::BTreeMap;
 use armctl::controller::Risk;
 use armctl::controller::yrcx::alarm::Alarm;
 use armctl::controller::yrcx::answer::{self, Answer};
+use armctl::controller::yrcx::describe;
 use armctl::controller::yrcx::image::Words;
-use armctl::controller::yrcx::order::Order;
+use armctl::controller::yrcx::order::{Draft, Order};
 use armctl::controller::yrcx::table::{Command, Field, Form, ROWS, Row, Show};
 use armctl::controller::yrcx::value::{Key, Value, Values};
 use serde_json::Value as Json;
@@ -129,6 +130,106 @@ fn misprinted_commands_are_read_for_what_they_are() {
     assert_eq!(printed("4.2.1-direct-pulse"), None);
     let refusal = printed("4.6.3-reset").unwrap().unwrap_err();
     assert_eq!(refusal.to_string(), "WI1: bits 0x0100 are set, which must be 0 here");
+}
+
+#[test]
+fn every_example_is_explained_by_its_section() {
+    for example in examples() {
+        let (request, id) = (example.command_words(), example.id());
+        let explained = describe::command(&request);
+        assert_eq!(explained.problems, Vec::<String>::new(), "{id}");
+        assert_eq!(explained.section, Some(example.row().section), "{id}");
+        let Some(words) = example.answer_words() else { continue };
+        let explained = describe::answer(&words, Some(&request));
+        assert_eq!(explained.problems, Vec::<String>::new(), "{id}");
+        let keys: Vec<Key> = explained.fields.iter().filter_map(|note| note.key).collect();
+        assert!(example.strings("answer").keys().all(|key| keys.contains(key)), "{id} {keys:?}");
+        assert!(explained.fields.iter().all(|note| note.name != "not used"), "{id}");
+    }
+}
+
+#[test]
+fn what_the_controller_would_refuse_is_refused_before() {
+    let refusal = |draft: Draft| draft.build().unwrap_err();
+    let to_point = || Command::MovePtp.order().with(Key::Point, 19);
+    let both = refusal(to_point().with(Key::Report, 3));
+    assert_eq!(both.alarm.unwrap().to_string(), "4.202", "4.2.1: both position outputs");
+    let drive = || Command::DriveMm.order().with(Key::Target, "5.000");
+    let arch = || Command::MoveArch.order().with(Key::Point, 1).with(Key::ArchUnit, "mm").with(Key::ArchPosition, "1");
+    let cases: [(Draft, &str); 21] = [
+        (Command::MovePtp.order(), "WI4 point: missing; allowed: 0 to 29999"),
+        (to_point().with(Key::Point, 30_000), "WI4 point: 30000 is out of range; allowed: 0 to 29999"),
+        (to_point().with(Key::Axes, 0), "WI2 axes: 0 named; name 1 to 4"),
+        (to_point().with(Key::Axes, "5"), "WI2 axes: 5: there are 1 to 4"),
+        (
+            to_point().with(Key::Robot, 5),
+            "WI0 robot: 5 is not defined; there are 0 = none (robot 1), 1 = 1, 2 = 2, 3 = 3, 4 = 4",
+        ),
+        (to_point().with(Key::SpeedPercent, 0), "WI3 speed_percent: 0 is out of range; allowed: 1 to 100 %"),
+        (
+            to_point().with(Key::SpeedOfMax, "100.01"),
+            "WI3 speed_of_max_percent: 100.01 is out of range; allowed: 0.01 to 100.00 %",
+        ),
+        (
+            to_point().with(Key::SpeedPercent, 1).with(Key::SpeedOfMax, 1),
+            "WI3 speed_percent: does not go with speed_mode = 1, which is given or follows from another field",
+        ),
+        (to_point().with(Key::SpeedMmS, 100), "speed_mm_s: this command has no such field"),
+        (drive(), "WI2 axes: missing; name exactly 1"),
+        (drive().with(Key::Axes, "1,3"), "WI2 axes: 2 named; name exactly 1"),
+        (Command::PushPulse.order().with(Key::Target, 1).with(Key::Axes, "1,2"), "WI2 axes: 2 named; name exactly 1"),
+        (Command::ServoOn.order().with(Key::Axes, "1,2"), "WI2 axes: 2 named; name 0 to 1"),
+        (Command::AbsoluteReset.order(), "WI2 axes: missing; name exactly 1"),
+        (arch().with(Key::ArchAxis, "2,3"), "WI2 arch_axis: 2 named; name exactly 1"),
+        (
+            Command::MoveMm.order().with(Key::Axis1, "10").with(Key::Axis2, "20"),
+            "WI8 axis_3: missing; allowed: -2147483.648 to 2147483.647 mm",
+        ),
+        (
+            Command::PalletSet
+                .order()
+                .with(Key::Pallet, 1)
+                .with(Key::FirstPoint, 0)
+                .with(Key::CountX, 200)
+                .with(Key::CountY, 200)
+                .with(Key::CountZ, 1),
+            "WI3 nx: X times Y times Z is 40000; 1 to 32767 fit a pallet",
+        ),
+        (
+            Command::ParamSet.order().with(Key::Parameter, "TOLE").with(Key::Value, 1000),
+            "WI3 axes: TOLE belongs to an axis; name one",
+        ),
+        (
+            Command::PortSet.order().with(Key::PortType, "DO").with(Key::Port, 8).with(Key::Value, 1),
+            "WI2 port: 8 is out of range; allowed: 2 to 7, 10 to 17, 20 to 27",
+        ),
+        (
+            Command::ProgramRun.order().with(Key::ProgramName, "pick"),
+            "WI6 program_name: 'pick' does not fit; allowed: 1 to 16 of A-Z, 0-9 and _",
+        ),
+        (
+            Command::ProgramRun.order(),
+            "WI1 selection: missing; there are 0 = all, 1 = program number, 2 = task number, 4 = program name",
+        ),
+    ];
+    for (draft, text) in cases {
+        assert_eq!(refusal(draft).to_string(), text);
+    }
+}
+
+#[test]
+fn axes_that_do_not_move_need_no_target() {
+    let order = Command::MoveMm.order().with(Key::Axes, "1,3").with(Key::Axis1, "10").with(Key::Axis3, "-5").build();
+    assert_eq!(order.unwrap().words()[..12], [6, 1, 0b101, 0, 0x2710, 0, 0, 0, 0xEC78, 0xFFFF, 0, 0]);
+}
+
+#[test]
+fn real_variables_travel_as_single_precision() {
+    let order = Command::VarSet.order().with(Key::Variable, "SGR5").with(Key::Value, "-1.5").build().unwrap();
+    assert_eq!(order.words()[..6], [0x0200, 0, 0x0105, 0, 0x0000, 0xBFC0]);
+    assert_eq!(order.values().value(Key::Value), Some(&Value::Real(-1.5)));
+    assert!(Command::VarSet.order().with(Key::Variable, "SGI5").with(Key::Value, "-1.5").build().is_err());
+    assert!(Command::VarSet.order().with(Key::Variable, "SGR5").with(Key::Value, f32::NAN).build().is_err());
 }
 
 #[test]

@@ -66,6 +66,9 @@ pub struct Row {
     pub rules: &'static [Rule],
 }
 
+/// The fields of a layout, in the order of its parts.
+pub type Fields = std::iter::Flatten<std::iter::Copied<std::slice::Iter<'static, &'static [Field]>>>;
+
 impl Row {
     /// The row of the code in WI0, whatever the robot.
     pub fn of(wi0: u16) -> Option<&'static Self> {
@@ -84,12 +87,12 @@ impl Row {
     }
 
     /// The fields of the command.
-    pub fn request(&self) -> impl Iterator<Item = &'static Field> + Clone + use<> {
+    pub fn request(&self) -> Fields {
         self.request.iter().copied().flatten()
     }
 
     /// The fields of the answer.
-    pub fn answer(&self) -> impl Iterator<Item = &'static Field> + Clone + use<> {
+    pub fn answer(&self) -> Fields {
         self.answer.iter().copied().flatten()
     }
 

@@ -314,9 +314,9 @@ impl Field {
                     {
                         Err(format!("{number} is not defined; {}", self.allowed()))
                     }
-                    Form::Bits { show: Show::Set { least, most }, .. } => match number.count_ones() {
-                        count if count < least => Err(format!("{count} named; {}", self.allowed())),
-                        count if count > most => Err(format!("{count} named; {}", self.allowed())),
+                    Form::Bits { width, show: Show::Set { least, most }, .. } => match number.count_ones() {
+                        _ if number >> width != 0 => Err(format!("{}: there are 1 to {width}", self.show(value))),
+                        count if count < least || count > most => Err(format!("{count} named; {}", self.allowed())),
                         _ => Ok(()),
                     },
                     Form::Bits { show: Show::Fixed(fixed), .. } if i32::from(fixed) != *number => {
@@ -376,22 +376,20 @@ impl Field {
     /// for a variable. Whether it may be sent is checked later, with the rest of the command.
     pub fn parse(&self, text: &str) -> Result<Value, String> {
         let number = |unit: Unit| unit.parse(text).map(Value::Int).map_err(|error| error.to_string());
+        let whole = |text: &str| PLAIN.parse(text).map(Value::Int).map_err(|error| error.to_string());
         match self.form {
             Form::Bits { show, .. } => match show {
                 Show::Choice(choices) => match choices.iter().find(|(_, name)| name.eq_ignore_ascii_case(text)) {
                     Some((code, _)) => Ok(Value::Int(i32::from(*code))),
-                    None => number(PLAIN).map_err(|_| format!("'{text}' is unknown; {}", self.allowed())),
+                    None => whole(text).map_err(|_| format!("'{text}' is unknown; {}", self.allowed())),
                 },
                 Show::Set { .. } => set_of(text),
                 Show::Version | Show::FpgaVersion => version(text),
-                Show::Revision => {
-                    PLAIN.parse(text.strip_prefix('R').unwrap_or(text)).map(Value::Int).map_err(|e| e.to_string())
-                }
-                Show::Line => match text.strip_suffix(" of COMMON") {
-                    Some(line) => {
-                        PLAIN.parse(line).map(|line| Value::Int(line + COMMON_LINES)).map_err(|e| e.to_string())
-                    }
-                    None => number(PLAIN),
+                Show::Revision => whole(text.strip_prefix('R').unwrap_or(text)),
+                Show::Line => match text.strip_suffix(" of COMMON").map(whole) {
+                    Some(Ok(Value::Int(line))) => Ok(Value::Int(line.saturating_add(COMMON_LINES))),
+                    Some(other) => other,
+                    None => whole(text),
                 },
                 Show::Number(unit) => number(unit),
                 Show::Variable => VARIABLES
@@ -400,8 +398,8 @@ impl Field {
                         let index = text.strip_prefix(prefix)?.parse::<u8>().ok().filter(|index| *index < 32)?;
                         Some(Value::Int(first + i32::from(index)))
                     })
-                    .map_or_else(|| number(PLAIN), Ok),
-                Show::Fixed(_) | Show::Digits => number(PLAIN),
+                    .map_or_else(|| whole(text), Ok),
+                Show::Fixed(_) | Show::Digits => whole(text),
             },
             Form::Short(unit) | Form::Long(unit) => number(unit),
             Form::Real => text.parse().map(Value::Real).map_err(|_| format!("'{text}' is no number")),
