@@ -85,8 +85,18 @@ const BORDERS: [(&str, &[&str]); 6] = [
 ];
 
 /// Commands that touch a transport: the link of a family with its trace, and the simulators' server.
-const LINKS: [&str; 4] =
-    ["command/yerc/link.rs", "command/yerc/simulated.rs", "command/yerc/trace.rs", "command/common/sim.rs"];
+const LINKS: [&str; 10] = [
+    "command/trace.rs",
+    "command/yerc/link.rs",
+    "command/yerc/simulated.rs",
+    "command/yerc/trace.rs",
+    "command/toyo/link.rs",
+    "command/toyo/ports.rs",
+    "command/toyo/reach.rs",
+    "command/toyo/simulated.rs",
+    "command/toyo/trace.rs",
+    "command/common/sim.rs",
+];
 
 /// Words that write to the terminal or end the process, and the only folder that may have them.
 const PRINTING: [&str; 8] = ["stdout()", "stderr()", "println!", "eprintln!", "print!", "eprint!", "Stdout", "Stderr"];
@@ -205,9 +215,10 @@ fn every_robot_command_has_a_schema_and_help() {
     let known: BTreeSet<&str> = ids.iter().copied().collect();
     assert_eq!(known.len(), ids.len(), "an id is there twice: {ids:?}");
     let root = armctl::cli::Cli::command();
-    let yerc = root.find_subcommand("yerc").expect("there is yerc");
     let mut words = BTreeSet::new();
-    leaves(yerc, "yerc", &mut words);
+    for (family, _) in CONTRACT {
+        leaves(root.find_subcommand(family).expect("the family is there"), family, &mut words);
+    }
     let without: Vec<&String> = words.iter().filter(|word| !known.contains(word.as_str())).collect();
     assert!(without.is_empty(), "commands without a schema of their name: {without:?}");
 }
@@ -222,7 +233,9 @@ fn schemas_describe_reports() {
     }
 }
 
-/// Every command of the family that the contract names. An entry leaves this list only with a new major version.
+/// Every command that the contract names, by family. An entry leaves this list only with a new major version.
+const CONTRACT: [(&str, &[&str]); 2] = [("yerc", &YERC), ("toyo", &TOYO)];
+
 const YERC: [&str; 41] = [
     "status",
     "alarm list",
@@ -267,18 +280,96 @@ const YERC: [&str; 41] = [
     "raw",
 ];
 
+const TOYO: [&str; 73] = [
+    "status",
+    "home",
+    "position",
+    "host",
+    "mode",
+    "servo",
+    "stop",
+    "reset",
+    "error show",
+    "error history",
+    "error cancel",
+    "error point",
+    "run sequential",
+    "run palletizing",
+    "run easy",
+    "run point",
+    "jog",
+    "param get",
+    "param set",
+    "param list",
+    "param dump",
+    "param restore",
+    "point get",
+    "point set",
+    "point list",
+    "speed-table get",
+    "speed-table set",
+    "accel-table get",
+    "accel-table set",
+    "mvm get",
+    "mvm set",
+    "torque-table get",
+    "torque-table set",
+    "program list",
+    "program get",
+    "program put",
+    "program insert",
+    "program delete",
+    "program copy",
+    "program search",
+    "program check",
+    "palletizing get",
+    "palletizing set",
+    "palletizing copy",
+    "palletizing progress",
+    "easy get",
+    "easy set",
+    "easy copy",
+    "easy progress",
+    "io in",
+    "io out",
+    "io internal",
+    "io set",
+    "io direct",
+    "counter get",
+    "counter set",
+    "timer get",
+    "override get",
+    "override set",
+    "task get",
+    "task set",
+    "offset",
+    "coordinate set",
+    "bus",
+    "card read",
+    "card write",
+    "init",
+    "info",
+    "raw",
+    "ports",
+    "backup",
+    "restore",
+    "sim run",
+];
+
 #[test]
-fn the_contract_of_yerc_is_kept() {
+fn the_contract_is_kept() {
     let root = armctl::cli::Cli::command();
-    let missing = YERC.iter().filter(|words| {
-        let mut command = root.find_subcommand("yerc");
-        for word in words.split(' ') {
-            command = command.and_then(|command| command.find_subcommand(word));
-        }
-        command.is_none()
-    });
-    let missing: Vec<_> = missing.collect();
-    assert!(missing.is_empty(), "no such commands of yerc: {missing:?}");
+    let missing = CONTRACT.iter().flat_map(|(family, all)| all.iter().map(move |words| (*family, *words)));
+    let missing: Vec<(&str, &str)> = missing
+        .filter(|(family, words)| {
+            let mut command = root.find_subcommand(family);
+            for word in words.split(' ') {
+                command = command.and_then(|command| command.find_subcommand(word));
+            }
+            command.is_none()
+        })
+        .collect();
+    assert!(missing.is_empty(), "no such commands: {missing:?}");
 }
 
 /// The ids of all commands below one: its words, joined by dots.
