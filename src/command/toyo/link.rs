@@ -179,6 +179,16 @@ impl Link {
         }
     }
 
+    /// In a dry run, notes all the questions and ends it.
+    pub async fn rehearse(&mut self, requests: &[Request]) {
+        if self.is_dry() {
+            for request in requests {
+                self.note(request, None);
+            }
+            std::future::pending::<Infallible>().await;
+        }
+    }
+
     /// Reads the content of a parameter, a step or a palletizing record; a refusal is a failure.
     pub async fn read_content(&mut self, request: &Request) -> Result<Record, Failure> {
         let record = self.read(request).await?;

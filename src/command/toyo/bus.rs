@@ -1,0 +1,79 @@
+//! `toyo bus`: the CC-Link board.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::link::wrong;
+use super::numbers::small;
+use crate::command::{Command, Context, Report};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+use crate::output::view::{Cell, View};
+
+/// Asks for settings and errors of CC-Link.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Controllers without CC-Link refuse it. What the error and status bytes mean, the manual of the \
+                        bus tells, not that of the host communication."
+)]
+pub struct Bus {}
+
+impl Command for Bus {
+    type Family = Family;
+    type Report = CcLink;
+    const ID: &'static str = "toyo.bus";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<CcLink, Failure> {
+        let page = |form| Request::in_form(table::Command::Mbus, form, Vec::new()).map_err(|error| wrong(&error));
+        let (settings, errors) = (page(0)?, page(1)?);
+        context.link.rehearse(&[settings.clone(), errors.clone()]).await;
+        let settings = context.link.read(&settings).await?;
+        let errors = context.link.read(&errors).await?;
+        let hex = |name| format!("{:02X}", errors.byte(name).unwrap_or(0));
+        Ok(CcLink {
+            station: small(&settings, "station"),
+            rate: settings.word("rate").unwrap_or_default(),
+            hardware_version: small(&settings, "version"),
+            errors: ["error1", "error2", "error3"].map(hex),
+            main_status: ["status1", "status2"].map(hex),
+        })
+    }
+}
+
+/// CC-Link.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct CcLink {
+    station: u8,
+    /// Bits a second: `156K`, `625K`, `2.5M`, `5M` or `10M`.
+    rate: &'static str,
+    hardware_version: u8,
+    /// The three error bytes, hexadecimal.
+    errors: [String; 3],
+    /// The two bytes of the main status, hexadecimal.
+    main_status: [String; 2],
+}
+
+impl Report for CcLink {
+    fn view(&self) -> View {
+        View::fields([
+            ("station", self.station.into()),
+            ("rate (bit/s)", Cell::number(self.rate)),
+            ("hardware version", self.hardware_version.into()),
+            ("errors", self.errors.join(" ").into()),
+            ("main status", self.main_status.join(" ").into()),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::all_blocks;
+
+    #[test]
+    fn both_pages_are_asked_for() {
+        assert_eq!(all_blocks(&["bus"]).unwrap(), ["@MBUS C1", "@MBUS C2"]);
+    }
+}

@@ -1,0 +1,134 @@
+//! `toyo counter`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::numbers::{Numbers, ask_all, number, small};
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::Risk;
+use crate::controller::toyo::field::{Field, Value};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+use crate::output::view::{Table, View};
+
+commands! {
+    /// What can be done with counters.
+    pub enum Counter of Family {
+        /// Read counters 1 to 99
+        Get(Get),
+        /// Set a counter
+        Set(Set),
+    }
+}
+
+/// Reads counters; without a number, all 99.
+#[derive(Debug, Args)]
+pub struct Get {
+    /// Such as 5 or 1-10
+    #[arg(value_name = "N", value_parser = |text: &str| Numbers::parse(&fields()[0], text))]
+    counters: Vec<Numbers>,
+}
+
+/// Sets a counter, also while a program runs.
+#[derive(Debug, Args)]
+pub struct Set {
+    /// 1 to 99
+    #[arg(value_name = "N", value_parser = |text: &str| number(&fields()[0], text))]
+    counter: i32,
+    /// 0 to 9999
+    #[arg(value_name = "VALUE", value_parser = |text: &str| number(&fields()[1], text))]
+    value: i32,
+}
+
+/// Number and count, as in MCST CN01=0000.
+fn fields() -> &'static [Field] {
+    table::Command::Mcst.row().requests[0].fields
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Counters;
+    const ID: &'static str = "toyo.counter.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Counters, Failure> {
+        let numbers = Numbers::of(&self.counters, &fields()[0]);
+        let requests = numbers.iter().map(|number| Request::of(table::Command::Mcnt, [Value::Number(*number)]));
+        let requests: Vec<Request> = requests.collect();
+        let answers = ask_all(context.link, context.screen, "reading counters", &requests).await?;
+        let counters = answers
+            .iter()
+            .map(|answer| Count { counter: small(answer, "counter"), count: answer.number("count").unwrap_or(0) });
+        Ok(Counters { counters: counters.collect() })
+    }
+}
+
+impl Command for Set {
+    type Family = Family;
+    type Report = Count;
+    const ID: &'static str = "toyo.counter.set";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Count, Failure> {
+        let Self { counter, value } = *self;
+        let values = [Value::Number(counter), Value::Number(value)];
+        context.link.order(&Request::of(table::Command::Mcst, values)).await?;
+        Ok(Count { counter: u8::try_from(counter).unwrap_or(u8::MAX), count: value })
+    }
+}
+
+/// Counters in the order they were asked for.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Counters {
+    counters: Vec<Count>,
+}
+
+/// A counter and what it stands at.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Count {
+    counter: u8,
+    count: i32,
+}
+
+impl Report for Counters {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["counter", "count"], "no counters");
+        for Count { counter, count } in &self.counters {
+            table.row([(*counter).into(), (*count).into()]);
+        }
+        View::table(table)
+    }
+}
+
+impl Report for Count {
+    fn view(&self) -> View {
+        View::text(format!("counter {} set to {}", self.counter, self.count))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{all_blocks, blocks, objection};
+
+    #[test]
+    fn counters_have_their_blocks() {
+        assert_eq!(
+            all_blocks(&["counter", "get", "1", "98-99"]).unwrap(),
+            ["@MCNT CN=01", "@MCNT CN=98", "@MCNT CN=99"]
+        );
+        assert_eq!(all_blocks(&["counter", "get"]).unwrap().len(), 99);
+        assert_eq!(blocks(&["counter", "set", "1", "1"]).unwrap(), ["@MCST CN01=0001"]);
+    }
+
+    #[test]
+    fn ranges_are_checked() {
+        assert!(objection(&["counter", "get", "0"]).contains("1 to 99"));
+        assert!(objection(&["counter", "set", "1", "10000"]).contains("0 to 9999"));
+        assert!(objection(&["counter", "set", "1"]).contains("VALUE"));
+    }
+}

@@ -1,0 +1,164 @@
+//! `toyo info`: what kind of controller it is.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::numbers::small;
+use crate::command::{Command, Context, Report};
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+use crate::output::view::{Cell, Section, View};
+
+/// Asks for robot type, versions, axes, task and override.
+#[derive(Debug, Args)]
+#[command(after_help = "A station that is not there refuses to tell its version; what was refused is named.")]
+pub struct Info {}
+
+/// Stations of the controller: 0 is itself.
+const STATIONS: [u8; 5] = [0, 1, 2, 3, 4];
+
+impl Command for Info {
+    type Family = Family;
+    type Report = About;
+    const ID: &'static str = "toyo.info";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<About, Failure> {
+        let link = context.link;
+        let system = Request::bare(table::Command::Sysp);
+        let version = |station: u8| Request::of(table::Command::Cver, [Value::Number(station.into())]);
+        let (task, speed) = (Request::bare(table::Command::Mtsk), Request::bare(table::Command::Rovr));
+        let versions = STATIONS.map(version);
+        let all: Vec<Request> = [&system].into_iter().chain(&versions).chain([&task, &speed]).cloned().collect();
+        link.rehearse(&all).await;
+        // Every controller has this one; of the rest, each may be refused.
+        let mut about = About::of(&link.read(&system).await?);
+        for request in &all[1..] {
+            match link.try_read(request).await? {
+                Ok(answer) => about.learn(request, &answer),
+                Err(_) => about.refused.push(request.text()),
+            }
+        }
+        Ok(about)
+    }
+}
+
+/// What a controller says of itself.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct About {
+    /// Six digits.
+    robot_type: String,
+    /// Of the controller: `3.36`.
+    version: String,
+    /// Of the teach pendant: `Japanese` or `English`.
+    language: String,
+    /// Letters of axes 1 to 4.
+    axes: Vec<&'static str>,
+    /// The end of the answer, which the manual does not explain.
+    tail: String,
+    /// Versions of the stations that told theirs.
+    stations: Vec<Station>,
+    /// The current task; null if the controller refused to tell.
+    task: Option<u8>,
+    /// Null if the controller refused to tell.
+    override_percent: Option<u8>,
+    /// Requests that the controller refused (`@NG`).
+    refused: Vec<String>,
+}
+
+/// A station of the controller.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Station {
+    /// 0 is the controller itself.
+    station: u8,
+    version: String,
+}
+
+impl About {
+    fn of(system: &Record) -> Self {
+        Self {
+            robot_type: shown(system, "robot_type"),
+            version: meaning(system, "version"),
+            language: meaning(system, "language"),
+            axes: ["arm1", "arm2", "arm3", "arm4"].iter().filter_map(|arm| system.word(arm)).collect(),
+            tail: system.text("tail").unwrap_or_default().to_owned(),
+            stations: Vec::new(),
+            task: None,
+            override_percent: None,
+            refused: Vec::new(),
+        }
+    }
+
+    fn learn(&mut self, request: &Request, answer: &Record) {
+        match request.command() {
+            table::Command::Cver => {
+                self.stations.push(Station { station: small(answer, "station"), version: meaning(answer, "version") });
+            }
+            table::Command::Mtsk => self.task = Some(small(answer, "task")),
+            _ => self.override_percent = Some(small(answer, "override")),
+        }
+    }
+}
+
+/// A value as it stands on the line.
+fn shown(record: &Record, name: &str) -> String {
+    record.pairs().find(|(field, _)| field.name == name).map(|(field, value)| field.written(value)).unwrap_or_default()
+}
+
+/// A value in words.
+fn meaning(record: &Record, name: &str) -> String {
+    let found = record.pairs().find(|(field, _)| field.name == name);
+    found.map(|(field, value)| field.meaning(value).into_owned()).unwrap_or_default()
+}
+
+impl Report for About {
+    fn view(&self) -> View {
+        let stations = self.stations.iter().map(|Station { station, version }| format!("{station}: {version}"));
+        let stations: Vec<String> = stations.collect();
+        let mut fields = vec![
+            ("robot type", Cell::from(self.robot_type.as_str())),
+            ("version", self.version.as_str().into()),
+            ("language", self.language.as_str().into()),
+            ("axes", self.axes.join(" ").into()),
+            ("stations", if stations.is_empty() { "-".into() } else { stations.join(", ").into() }),
+            ("task", self.task.map_or_else(|| "-".into(), |task| task.to_string().into())),
+            ("override", self.override_percent.map_or_else(|| "-".into(), |percent| format!("{percent} %").into())),
+        ];
+        if !self.refused.is_empty() {
+            fields.push(("refused", self.refused.join(", ").into()));
+        }
+        View { sections: vec![Section::Fields(fields)] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::toyo::testing::all_blocks;
+    use crate::controller::toyo::request::Answer;
+
+    #[test]
+    fn all_that_tells_is_asked() {
+        let versions = ["@CVER NO=0", "@CVER NO=1", "@CVER NO=2", "@CVER NO=3", "@CVER NO=4"];
+        assert_eq!(all_blocks(&["info"]).unwrap(), [&["@SYSP"][..], &versions, &["@MTSK", "@ROVR"]].concat());
+    }
+
+    #[test]
+    fn a_controller_in_words() {
+        let Ok(Answer::Data(record)) =
+            Request::bare(table::Command::Sysp).answer("@SYSP RTYP=000123 VER=03.36 E ARM1=X ARM2=Y ARM3=Z ARM4=R N")
+        else {
+            panic!("it is data")
+        };
+        let about = About::of(&record);
+        assert_eq!((about.robot_type.as_str(), about.version.as_str()), ("000123", "3.36"));
+        assert_eq!(
+            (about.language.as_str(), about.axes.concat(), about.tail.as_str()),
+            ("English", "XYZR".into(), "N")
+        );
+    }
+}

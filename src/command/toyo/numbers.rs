@@ -1,0 +1,93 @@
+//! Numbers on a command line, in the ranges of the protocol's fields; several questions in a row.
+
+use std::collections::HashSet;
+
+use super::link::Link;
+use crate::controller::toyo::field::{Field, Form, Value};
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::request::Request;
+use crate::failure::Failure;
+use crate::output::Screen;
+
+/// A number, or a range of them: `5`, `1-5`, `1..5`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Numbers(Vec<i32>);
+
+impl Numbers {
+    /// Reads a number or a range; each must be in the range of the field.
+    pub fn parse(field: &Field, text: &str) -> Result<Self, String> {
+        let ends = text.split_once("..").or_else(|| text.split_once('-'));
+        let Some((first, last)) = ends else { return Ok(Self(vec![number(field, text)?])) };
+        let (first, last) = (number(field, first)?, number(field, last)?);
+        if first > last {
+            return Err(format!("the range ends before it begins; did you mean {last}-{first}?"));
+        }
+        Ok(Self((first..=last).collect()))
+    }
+
+    /// All numbers that were given, each once and in that order; without any, all that the field takes.
+    pub fn of(given: &[Self], field: &Field) -> Vec<i32> {
+        if given.is_empty() {
+            return match field.form {
+                Form::Number(number) => (number.least..=number.most).collect(),
+                _ => Vec::new(),
+            };
+        }
+        let mut seen = HashSet::new();
+        given.iter().flat_map(|numbers| &numbers.0).copied().filter(|number| seen.insert(*number)).collect()
+    }
+}
+
+/// Reads a number, which must be in the range of the field; of one with decimals, in units of the last.
+pub fn number(field: &Field, text: &str) -> Result<i32, String> {
+    match field.read(text) {
+        Ok(Value::Number(number)) => Ok(number),
+        Ok(_) => Err(format!("{} is no number", field.name)),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// A number that came in an answer as small as its field says; what is beyond that reads as the greatest.
+pub fn small(record: &Record, name: &str) -> u8 {
+    u8::try_from(record.number(name).unwrap_or(0)).unwrap_or(u8::MAX)
+}
+
+/// Asks several questions, one after the other; the first refusal or failure ends it. A dry run notes them all.
+pub async fn ask_all(
+    link: &mut Link,
+    screen: &Screen,
+    what: &str,
+    requests: &[Request],
+) -> Result<Vec<Record>, Failure> {
+    link.rehearse(requests).await;
+    let progress = (requests.len() > 1).then(|| screen.spinner(what));
+    let mut answers = Vec::with_capacity(requests.len());
+    for request in requests {
+        if let Some(progress) = &progress {
+            progress.say(&format!("{what} ({} of {})", answers.len() + 1, requests.len()));
+        }
+        answers.push(link.read(request).await?);
+    }
+    Ok(answers)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::toyo::table::Command;
+
+    fn field() -> &'static Field {
+        &Command::Mcnt.row().requests[0].fields[0]
+    }
+
+    #[test]
+    fn ranges_and_numbers() {
+        let parse = |text| Numbers::parse(field(), text);
+        let given = [parse("7").unwrap(), parse("2-4").unwrap(), parse("3..5").unwrap()];
+        assert_eq!(Numbers::of(&given, field()), [7, 2, 3, 4, 5]);
+        assert_eq!(Numbers::of(&[], field()).len(), 99);
+        assert_eq!(parse("100").unwrap_err(), "counter: 100 is out of range (a number, 1 to 99)");
+        assert_eq!(parse("5-2").unwrap_err(), "the range ends before it begins; did you mean 2-5?");
+        assert!(parse("0-3").is_err() && parse("x").is_err() && parse("").is_err() && parse("-3").is_err());
+    }
+}

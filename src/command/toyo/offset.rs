@@ -1,0 +1,35 @@
+//! `toyo offset`: how far coordinates are shifted at present.
+
+use clap::Args;
+
+use super::Family;
+use super::position::Place;
+use crate::command::{Command, Context};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+
+/// Asks for the offset that the program has set.
+#[derive(Debug, Args)]
+pub struct Offset {}
+
+impl Command for Offset {
+    type Family = Family;
+    type Report = Place;
+    const ID: &'static str = "toyo.offset";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Place, Failure> {
+        let record = context.link.read(&Request::bare(table::Command::Moff)).await?;
+        Ok(Place::of(&record))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::all_blocks;
+
+    #[test]
+    fn the_offset_has_its_block() {
+        assert_eq!(all_blocks(&["offset"]).unwrap(), ["@MOFF"]);
+    }
+}

@@ -1,0 +1,134 @@
+//! `toyo override`: the share of their speeds that programs run at.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::cells::{Cell, Cells};
+use super::link::wrong;
+use super::numbers::{number, small};
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::Risk;
+use crate::controller::toyo::field::{Field, Value};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+use crate::output::view::View;
+
+commands! {
+    /// What can be done with the override.
+    pub enum Override of Family {
+        /// Read the override
+        Get(Get),
+        /// Write the override to the EEPROM; it counts while no program runs
+        Set(Set),
+    }
+}
+
+/// Reads the override.
+#[derive(Debug, Args)]
+pub struct Get {}
+
+/// Writes the override, unless it is that already.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The value is in the EEPROM, which takes about a million writes: set it now and then, not in a loop. A \
+                        program that runs keeps the override that it was started with."
+)]
+pub struct Set {
+    /// 1 to 100
+    #[arg(value_name = "PERCENT", value_parser = percent)]
+    percent: i32,
+}
+
+/// The field of WOVR OV=001.
+fn field() -> &'static Field {
+    &table::Command::Wovr.row().requests[0].fields[0]
+}
+
+fn percent(text: &str) -> Result<i32, String> {
+    number(field(), text.strip_suffix('%').unwrap_or(text))
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Percent;
+    const ID: &'static str = "toyo.override.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Percent, Failure> {
+        let answer = context.link.read(&Request::bare(table::Command::Rovr)).await?;
+        Ok(Percent { override_percent: small(&answer, field().name) })
+    }
+}
+
+impl Command for Set {
+    type Family = Family;
+    type Report = Written;
+    const ID: &'static str = "toyo.override.set";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Written, Failure> {
+        let value = Value::Number(self.percent);
+        let wanted = table::Command::Rovr.row().answers[0].record(vec![value.clone()]);
+        let cell = Cell {
+            read: Request::bare(table::Command::Rovr),
+            write: Request::of(table::Command::Wovr, [value]),
+            wanted: wanted.map_err(|error| wrong(&error))?,
+        };
+        let mut cells = Cells::default();
+        context.link.store(context.screen, &cell, &mut cells).await?;
+        Ok(Written { override_percent: u8::try_from(self.percent).unwrap_or(u8::MAX), cells })
+    }
+}
+
+/// The override.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Percent {
+    override_percent: u8,
+}
+
+/// The override as it was written.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Written {
+    override_percent: u8,
+    #[serde(flatten)]
+    cells: Cells,
+}
+
+impl Report for Percent {
+    fn view(&self) -> View {
+        View::text(format!("{} %", self.override_percent))
+    }
+}
+
+impl Report for Written {
+    fn view(&self) -> View {
+        View::text(format!("override {} %: {}", self.override_percent, self.cells.in_words()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{all_blocks, blocks, objection};
+
+    #[test]
+    fn the_override_is_compared_before_it_is_written() {
+        assert_eq!(all_blocks(&["override", "get"]).unwrap(), ["@ROVR"]);
+        assert_eq!(blocks(&["override", "set", "5%"]).unwrap(), ["@ROVR", "@WOVR OV=005"]);
+        assert_eq!(
+            all_blocks(&["override", "set", "100"]).unwrap(),
+            ["@ROVR", "@STAS SNO=2", "@HSON", "@WOVR OV=100", "@HSOF"]
+        );
+    }
+
+    #[test]
+    fn the_range_is_checked() {
+        for percent in ["0", "101", "x", "50.5"] {
+            assert!(objection(&["override", "set", percent]).contains("1 to 100 %"), "{percent}");
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! `toyo ports`: the serial ports of this machine.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::{Desk, Report};
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::{Cell, Table, View};
+use crate::transport::ports::{self, PortInfo, PortKind};
+
+/// Lists the serial ports of this machine, without opening any.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "What stands under target is for -t, or for `armctl robots add`. `armctl help toyo-setup` tells \
+                        about cable and settings."
+)]
+pub struct Ports {}
+
+impl Desk for Ports {
+    type Report = List;
+    const ID: &'static str = "toyo.ports";
+
+    fn run(&self, _screen: &Screen) -> Result<List, Failure> {
+        let found = ports::ports().map_err(|error| Failure::io("the list of serial ports", &error))?;
+        Ok(List { ports: found.into_iter().map(Port::from).collect() })
+    }
+}
+
+/// The serial ports there are.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct List {
+    ports: Vec<Port>,
+}
+
+/// A serial port.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Port {
+    /// `/dev/ttyUSB0`, `COM3`.
+    name: String,
+    /// A name that stays the same whatever else is plugged in (Linux).
+    stable_name: Option<String>,
+    /// The URL for `-t`, by the name that stays.
+    target: String,
+    /// `usb`, `pci`, `bluetooth` or `other`.
+    kind: &'static str,
+    /// As the USB device tells it.
+    maker: Option<String>,
+    /// As the USB device tells it.
+    product: Option<String>,
+    /// As the USB device tells it.
+    serial_number: Option<String>,
+    /// Vendor and product of USB, hexadecimal: `0403:6001`.
+    usb_id: Option<String>,
+}
+
+impl From<PortInfo> for Port {
+    fn from(PortInfo { name, stable_name, kind }: PortInfo) -> Self {
+        let target = format!("serial://{}", stable_name.as_ref().unwrap_or(&name));
+        let plain = Self {
+            name,
+            stable_name,
+            target,
+            kind: "other",
+            maker: None,
+            product: None,
+            serial_number: None,
+            usb_id: None,
+        };
+        match kind {
+            PortKind::Usb { vendor, product, maker, product_name, serial_number } => Self {
+                kind: "usb",
+                maker,
+                product: product_name,
+                serial_number,
+                usb_id: Some(format!("{vendor:04x}:{product:04x}")),
+                ..plain
+            },
+            PortKind::Pci => Self { kind: "pci", ..plain },
+            PortKind::Bluetooth => Self { kind: "bluetooth", ..plain },
+            PortKind::Unknown => plain,
+        }
+    }
+}
+
+impl Port {
+    /// What it is, in words: `FTDI FT232R USB UART (usb 0403:6001)`.
+    fn device(&self) -> String {
+        let names: Vec<&str> = [&self.maker, &self.product].into_iter().flatten().map(String::as_str).collect();
+        let kind = self.usb_id.as_ref().map_or_else(|| self.kind.to_owned(), |id| format!("{} {id}", self.kind));
+        if names.is_empty() { kind } else { format!("{} ({kind})", names.join(" ")) }
+    }
+}
+
+impl Report for List {
+    fn view(&self) -> View {
+        let mut table = Table::new(
+            &["port", "device", "target"],
+            "no serial port found; plug the adapter in, or pass it on to this container or virtual machine",
+        );
+        for port in &self.ports {
+            table.row([Cell::from(port.name.as_str()).whole(), port.device().into(), port.target.as_str().into()]);
+        }
+        View::table(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::render;
+
+    #[test]
+    fn ports_are_told_with_what_they_are() {
+        let usb = PortKind::Usb {
+            vendor: 0x0403,
+            product: 0x6001,
+            maker: Some("FTDI".into()),
+            product_name: Some("FT232R USB UART".into()),
+            serial_number: Some("A9".into()),
+        };
+        let stable_name = Some("/dev/serial/by-id/usb-FTDI_FT232R_USB_UART_A9-if00-port0".to_owned());
+        let list = List {
+            ports: vec![
+                Port::from(PortInfo { name: "/dev/ttyS0".into(), stable_name: None, kind: PortKind::Unknown }),
+                Port::from(PortInfo { name: "/dev/ttyUSB0".into(), stable_name, kind: usb }),
+            ],
+        };
+        assert_eq!(
+            render::csv(&list.view(), None),
+            "port,device,target\n\
+             /dev/ttyS0,other,serial:///dev/ttyS0\n\
+             /dev/ttyUSB0,FTDI FT232R USB UART (usb 0403:6001),\
+             serial:///dev/serial/by-id/usb-FTDI_FT232R_USB_UART_A9-if00-port0\n"
+        );
+    }
+
+    #[test]
+    fn without_any_it_says_what_to_do() {
+        let text = render::text(&List { ports: Vec::new() }.view(), 80, false);
+        assert!(text.contains("plug the adapter in"), "{text}");
+    }
+}

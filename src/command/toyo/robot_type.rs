@@ -1,0 +1,113 @@
+//! `toyo robot-type`: what machine an axis belongs to.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::numbers::number;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::field::{Field, Value};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::{Failure, Kind};
+use crate::gate::Demand;
+use crate::output::view::View;
+
+/// Sets the robot type of an axis, which its parameters follow from.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "A wrong type can make the axis run wrong: use the one on its name plate. A number that the controller \
+                        does not know changes nothing (exit code 3). On a real controller the word 'type' has to be \
+                        typed, or --yes given. `toyo info` shows the type of the robot."
+)]
+pub struct RobotType {
+    /// 1 to 4
+    #[arg(value_name = "AXIS", value_parser = |text: &str| number(&fields()[0], text))]
+    axis: i32,
+    /// Up to six digits
+    #[arg(value_name = "TYPE", value_parser = |text: &str| number(&fields()[1], text))]
+    robot_type: i32,
+}
+
+/// The fields of TYPE AX1 RTYP=000000.
+fn fields() -> &'static [Field] {
+    table::Command::Type.row().requests[0].fields
+}
+
+impl Command for RobotType {
+    type Family = Family;
+    type Report = InForce;
+    const ID: &'static str = "toyo.robot-type";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    fn intent(&self) -> String {
+        format!("make axis {} of robot type {:06}; its parameters may change with it", self.axis, self.robot_type)
+    }
+
+    fn demand(&self) -> Demand {
+        Demand::Word("type")
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<InForce, Failure> {
+        let Self { axis, robot_type } = *self;
+        let order = Request::of(table::Command::Type, [Value::Number(axis), Value::Number(robot_type)]);
+        let answer = context.link.order_for(&order).await?;
+        let shown = |number: i32| fields()[1].written(&Value::Number(number));
+        Ok(InForce {
+            axis: u8::try_from(axis).unwrap_or(u8::MAX),
+            robot_type: shown(answer.number("in_force").unwrap_or(0)),
+            wanted: shown(robot_type),
+        })
+    }
+}
+
+/// The robot type of an axis.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct InForce {
+    axis: u8,
+    /// The one in force: six digits.
+    robot_type: String,
+    /// The one that was asked for.
+    wanted: String,
+}
+
+impl Report for InForce {
+    fn view(&self) -> View {
+        View::text(format!("axis {} is of robot type {}", self.axis, self.robot_type))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let Self { axis, robot_type, wanted } = self;
+        let message = format!("the controller does not take robot type {wanted}: axis {axis} stays at {robot_type}");
+        (robot_type != wanted)
+            .then(|| Failure::new(Kind::Refused, message).hint("check the number; that of the name plate counts"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::toyo::testing::{blocks, intent, objection};
+
+    #[test]
+    fn the_type_has_its_block() {
+        assert_eq!(blocks(&["robot-type", "1", "123"]).unwrap(), ["@TYPE AX1 RTYP=000123"]);
+        assert!(objection(&["robot-type", "5", "0"]).contains("1 to 4"));
+        assert!(objection(&["robot-type", "1", "1000000"]).contains("999999"));
+        assert!(intent(&["robot-type", "1", "123"]).contains("axis 1 of robot type 000123"));
+    }
+
+    #[test]
+    fn a_type_that_is_not_taken_is_a_refusal() {
+        let of = |robot_type: &str| InForce { axis: 2, robot_type: robot_type.into(), wanted: "000123".into() };
+        assert_eq!(of("000123").failure(), None);
+        let failure = of("000000").failure().unwrap();
+        assert_eq!(failure.kind, Kind::Refused);
+        assert_eq!(failure.message, "the controller does not take robot type 000123: axis 2 stays at 000000");
+    }
+}

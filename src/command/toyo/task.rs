@@ -1,0 +1,99 @@
+//! `toyo task`: the task that programs, tables and positions are those of.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::link::Link;
+use super::numbers::{number, small};
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::Risk;
+use crate::controller::toyo::field::{Field, Value};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+use crate::output::view::View;
+
+commands! {
+    /// What can be done with the current task.
+    pub enum Task of Family {
+        /// Which task is the current one
+        Get(Get),
+        /// Choose the task whose program and points are read, written and cleared
+        Set(Set),
+    }
+}
+
+/// Asks which task is the current one.
+#[derive(Debug, Args)]
+pub struct Get {}
+
+/// Makes a task the current one. It stays so for everybody, until somebody chooses another.
+#[derive(Debug, Args)]
+pub struct Set {
+    /// 1 to 4
+    #[arg(value_name = "TASK", value_parser = |text: &str| number(field(), text))]
+    task: i32,
+}
+
+/// The field of CTSK TASK=01; 00, which the manual prints in places, is never sent (ambiguity C2).
+fn field() -> &'static Field {
+    &table::Command::Ctsk.row().requests[0].fields[0]
+}
+
+/// The current task.
+pub async fn current(link: &mut Link) -> Result<u8, Failure> {
+    let answer = link.read(&Request::bare(table::Command::Mtsk)).await?;
+    Ok(small(&answer, field().name))
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Current;
+    const ID: &'static str = "toyo.task.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Current, Failure> {
+        Ok(Current { task: current(context.link).await? })
+    }
+}
+
+impl Command for Set {
+    type Family = Family;
+    type Report = Current;
+    const ID: &'static str = "toyo.task.set";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Current, Failure> {
+        context.link.order(&Request::of(table::Command::Ctsk, [Value::Number(self.task)])).await?;
+        Ok(Current { task: u8::try_from(self.task).unwrap_or(u8::MAX) })
+    }
+}
+
+/// The current task.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Current {
+    /// 1 to 4.
+    task: u8,
+}
+
+impl Report for Current {
+    fn view(&self) -> View {
+        View::text(format!("task {} is the current one", self.task))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{all_blocks, blocks, objection};
+
+    #[test]
+    fn tasks_have_their_blocks() {
+        assert_eq!(all_blocks(&["task", "get"]).unwrap(), ["@MTSK"]);
+        assert_eq!(blocks(&["task", "set", "4"]).unwrap(), ["@CTSK TASK=04"]);
+        assert!(objection(&["task", "set", "0"]).contains("1 to 4"));
+    }
+}

@@ -1,0 +1,89 @@
+//! `toyo timer`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::numbers::{Numbers, ask_all, small};
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::toyo::field::{Field, Value};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
+
+commands! {
+    /// What can be done with timers: the protocol only reads them.
+    pub enum Timer of Family {
+        /// Read timers 1 to 9
+        Get(Get),
+    }
+}
+
+/// Reads timers; without a number, all nine.
+#[derive(Debug, Args)]
+pub struct Get {
+    /// Such as 5 or 1-3
+    #[arg(value_name = "N", value_parser = |text: &str| Numbers::parse(field(), text))]
+    timers: Vec<Numbers>,
+}
+
+/// Number of a timer, as in MTMR TN=1.
+fn field() -> &'static Field {
+    &table::Command::Mtmr.row().requests[0].fields[0]
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Timers;
+    const ID: &'static str = "toyo.timer.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Timers, Failure> {
+        let numbers = Numbers::of(&self.timers, field()).into_iter();
+        let requests = numbers.map(|number| Request::of(table::Command::Mtmr, [Value::Number(number)]));
+        let requests: Vec<Request> = requests.collect();
+        let answers = ask_all(context.link, context.screen, "reading timers", &requests).await?;
+        let timers = answers.iter().map(|answer| Time {
+            timer: small(answer, "timer"),
+            time_s: f64::from(answer.number("time").unwrap_or(0)) / 10.0,
+        });
+        Ok(Timers { timers: timers.collect() })
+    }
+}
+
+/// Timers in the order they were asked for.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Timers {
+    timers: Vec<Time>,
+}
+
+/// A timer and what it stands at.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Time {
+    timer: u8,
+    time_s: f64,
+}
+
+impl Report for Timers {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["timer", "time (s)"], "no timers");
+        for Time { timer, time_s } in &self.timers {
+            table.row([(*timer).into(), Cell::number(format!("{time_s:.1}"))]);
+        }
+        View::table(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{all_blocks, objection};
+
+    #[test]
+    fn timers_have_their_blocks() {
+        assert_eq!(all_blocks(&["timer", "get", "9"]).unwrap(), ["@MTMR TN=9"]);
+        let all: Vec<String> = (1..=9).map(|timer| format!("@MTMR TN={timer}")).collect();
+        assert_eq!(all_blocks(&["timer", "get"]).unwrap(), all);
+        assert!(objection(&["timer", "get", "10"]).contains("1 to 9"));
+    }
+}
