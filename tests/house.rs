@@ -84,8 +84,8 @@ const BORDERS: [(&str, &[&str]); 6] = [
     ("command/", &["crate::app", "tokio::net", "std::net::UdpSocket", "std::net::TcpStream", "std::process"]),
 ];
 
-/// Commands that touch a transport: the link of a family with its trace, and the simulators' server.
-const LINKS: [&str; 10] = [
+/// Commands that touch a transport: the link of a family with its trace, the simulators' servers, the list of ports.
+const LINKS: [&str; 11] = [
     "command/trace.rs",
     "command/yerc/link.rs",
     "command/yerc/simulated.rs",
@@ -95,7 +95,8 @@ const LINKS: [&str; 10] = [
     "command/toyo/reach.rs",
     "command/toyo/simulated.rs",
     "command/toyo/trace.rs",
-    "command/common/sim.rs",
+    "command/common/sim/toyo.rs",
+    "command/common/sim/yerc.rs",
 ];
 
 /// Words that write to the terminal or end the process, and the only folder that may have them.

@@ -49,7 +49,8 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<super::robots::List>("robots.list"),
         SchemaEntry::of::<super::robots::Changed>("robots.remove"),
         SchemaEntry::of::<super::robots::Shown>("robots.show"),
-        SchemaEntry::of::<super::sim::Serving>("sim.yerc"),
+        SchemaEntry::of::<super::sim::toyo::Serving>("sim.toyo"),
+        SchemaEntry::of::<super::sim::yerc::Serving>("sim.yerc"),
     ]);
     all
 }
