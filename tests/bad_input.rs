@@ -143,8 +143,8 @@ fn a_watch_without_pause_ends_on_the_first_signal() {
 
 #[test]
 fn one_record_holds_every_run_of_a_watch() {
-    /// Datagrams in a capture file: its blocks of type 6.
-    fn datagrams(record: &[u8]) -> usize {
+    /// Packets in a capture file: its blocks of type 6.
+    fn packets(record: &[u8]) -> usize {
         let word = |at: usize| u32::from_le_bytes(record[at..at + 4].try_into().unwrap());
         let (mut at, mut count) = (0, 0);
         while at < record.len() {
@@ -156,7 +156,7 @@ fn one_record_holds_every_run_of_a_watch() {
     let home = tempfile::tempdir().unwrap();
     let recorded = |words: &str| {
         succeeds(&armctl(home.path(), words));
-        datagrams(&std::fs::read(home.path().join("t.pcapng")).unwrap())
+        packets(&std::fs::read(home.path().join("t.pcapng")).unwrap())
     };
     assert_eq!(recorded("--sim yerc status --trace t.pcapng --watch 1ms --count 3"), 6);
     assert_eq!(recorded("--sim yerc status --trace t.pcapng"), 2, "an older record is replaced");
@@ -167,6 +167,7 @@ fn one_record_holds_every_run_of_a_watch() {
     )
     .unwrap();
     assert_eq!(recorded("--config robots.toml --all yerc status --trace t.pcapng"), 4, "two robots share it");
+    assert_eq!(recorded("--sim toyo status --trace t.pcapng --count 2"), 20, "five pages a run");
 }
 
 #[test]

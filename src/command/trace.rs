@@ -21,17 +21,24 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// As flags want it; a capture file is made at once.
-    pub fn open(access: &Access, screen: &Screen) -> Result<Self, Failure> {
+    /// Of packets with addresses, as flags want it; a capture file is made at once.
+    pub fn of_network(access: &Access, screen: &Screen) -> Result<Self, Failure> {
+        Self::open(access, screen, Capture::append)
+    }
+
+    /// The same of lines without addresses.
+    pub fn of_lines(access: &Access, screen: &Screen) -> Result<Self, Failure> {
+        Self::open(access, screen, Capture::append_streams)
+    }
+
+    fn open(access: &Access, screen: &Screen, begin: fn(&Path) -> io::Result<Capture>) -> Result<Self, Failure> {
         let mut level = screen.verbosity.saturating_sub(1);
         let capture = match access.trace.as_deref() {
             Some(path) if path == Path::new("-") => {
                 level = level.max(2);
                 None
             }
-            Some(path) if !access.dry_run => {
-                Some(Capture::append(path).map_err(|error| Failure::io(path.display(), &error))?)
-            }
+            Some(path) if !access.dry_run => Some(begin(path).map_err(|error| Failure::io(path.display(), &error))?),
             _ => None,
         };
         Ok(Self { screen: *screen, level, capture, broken: None })

@@ -2,6 +2,7 @@
 
 use std::convert::Infallible;
 use std::io;
+use std::net::SocketAddr;
 use std::time::Duration;
 
 use serde_json::json;
@@ -59,6 +60,19 @@ enum Transport {
     Notes(Vec<serde_json::Value>),
 }
 
+impl Transport {
+    /// The addresses of a TCP connection, the own one first.
+    fn ends(&self) -> Option<(SocketAddr, SocketAddr)> {
+        match self {
+            Self::Stream(stream) => match &**stream {
+                Stream::Tcp(tcp) => tcp.ends().ok(),
+                Stream::Serial(_) | Stream::InProcess(_) => None,
+            },
+            Self::Notes(_) => None,
+        }
+    }
+}
+
 /// What this link set in motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Motion {
@@ -105,6 +119,7 @@ impl Family for Toyo {
         } else {
             Transport::Stream(Box::new(way.open(robot).await?))
         };
+        let trace = Trace::open(&access, screen, transport.ends())?;
         let policy = Policy { timeout: robot.timeout.value, retries: robot.retries.value, character: way.character() };
         Ok(Link {
             transport,
@@ -116,7 +131,7 @@ impl Family for Toyo {
             motion: Motion::None,
             host: Host::Unknown,
             started: Instant::now(),
-            trace: Trace::open(&access, screen)?,
+            trace,
             waited: Duration::ZERO,
             is_gone: false,
             wear: Wear::new(),

@@ -1,7 +1,11 @@
 //! Blocks in the record of the traffic.
 
+use std::net::SocketAddr;
+
 use crate::command::{Access, trace};
 use crate::controller::text::hex;
+use crate::controller::toyo::describe::{Sender, summary};
+use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::transport::tap::Direction;
@@ -10,17 +14,25 @@ use crate::transport::tap::Direction;
 #[derive(Debug)]
 pub struct Trace {
     record: trace::Trace,
+    /// Own address and that of the device server, where there is one.
+    ends: Option<(SocketAddr, SocketAddr)>,
     /// Characters of the controller since its last line end.
     coming: Vec<u8>,
+    /// The last request: `@OK` and `@NG` do not say what they answer.
+    asked: Option<Request>,
 }
 
 /// Longest piece that is kept for a line of text.
 const MOST: usize = 512;
 
 impl Trace {
-    /// As flags want it.
-    pub fn open(access: &Access, screen: &Screen) -> Result<Self, Failure> {
-        Ok(Self { record: trace::Trace::open(access, screen)?, coming: Vec::new() })
+    /// As flags want it; `ends` are the addresses of a TCP connection.
+    pub fn open(access: &Access, screen: &Screen, ends: Option<(SocketAddr, SocketAddr)>) -> Result<Self, Failure> {
+        let record = match ends {
+            Some(_) => trace::Trace::of_network(access, screen)?,
+            None => trace::Trace::of_lines(access, screen)?,
+        };
+        Ok(Self { record, ends, coming: Vec::new(), asked: None })
     }
 
     /// Records characters.
@@ -28,9 +40,15 @@ impl Trace {
         if bytes.is_empty() {
             return;
         }
+        let ends = self.ends;
+        self.record.capture(|capture, time| match (ends, direction) {
+            (Some((own, other)), Direction::Sent) => capture.segment(time, own, other, bytes),
+            (Some((own, other)), Direction::Received) => capture.segment(time, other, own, bytes),
+            (None, _) => capture.line(time, direction, bytes),
+        });
         if self.record.level() > 0 {
             match direction {
-                Direction::Sent => self.line("->", bytes),
+                Direction::Sent => self.sent(bytes),
                 Direction::Received => self.received(bytes),
             }
         }
@@ -38,7 +56,15 @@ impl Trace {
 
     /// Tells whether the record is whole.
     pub fn finish(&mut self) -> Result<(), Failure> {
+        self.flush();
         self.record.finish()
+    }
+
+    /// A request goes out whole.
+    fn sent(&mut self, bytes: &[u8]) {
+        self.flush();
+        self.line(Sender::Host, bytes);
+        self.asked = Request::parse(&text(bytes)).ok();
     }
 
     /// Characters come in pieces of any size; a line of text is for a whole block.
@@ -46,15 +72,66 @@ impl Trace {
         for byte in bytes {
             self.coming.push(*byte);
             if *byte == b'\n' || self.coming.len() >= MOST {
-                let coming = std::mem::take(&mut self.coming);
-                self.line("<-", &coming);
+                self.flush();
             }
         }
     }
 
-    fn line(&self, arrow: &str, bytes: &[u8]) {
-        let text = String::from_utf8_lossy(bytes);
-        let line = format!("{arrow} {}", text.trim_end_matches(['\r', '\n']));
+    /// What came without a line end, before something else is told.
+    fn flush(&mut self) {
+        let coming = std::mem::take(&mut self.coming);
+        if !coming.is_empty() {
+            self.line(Sender::Controller, &coming);
+        }
+    }
+
+    fn line(&self, sender: Sender, bytes: &[u8]) {
+        let arrow = if sender == Sender::Host { "->" } else { "<-" };
+        let text = text(bytes);
+        let line = format!("{arrow} {text}  # {}", summary(&text, sender, self.asked.as_ref()));
         self.record.line(&if self.record.level() > 1 { format!("{line}\n   {}", hex(bytes)) } else { line });
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).trim_end_matches(['\r', '\n']).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::Risk;
+    use crate::output::{ColorChoice, Format};
+
+    /// What a capture file holds of a request and its answer.
+    fn recorded(ends: Option<(SocketAddr, SocketAddr)>) -> Vec<u8> {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let access = Access { granted: Risk::Read, dry_run: false, trace: Some(file.path().to_owned()) };
+        let mut trace = Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 0), ends).unwrap();
+        trace.record(Direction::Sent, b"@HSON\r\n");
+        trace.record(Direction::Received, b"");
+        trace.record(Direction::Received, b"@OK\r\n");
+        trace.finish().unwrap();
+        std::fs::read(file.path()).unwrap()
+    }
+
+    fn holds(record: &[u8], bytes: &[u8]) -> bool {
+        record.windows(bytes.len()).any(|window| window == bytes)
+    }
+
+    #[test]
+    fn what_goes_over_a_line_is_recorded_with_its_direction() {
+        let record = recorded(None);
+        assert!(holds(&record, b"\0@HSON\r\n") && holds(&record, b"\x01@OK\r\n"), "{record:?}");
+    }
+
+    #[test]
+    fn what_goes_to_a_device_server_is_recorded_with_its_ports() {
+        let ends = ("10.0.0.1:40000".parse().unwrap(), "10.0.0.2:4001".parse().unwrap());
+        let record = recorded(Some(ends));
+        let [sent, received] = [[0x9C, 0x40, 0x0F, 0xA1], [0x0F, 0xA1, 0x9C, 0x40]];
+        assert!(holds(&record, &sent) && holds(&record, &received), "{record:?}");
+        assert!(holds(&record, b"@HSON\r\n") && holds(&record, b"@OK\r\n"), "{record:?}");
+        assert!(!holds(&record, b"\x01@OK\r\n"));
     }
 }

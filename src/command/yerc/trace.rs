@@ -22,7 +22,7 @@ pub struct Trace {
 impl Trace {
     /// As flags want it.
     pub fn open(access: &Access, screen: &Screen) -> Result<Self, Failure> {
-        Ok(Self { record: trace::Trace::open(access, screen)?, asked: None })
+        Ok(Self { record: trace::Trace::of_network(access, screen)?, asked: None })
     }
 
     /// Records a datagram between the two addresses, own one first.
