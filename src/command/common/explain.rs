@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::command::Report;
 use crate::command::run::{Run, Stopped};
+use crate::controller::toyo::errors;
 use crate::controller::yerc::status;
 use crate::failure::Failure;
 use crate::output::view::{Section, View};
@@ -18,17 +19,35 @@ pub enum Explain {
         /// The code in hexadecimal, as in 0x2060, 2060 or 1F
         code: String,
     },
+    /// An error code of a Toyo controller
+    Toyo {
+        /// The code in hexadecimal, as in 28 or 0xA1
+        #[arg(value_parser = toyo_code)]
+        code: u8,
+    },
 }
 
 impl Explain {
     pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
-        let Self::Yerc { code } = self;
-        let found = status::lookup(&code).map_err(|error| {
-            Failure::usage(error.to_string()).hint("error messages and `alarm list` show the code to look up")
-        })?;
-        let codes = found.into_iter().map(Code::from).collect();
-        run.local("explain.yerc", &Codes { codes })
+        match self {
+            Self::Yerc { code } => {
+                let found = status::lookup(&code).map_err(|error| {
+                    Failure::usage(error.to_string()).hint("error messages and `alarm list` show the code to look up")
+                })?;
+                let codes = found.into_iter().map(Code::from).collect();
+                run.local("explain.yerc", &Codes { codes })
+            }
+            Self::Toyo { code } => run.local("explain.toyo", &ToyoCode::of(code)),
+        }
     }
+}
+
+/// Two hexadecimal digits.
+fn toyo_code(text: &str) -> Result<u8, String> {
+    let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
+    let is_hex = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let code = if is_hex { u8::from_str_radix(digits, 16).ok() } else { None };
+    code.ok_or_else(|| "a code is two hexadecimal digits, as in 28; `toyo status` shows it".to_owned())
 }
 
 /// One or, for a short code that is in two tables, several explanations.
@@ -80,5 +99,65 @@ impl Report for Codes {
             ])
         });
         View { sections: sections.collect() }
+    }
+}
+
+/// An error code of a Toyo controller in words.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct ToyoCode {
+    /// `28`.
+    code: String,
+    /// Whether it is in the manual's table.
+    known: bool,
+    /// What it is called.
+    name: String,
+    /// The axis it is about, if it is about one.
+    axis: Option<u8>,
+    /// What may have happened.
+    cause: &'static str,
+    /// What to do.
+    remedy: &'static str,
+}
+
+impl ToyoCode {
+    fn of(code: u8) -> Self {
+        if code == errors::NONE {
+            let (name, cause, remedy) = ("no error".to_owned(), "nothing is wrong", "nothing is to be done");
+            return Self { code: "00".to_owned(), known: true, name, axis: None, cause, remedy };
+        }
+        let found = errors::explain(code);
+        let (cause, remedy) = (found.cause, found.remedy);
+        Self {
+            code: format!("{code:02X}"),
+            known: found.known,
+            name: found.name.into(),
+            axis: found.axis,
+            cause,
+            remedy,
+        }
+    }
+}
+
+impl Report for ToyoCode {
+    fn view(&self) -> View {
+        View::fields([
+            ("code", self.code.as_str().into()),
+            ("meaning", self.name.as_str().into()),
+            ("cause", self.cause.into()),
+            ("what to do", self.remedy.into()),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_toyo_code_is_two_digits() {
+        assert_eq!((toyo_code("28"), toyo_code("0xa1"), toyo_code("5")), (Ok(0x28), Ok(0xA1), Ok(5)));
+        for wrong in ["", "0x", "100", "+5", "G1", "2060"] {
+            assert!(toyo_code(wrong).is_err(), "{wrong}");
+        }
     }
 }

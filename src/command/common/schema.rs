@@ -42,8 +42,10 @@ pub fn all() -> Vec<SchemaEntry> {
     all.extend(<Toyo as Noun<toyo::Family>>::schemas());
     all.extend(<Overview as Noun<Fleet>>::schemas());
     all.extend([
-        SchemaEntry::of::<super::decode::Frames>("decode.yerc"),
+        SchemaEntry::of::<super::decode::toyo::Lines>("decode.toyo"),
+        SchemaEntry::of::<super::decode::yerc::Frames>("decode.yerc"),
         SchemaEntry::of::<Rehearsal>("dry-run"),
+        SchemaEntry::of::<super::explain::ToyoCode>("explain.toyo"),
         SchemaEntry::of::<super::explain::Codes>("explain.yerc"),
         SchemaEntry::of::<super::robots::Changed>("robots.add"),
         SchemaEntry::of::<super::robots::List>("robots.list"),

@@ -14,6 +14,7 @@ mod overrides;
 mod overview;
 mod ports;
 mod position;
+mod raw;
 mod reach;
 mod refusal;
 mod robot_type;
@@ -59,6 +60,8 @@ commands! {
         RobotType(robot_type::RobotType),
         /// Robot type, versions, axes, task, override
         Info(info::Info),
+        /// Send any block, and explain the answer
+        Raw(raw::Raw),
         /// The serial ports of this machine
         Ports(AtDesk<ports::Ports>),
     }

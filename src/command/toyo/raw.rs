@@ -5,24 +5,28 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use super::link;
+use crate::command::common::decode::toyo::{FieldRow, field_table};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
-use crate::controller::toyo::describe::{Description, describe};
+use crate::controller::toyo::describe::{Sender, describe};
 use crate::controller::toyo::request::{BlockError, Request};
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Section, Table, View};
+use crate::output::view::{Section, View};
 
-/// Sends a block as it is, once. Nothing is done before or after it: no host ON, no comparison.
+/// Sends a block as it is. Nothing is done before or after it: no host ON, no comparison, no waiting.
 #[derive(Debug, Args)]
-#[command(after_help = "A block that is in no table counts as a motion, as nobody knows what it does.")]
+#[command(
+    after_help = "A block that is not as the manual prints it goes out all the same, and counts as a motion, as nobody \
+                        knows what it does. If the controller refuses (@NG), the exit code is 3. `armctl decode toyo` \
+                        explains a block without sending it."
+)]
 pub struct Raw {
-    /// The block without its line end, such as "@STAS SNO=0"
+    /// The block without its line end, such as '@STAS SNO=0'
     #[arg(value_name = "BLOCK", value_parser = block)]
     block: Block,
 }
 
-/// A block, in the table or not.
+/// A block, as the manual prints it or not.
 #[derive(Debug, Clone)]
 enum Block {
     Known(Box<Request>),
@@ -31,15 +35,28 @@ enum Block {
 
 fn block(text: &str) -> Result<Block, String> {
     match Request::parse(text) {
-        Ok(request) => match request.check() {
-            Ok(()) if request.text() == text.trim_end() => Ok(Block::Known(Box::new(request))),
-            // What is not as the manual prints it goes out as it is.
-            _ => Ok(Block::Unknown(text.trim_end_matches(['\r', '\n']).to_owned())),
-        },
+        Ok(request) if request.text() == text && request.check().is_ok() => Ok(Block::Known(Box::new(request))),
         Err(error @ (BlockError::Start | BlockError::Long { .. } | BlockError::Character { .. })) => {
             Err(error.to_string())
         }
-        Err(_) => Ok(Block::Unknown(text.to_owned())),
+        _ if text.ends_with(['\r', '\n']) => Err("leave the line end away: it is added".to_owned()),
+        _ => Ok(Block::Unknown(text.to_owned())),
+    }
+}
+
+impl Block {
+    fn text(&self) -> String {
+        match self {
+            Self::Known(request) => request.text(),
+            Self::Unknown(text) => text.clone(),
+        }
+    }
+
+    fn request(&self) -> Option<&Request> {
+        match self {
+            Self::Known(request) => Some(request),
+            Self::Unknown(_) => None,
+        }
     }
 }
 
@@ -49,32 +66,24 @@ impl Command for Raw {
     const ID: &'static str = "toyo.raw";
 
     fn risk(&self) -> Risk {
-        match &self.block {
-            Block::Known(request) => request.risk(),
-            Block::Unknown(_) => Risk::Motion,
-        }
+        self.block.request().map_or(Risk::Motion, Request::risk)
     }
 
     fn intent(&self) -> String {
-        match &self.block {
-            Block::Known(request) => format!("send {} ({})", request.text(), request.row().about),
-            Block::Unknown(text) => format!("send {text}, which is in no table"),
-        }
+        let about = self.block.request().map_or("which is not as the manual prints it", |request| request.row().about);
+        format!("send {} ({about})", self.block.text())
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Exchange, Failure> {
         let link = context.link;
-        match &self.block {
+        let answer = match &self.block {
             Block::Known(request) => {
-                if link.is_dry() {
-                    link.foresee(request, request.row().about);
-                    return std::future::pending().await;
-                }
-                let answer = link.exchange(request).await?.text();
-                Ok(Exchange::of(request.text(), answer))
+                link.rehearse(std::slice::from_ref(request)).await;
+                link.exchange(request).await?.text()
             }
-            Block::Unknown(text) => Ok(Exchange::of(text.clone(), link.raw(text).await?)),
-        }
+            Block::Unknown(text) => link.raw(text).await?,
+        };
+        Ok(Exchange::of(&self.block, answer))
     }
 }
 
@@ -85,22 +94,91 @@ pub struct Exchange {
     answer: String,
     /// The answer in words.
     title: String,
+    /// The answer field by field.
     fields: Vec<FieldRow>,
     /// What is wrong with the answer.
     problem: Option<String>,
-    #[serde(skip)]
+    /// Whether it is `@NG`.
     refused: bool,
 }
 
-/// A piece of a block.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct FieldRow {
-    /// Column, from 1.
-    pub column: usize,
-    /// What it is called.
-    pub name: String,
-    /// As it stands there.
-    pub raw: String,
-    /// What it says.
-    pub meaning: String,
+impl Exchange {
+    fn of(block: &Block, answer: String) -> Self {
+        let description = describe(&answer, Sender::Controller, block.request());
+        Self {
+            request: block.text(),
+            refused: answer.trim_end() == "@NG",
+            answer,
+            title: description.title,
+            fields: description.fields.into_iter().map(FieldRow::from).collect(),
+            problem: description.problem,
+        }
+    }
+}
+
+impl Report for Exchange {
+    fn view(&self) -> View {
+        let problem = self.problem.as_ref().map(|problem| format!("\nproblem: {problem}")).unwrap_or_default();
+        let view = View::text(format!("{}\n{}{problem}", self.answer, self.title));
+        if self.fields.is_empty() { view } else { view.and(Section::Table(field_table(&self.fields))) }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let refused = || {
+            Failure::new(Kind::Refused, format!("the controller refused {} (@NG)", self.request))
+                .code("NG")
+                .hint("`toyo status` may tell why; most orders need the host ON (`toyo host on`)")
+        };
+        self.refused.then(refused)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{Bench, all_blocks, intent, objection};
+    use crate::controller::Risk;
+    use crate::failure::Kind;
+
+    fn risk(text: &str) -> Risk {
+        let raw = super::Raw { block: super::block(text).unwrap() };
+        crate::command::Command::risk(&raw)
+    }
+
+    #[test]
+    fn a_block_goes_out_as_it_is() {
+        for text in ["@STAS SNO=0", "@HOME", "@HTSK TASK=01", "@XXXX", "@STAS SNO=9", "@STAS  SNO=0", "@HSON "] {
+            assert_eq!(all_blocks(&["raw", text]).unwrap(), [text]);
+        }
+    }
+
+    #[test]
+    fn what_the_manual_does_not_print_counts_as_a_motion() {
+        assert_eq!(risk("@STAS SNO=0"), Risk::Read);
+        assert_eq!(risk("@WOVR OV=001"), Risk::Write);
+        assert_eq!(risk("@JGST X=SP Y=SP Z=SP R=SP"), Risk::Write);
+        assert_eq!(risk("@HOME"), Risk::Motion);
+        for text in ["@WOVR OV=101", "@WOVR OV=1", "@XXXX", "@STAS SNO=0 "] {
+            assert_eq!(risk(text), Risk::Motion, "{text}");
+        }
+        assert_eq!(intent(&["raw", "@XXXX"]), "send @XXXX (which is not as the manual prints it)");
+    }
+
+    #[test]
+    fn what_can_be_no_block_is_refused_here() {
+        assert!(objection(&["raw", "STAS"]).contains("begins with @"));
+        assert!(objection(&["raw", "@STAS\tSNO=0"]).contains("column 6"));
+        assert!(objection(&["raw", &format!("@{}", "A".repeat(126))]).contains("128"));
+        assert!(objection(&["raw", "@HSON\r\n"]).contains("line end"));
+    }
+
+    #[test]
+    fn the_answer_is_explained_and_a_refusal_is_a_failure() {
+        let mut bench = Bench::new("sim:");
+        let status = bench.data(&["raw", "@STAS SNO=3"]);
+        assert_eq!((&status["fields"][1]["name"], &status["refused"]), (&"page".into(), &false.into()));
+        let (home, failure) = bench.run(&["raw", "@HOME"]).unwrap();
+        assert_eq!((&home["answer"], failure.unwrap().kind), (&"@NG".into(), Kind::Refused), "the host is OFF");
+        let (unknown, failure) = bench.run(&["raw", "@XXXX"]).unwrap();
+        assert_eq!((&unknown["answer"], failure.unwrap().kind), (&"@NG".into(), Kind::Refused));
+    }
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::Family;
 use super::link::Refusal;
 use super::register::unsigned;
-use crate::command::common::decode::{FieldRow, field_table, parse_hex};
+use crate::command::common::decode::yerc::{FieldRow, field_table, parse_hex};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::hex;

@@ -1,11 +1,10 @@
-//! `armctl decode FAMILY …`: bytes in words.
+//! `armctl decode yerc`: frames in words.
 
-use std::io::Read as _;
-
-use clap::{Args, Subcommand};
+use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::stdin;
 use crate::command::Report;
 use crate::command::run::{Run, Stopped};
 use crate::controller::yerc::describe::{Description, FieldNote, Sender, describe};
@@ -14,13 +13,6 @@ use crate::controller::yerc::table::service;
 use crate::controller::yerc::wire::{ANSWER_BIT, HEADER_LEN, RequestFrame};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, Table, View};
-
-/// Families whose frames are known.
-#[derive(Debug, Subcommand)]
-pub enum Decode {
-    /// Frames of the high-speed Ethernet server, as from a packet capture
-    Yerc(Yerc),
-}
 
 /// Frames to explain.
 #[derive(Debug, Args)]
@@ -52,27 +44,18 @@ fn number(text: &str) -> Result<u16, String> {
     parsed.ok_or_else(|| "a number from 0 to 65535 (0x0000 to 0xFFFF) is expected".to_owned())
 }
 
-impl Decode {
-    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
-        let Self::Yerc(yerc) = self;
-        let frames = yerc.frames()?;
-        run.local("decode.yerc", &yerc.explained(&frames))
-    }
-}
-
-/// Room for thousands of frames from stdin.
-const MOST: u64 = 16 << 20;
-
 impl Yerc {
+    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
+        let frames = self.frames()?;
+        run.local("decode.yerc", &self.explained(&frames))
+    }
+
     /// The frames that were given, each as its bytes.
     fn frames(&self) -> Result<Vec<Vec<u8>>, Failure> {
         let wrong = |error| Failure::usage(error).hint("give bytes as 59455243… or 59 45 52 43 …");
         let mut pieces = Vec::new();
         if self.hex == ["-"] {
-            let mut text = String::new();
-            let failed = |error| Failure::io("stdin", &error);
-            std::io::stdin().lock().take(MOST).read_to_string(&mut text).map_err(failed)?;
-            for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
+            for line in stdin()?.lines().map(str::trim).filter(|line| !line.is_empty()) {
                 pieces.push(parse_hex(line).map_err(wrong)?);
             }
         } else {

@@ -42,7 +42,6 @@ impl Sim {
 }
 
 /// A simulator behind what clients connect to.
-#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 trait Served {
     /// Serves until something arrives or is due, and all that follows from it. The future may be dropped.
     async fn turn(&mut self) -> io::Result<()>;

@@ -1,0 +1,42 @@
+//! `armctl decode FAMILY …`: what goes over the line, in words.
+
+pub mod toyo;
+pub mod yerc;
+
+use std::io::Read as _;
+
+use clap::Subcommand;
+
+use self::toyo::Toyo;
+use self::yerc::Yerc;
+use crate::command::run::{Run, Stopped};
+use crate::failure::Failure;
+
+/// Families whose traffic is known.
+#[derive(Debug, Subcommand)]
+pub enum Decode {
+    /// Frames of the high-speed Ethernet server, as from a packet capture
+    Yerc(Yerc),
+    /// Lines of the host communication, of either side
+    Toyo(Toyo),
+}
+
+impl Decode {
+    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
+        match self {
+            Self::Yerc(yerc) => yerc.run(run),
+            Self::Toyo(toyo) => toyo.run(run),
+        }
+    }
+}
+
+/// Room for thousands of frames.
+const MOST: u64 = 16 << 20;
+
+/// What stands on stdin; bytes that are no text are replaced, and then told as such.
+fn stdin() -> Result<String, Failure> {
+    let mut bytes = Vec::new();
+    let read = std::io::stdin().lock().take(MOST).read_to_end(&mut bytes);
+    read.map_err(|error| Failure::io("stdin", &error))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}

@@ -1,0 +1,227 @@
+//! `armctl decode toyo`: lines of a conversation in words.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::stdin;
+use crate::command::Report;
+use crate::command::run::{Run, Stopped};
+use crate::controller::toyo::describe::{Description, FieldNote, Sender, describe};
+use crate::controller::toyo::request::Request;
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Section, Table, View};
+
+/// Lines to explain.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Who sent a line is told by its form, or by -> or <- in front of it, as in the text of --trace. An \
+                        answer is explained by the request before it. A damaged line is explained up to the damage, \
+                        and the exit code is 5."
+)]
+pub struct Toyo {
+    /// Such as '@STAS SNO=0' or '@STAS SNO=0 ST1=22 ST2=00', or - for stdin, one a line
+    #[arg(required = true, value_name = "LINE", allow_hyphen_values = true)]
+    lines: Vec<String>,
+}
+
+/// How traces mark who sent a line, and where their explanation of it begins.
+const MARKS: [(&str, Sender); 2] = [("->", Sender::Host), ("<-", Sender::Controller)];
+const REMARK: &str = "  # ";
+
+impl Toyo {
+    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
+        let lines = self.lines()?;
+        run.local("decode.toyo", &explained(&lines))
+    }
+
+    fn lines(&self) -> Result<Vec<String>, Failure> {
+        let lines =
+            if self.lines == ["-"] { stdin()?.lines().map(str::to_owned).collect() } else { joined(&self.lines) };
+        // A block is never empty, and the bytes in a trace are those of the line above them.
+        let lines: Vec<String> = lines.into_iter().filter(|line| is_line(line)).collect();
+        if lines.is_empty() {
+            return Err(Failure::usage("there are no lines to explain").hint("give lines such as '@STAS SNO=0'"));
+        }
+        Ok(lines)
+    }
+}
+
+fn is_line(line: &str) -> bool {
+    !line.trim().is_empty() && !line.starts_with("   ")
+}
+
+/// Arguments that a shell took apart at blanks, put together: a line begins with its mark or with `@`.
+fn joined(arguments: &[String]) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for argument in arguments {
+        let is_mark = |text: &str| MARKS.iter().any(|(mark, _)| text.trim() == *mark);
+        let begins = argument.starts_with('@') || MARKS.iter().any(|(mark, _)| argument.starts_with(mark));
+        match lines.last_mut() {
+            Some(last) if !begins || is_mark(last) => {
+                last.push(' ');
+                last.push_str(argument);
+            }
+            _ => lines.push(argument.clone()),
+        }
+    }
+    lines
+}
+
+/// Each line in words. An answer is explained by the request before it.
+fn explained(lines: &[String]) -> Lines {
+    let mut asked: Option<Request> = None;
+    let lines = lines.iter().map(|line| {
+        let (marked, text) = unmarked(line);
+        // TYPE is answered in the form of its request.
+        let is_answer = || asked.as_ref().is_some_and(|request| request.answer(text).is_ok());
+        let sender = marked.unwrap_or_else(|| if is_answer() { Sender::Controller } else { Sender::guess(text) });
+        let description = describe(text, sender, asked.take().as_ref());
+        if sender == Sender::Host {
+            asked = Request::parse(text).ok();
+        }
+        Line::new(text, sender, description)
+    });
+    Lines { lines: lines.collect() }
+}
+
+/// A line without what a trace adds to it.
+fn unmarked(line: &str) -> (Option<Sender>, &str) {
+    let trimmed = line.trim_start();
+    let marked =
+        MARKS.iter().find_map(|(mark, sender)| Some((Some(*sender), trimmed.strip_prefix(mark)?.trim_start())));
+    match marked {
+        Some((sender, text)) => (sender, text.split_once(REMARK).map_or(text, |(text, _)| text)),
+        None => (None, trimmed),
+    }
+}
+
+/// Lines in words.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Lines {
+    lines: Vec<Line>,
+}
+
+/// A line in words.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Line {
+    /// The line itself.
+    text: String,
+    /// What it is.
+    title: String,
+    /// Section of the manual, where the command is known.
+    section: Option<String>,
+    /// `host` or `controller`.
+    sender: &'static str,
+    fields: Vec<FieldRow>,
+    /// What is wrong with it.
+    problem: Option<String>,
+}
+
+/// A piece of a line.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct FieldRow {
+    /// Of its first character, from 1.
+    column: usize,
+    /// Characters.
+    width: usize,
+    /// What it is called.
+    name: &'static str,
+    /// As it stands there.
+    raw: String,
+    /// What it says.
+    meaning: String,
+    /// What it is.
+    about: &'static str,
+}
+
+impl From<FieldNote> for FieldRow {
+    fn from(note: FieldNote) -> Self {
+        let FieldNote { column, width, name, raw, meaning, about } = note;
+        Self { column, width, name, raw, meaning, about }
+    }
+}
+
+impl Line {
+    fn new(text: &str, sender: Sender, description: Description) -> Self {
+        let Description { title, section, fields, problem } = description;
+        let sender = match sender {
+            Sender::Host => "host",
+            Sender::Controller => "controller",
+        };
+        let fields = fields.into_iter().map(FieldRow::from).collect();
+        Self { text: text.to_owned(), title, section, sender, fields, problem }
+    }
+}
+
+/// Fields as a table.
+pub fn field_table(fields: &[FieldRow]) -> Table {
+    let mut table = Table::new(&["column", "field", "raw", "meaning"], "no fields");
+    for field in fields {
+        let FieldRow { column, name, raw, meaning, .. } = field;
+        table.row([(*column).into(), (*name).into(), raw.as_str().into(), meaning.as_str().into()]);
+    }
+    table
+}
+
+impl Report for Lines {
+    fn view(&self) -> View {
+        let mut sections = Vec::new();
+        for line in &self.lines {
+            let section = line.section.as_ref().map(|section| format!(" ({section})")).unwrap_or_default();
+            let problem = line.problem.as_ref().map(|problem| format!("\nproblem: {problem}")).unwrap_or_default();
+            sections.push(Section::Text(format!("{}\n{}{section}{problem}", line.text, line.title)));
+            if !line.fields.is_empty() {
+                sections.push(Section::Table(field_table(&line.fields)));
+            }
+        }
+        View { sections }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let problem = self.lines.iter().find_map(|line| line.problem.as_ref())?;
+        let damaged = self.lines.iter().filter(|line| line.problem.is_some()).count();
+        let message = match self.lines.len() {
+            1 => format!("the line is damaged: {problem}"),
+            all => format!("{damaged} of {all} lines are damaged; the first: {problem}"),
+        };
+        let hint = "the fields before the damage are explained as far as they go";
+        Some(Failure::new(Kind::Malformed, message).hint(hint))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn senders(lines: &[&str]) -> Vec<&'static str> {
+        let toyo = Toyo { lines: lines.iter().map(ToString::to_string).collect() };
+        explained(&toyo.lines().unwrap()).lines.iter().map(|line| line.sender).collect()
+    }
+
+    #[test]
+    fn a_line_may_come_in_words_or_as_a_trace_has_it() {
+        assert_eq!(senders(&["@STAS", "SNO=0", "@STAS", "SNO=0", "ST1=22", "ST2=00"]), ["host", "controller"]);
+        assert_eq!(senders(&["-> @HOME  # request: HOME", "<- @OK  # answer to HOME: done"]), ["host", "controller"]);
+        assert_eq!(senders(&["->", "@TYPE", "AX1", "RTYP=000000", "<-", "@NG"]), ["host", "controller"]);
+        assert_eq!(senders(&["@TYPE AX1 RTYP=000001", "@TYPE AX1 RTYP=000000"]), ["host", "controller"]);
+        assert_eq!(senders(&["@HSON", "   40 48 53 4f 4e", "@HSOF"]), ["host", "host"]);
+        assert!(Toyo { lines: vec![" ".into()] }.lines().is_err());
+    }
+
+    #[test]
+    fn an_answer_is_explained_by_the_request_before_it() {
+        let lines = ["@HOME", "@OK", "@OK"].map(str::to_owned);
+        let titles: Vec<String> = explained(&lines).lines.into_iter().map(|line| line.title).collect();
+        assert_eq!(titles[1..], ["answer to HOME: done", "answer: done"]);
+    }
+
+    #[test]
+    fn damage_is_a_failure_with_the_fields_before_it() {
+        let lines = explained(&["@STAS SNO=0 ST1=2".to_owned()]);
+        assert_eq!(lines.lines[0].fields.len(), 2);
+        let failure = Report::failure(&lines).unwrap();
+        assert_eq!(failure.kind, Kind::Malformed);
+        assert!(Report::failure(&explained(&["@HOME".to_owned()])).is_none());
+    }
+}
