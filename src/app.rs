@@ -189,7 +189,7 @@ fn refuse(args: &[OsString], error: &clap::Error) -> ExitCode {
     }
     if let Some(family) = absent_family(args) {
         let failure = Failure::usage(format!("this version does not speak {family} yet"))
-            .hint("version 0.1.0 speaks yerc; CHANGELOG.md tells what came when");
+            .hint("it speaks yerc and toyo; CHANGELOG.md tells what came when");
         return tell(&screen, failure.into());
     }
     if is_json {

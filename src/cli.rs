@@ -41,7 +41,11 @@ pub enum Top {
     #[command(subcommand_required = true, arg_required_else_help = true)]
     Yerc(Verbs<yerc::Yerc>),
     /// Toyo over RS-232C host communication
-    #[command(subcommand_required = true, arg_required_else_help = true)]
+    #[command(
+        subcommand_required = true,
+        arg_required_else_help = true,
+        after_help = "Cable, settings and first contact: `armctl help toyo-setup`; the ports there are: `armctl toyo ports`."
+    )]
     Toyo(Verbs<toyo::Toyo>),
     /// Commands that every family shares
     #[command(flatten)]
@@ -55,7 +59,7 @@ pub struct Globals {
     /// Talk to the built-in simulator, in this process
     #[arg(long, global = true, help_heading = "Which robot", conflicts_with_all = ["target", "robot", "all", "tag"])]
     pub sim: bool,
-    /// Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)
+    /// Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)
     #[arg(short, long, global = true, value_name = "URL", help_heading = "Which robot", conflicts_with_all = ["robot", "all", "tag"])]
     pub target: Option<Target>,
     /// Talk to a robot of the inventory, by name or pattern (repeatable)

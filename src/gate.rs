@@ -68,8 +68,9 @@ impl Gate {
             return Ok(());
         }
         if !screen.can_ask() {
+            let when = if risk == Risk::Motion { "when nobody is in the cell" } else { "if it is meant" };
             return Err(refused(format!("not confirmed: on {} this would {intent}", robot.label()))
-                .hint("add --yes when nobody is in the cell, or --dry-run to see what would be sent"));
+                .hint(format!("add --yes {when}, or --dry-run to see what would be sent")));
         }
         screen.ask_note(&format!("{}: a {} controller, not the built-in simulator", robot.label(), robot.family));
         let agreed = match demand {

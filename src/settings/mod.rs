@@ -160,10 +160,13 @@ impl Sources {
         let default = self.inventory.default.as_ref();
         match default.and_then(|name| self.inventory.robots.iter().find(|robot| robot.name == *name)) {
             Some(entry) => Ok(vec![self.resolved(entry, family)?]),
-            None => Err(Failure::usage("no robot is named").hint(
-                "use --sim for the built-in simulator, -t udp://HOST for an address, -r NAME for a robot of the \
-                 inventory, or set ARMCTL_TARGET",
-            )),
+            None => {
+                let address = family.map_or("udp://HOST", Family::address);
+                Err(Failure::usage("no robot is named").hint(format!(
+                    "use --sim for the built-in simulator, -t {address} for an address, -r NAME for a robot of the \
+                     inventory, or set ARMCTL_TARGET"
+                )))
+            }
         }
     }
 

@@ -34,6 +34,15 @@ impl Family {
         }
     }
 
+    /// What a URL of it looks like, for hints.
+    pub const fn address(self) -> &'static str {
+        match self {
+            Self::Yerc => "udp://HOST",
+            Self::Yrcx => "eip://HOST",
+            Self::Toyo => "serial:///dev/ttyUSB0 or tcp://HOST:PORT",
+        }
+    }
+
     /// The kinds of URL that reach it.
     const fn schemes(self) -> &'static [&'static str] {
         match self {

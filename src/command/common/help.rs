@@ -4,29 +4,31 @@ use clap::{Args, CommandFactory as _};
 
 use crate::cli::Cli;
 use crate::command::run::Run;
-use crate::controller::yerc::simulator;
+use crate::controller::{toyo, yerc};
 use crate::failure::{Failure, Kind};
 use crate::settings::inventory::nearest;
 
 /// Explains a topic, or a command.
 #[derive(Debug, Args)]
 pub struct Help {
-    /// A topic (exit-codes, targets, inventory, output, safety, scripting, simulator, yerc-setup), or a command
+    /// A topic (exit-codes, targets, inventory, output, safety, scripting, simulator, toyo-setup,
+    /// yerc-setup), or a command
     words: Vec<String>,
 }
 
 /// Topics with a line about each and their text.
-const TOPICS: [(&str, &str, &str); 7] = [
+const TOPICS: [(&str, &str, &str); 8] = [
     ("targets", "how to say which robot", include_str!("topics/targets.txt")),
     ("inventory", "robots.toml", include_str!("topics/inventory.txt")),
     ("output", "tables, JSON, jq, colour", include_str!("topics/output.txt")),
     ("safety", "what asks, what refuses, what Ctrl-C does", include_str!("topics/safety.txt")),
     ("scripting", "watching, waiting, piping", include_str!("topics/scripting.txt")),
     (SIMULATOR, "servers, start state, console, faults", include_str!("topics/simulator.txt")),
+    ("toyo-setup", "cable and settings of a Toyo controller", include_str!("topics/toyo-setup.txt")),
     ("yerc-setup", "settings of an FS100 or DX200", include_str!("topics/yerc-setup.txt")),
 ];
 
-/// The topic that ends with the example that the simulator's own tests read.
+/// The topic that ends with the examples that the simulators' own tests read.
 const SIMULATOR: &str = "simulator";
 
 /// The topic that is made from the table of failures.
@@ -45,8 +47,8 @@ pub fn text(words: &[String], color: bool) -> Result<String, Failure> {
             return Ok(exit_codes());
         }
         if let Some((.., text)) = TOPICS.iter().find(|(name, ..)| name == word) {
-            let example = if word == SIMULATOR { simulator::EXAMPLE } else { "" };
-            return Ok(format!("{text}{example}"));
+            let examples = if word == SIMULATOR { start_states() } else { String::new() };
+            return Ok(format!("{text}{examples}"));
         }
     }
     let mut root = Cli::command();
@@ -74,6 +76,10 @@ pub fn text(words: &[String], color: bool) -> Result<String, Failure> {
         }
     }
     Ok(text)
+}
+
+fn start_states() -> String {
+    format!("{}\nAnd this one those of toyo:\n\n{}", yerc::simulator::EXAMPLE, toyo::simulator::EXAMPLE)
 }
 
 fn exit_codes() -> String {

@@ -43,7 +43,7 @@ pub struct Show {
 pub struct Add {
     /// Its name
     name: String,
-    /// Where it is, such as udp://192.168.1.31?model=dx200
+    /// Where it is, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
     url: Target,
     /// Its family, where the URL does not tell
     #[arg(long)]
@@ -124,7 +124,7 @@ impl Add {
         }
         let Some(family) = self.family.or(self.url.family()) else {
             let failure = Failure::usage(format!("'{}' does not tell the family", self.url));
-            return Err(failure.hint("add --family yerc").into());
+            return Err(failure.hint("add --family yerc or --family toyo").into());
         };
         self.url
             .check(family)

@@ -87,7 +87,9 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
 }
 
 fn unexplained(row: &Row) -> String {
-    if row.only_on.is_empty() {
+    if row.command == Command::Dout {
+        "there may be no such output, or parameter M12 (direct-outputs) have no bit for F1 to F4".to_owned()
+    } else if row.only_on.is_empty() {
         "the value may be out of what this controller has, or the controller be busy: try again".to_owned()
     } else {
         format!("only some controllers have it: {}", row.only_on.join(", "))

@@ -13,7 +13,7 @@ use self::toyo::SimToyo;
 use self::yerc::SimYerc;
 use crate::command::interrupt::interruptible;
 use crate::command::run::{Run, Stopped};
-use crate::failure::{Failure, Kind};
+use crate::failure::{Failure, Kind, plain};
 
 /// Which simulator to serve.
 #[derive(Debug, Args)]
@@ -104,5 +104,5 @@ fn cannot_listen(on: &str, error: &io::Error) -> Failure {
         io::ErrorKind::PermissionDenied => "ports below 1024 need rights; choose a higher one",
         _ => "choose an address of this machine with --bind",
     };
-    Failure::new(Kind::NoAnswer, format!("cannot listen on {on}: {error}")).hint(hint)
+    Failure::new(Kind::NoAnswer, format!("cannot listen on {on}: {}", plain(error))).hint(hint)
 }

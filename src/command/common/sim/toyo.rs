@@ -13,7 +13,7 @@ use crate::command::Report;
 use crate::command::interrupt::catch_interrupts;
 use crate::command::run::{Run, Stopped};
 use crate::command::toyo::simulated::{self, Simulated};
-use crate::failure::{Failure, Kind};
+use crate::failure::{Failure, plain};
 use crate::output::view::View;
 use crate::transport::fault::LineFaultSpec;
 use crate::transport::line::Pace;
@@ -103,7 +103,7 @@ impl Served for Toyo {
 }
 
 fn no_terminal(error: &io::Error) -> Failure {
-    let failure = Failure::new(Kind::Local, format!("cannot make a pseudo-terminal: {error}"));
+    let failure = Failure::local(format!("cannot make a pseudo-terminal: {}", plain(error)));
     failure.hint("leave --pty away, and reach the simulator over TCP")
 }
 
