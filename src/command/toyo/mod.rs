@@ -3,6 +3,8 @@
 mod bus;
 mod cells;
 mod counter;
+#[cfg(test)]
+mod coverage;
 mod host;
 mod info;
 mod init;

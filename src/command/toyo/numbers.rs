@@ -60,13 +60,13 @@ pub async fn ask_all(
     requests: &[Request],
 ) -> Result<Vec<Record>, Failure> {
     link.rehearse(requests).await;
-    let progress = (requests.len() > 1).then(|| screen.spinner(what));
+    let mut progress = (requests.len() > 1).then(|| screen.items_progress(what, requests.len() as u64));
     let mut answers = Vec::with_capacity(requests.len());
     for request in requests {
-        if let Some(progress) = &progress {
-            progress.say(&format!("{what} ({} of {})", answers.len() + 1, requests.len()));
-        }
         answers.push(link.read(request).await?);
+        if let Some(progress) = &mut progress {
+            progress.advance(1);
+        }
     }
     Ok(answers)
 }

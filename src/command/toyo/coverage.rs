@@ -1,0 +1,56 @@
+//! Every one of the 62 commands of the protocol is sent by a named command line (`raw` sends any).
+
+use std::collections::BTreeSet;
+
+use super::testing::all_blocks;
+use crate::controller::toyo::table::commands::ROWS;
+
+/// A command line, and commands that it sends, in the order of its dry run.
+#[rustfmt::skip]
+const LINES: &[(&str, &[&str])] = &[
+    ("status", &["STAS"]),
+    ("position", &["MPST"]),
+    ("host on", &["HSON"]),
+    ("host off", &["HSOF"]),
+    ("io in", &["MINP"]),
+    ("io out", &["MOUT"]),
+    ("io internal", &["MNIN"]),
+    ("io set 1.1=on", &["DOUT"]),
+    ("io direct 1", &["DOUT"]),
+    ("counter get 1", &["MCNT"]),
+    ("counter set 1 0", &["MCST"]),
+    ("timer get 1", &["MTMR"]),
+    ("override get", &["ROVR"]),
+    ("override set 1", &["ROVR", "WOVR"]),
+    ("task get", &["MTSK"]),
+    ("task set 1", &["CTSK"]),
+    ("offset", &["MOFF"]),
+    ("bus", &["MBUS"]),
+    ("init points", &["MINT"]),
+    ("robot-type 1 0", &["TYPE"]),
+    ("info", &["SYSP", "CVER", "MTSK", "ROVR"]),
+];
+
+/// Commands that have no line above yet.
+#[rustfmt::skip]
+const TO_COME: &[&str] = &[
+    "CERR", "CESY", "CPPL", "CPSS", "DSTL", "DSTX", "EHTR", "EXTP", "HOME", "ISTX", "JGST", "MAUT", "MERP", "MPLE",
+    "MPRO", "MRSS", "MSEQ", "MSTP", "PPST", "REST", "RESD", "RESY", "RMCA", "RPAR", "RPLD", "RPLT", "RSTX", "SESN",
+    "SESY", "SORG", "SPLN", "SPST", "SSTG", "STOP", "SVOF", "SVON", "WESY", "WMCA", "WPAR", "WPLT", "WSTX",
+];
+
+#[test]
+fn every_command_has_a_command_line() {
+    let mut reached = BTreeSet::new();
+    for (line, commands) in LINES {
+        let words: Vec<&str> = line.split(' ').collect();
+        let blocks = all_blocks(&words).unwrap_or_else(|failure| panic!("{line}: {failure}"));
+        let sent: Vec<&str> = blocks.iter().map(|block| &block[1..5]).collect();
+        for command in *commands {
+            assert!(sent.contains(command), "{line}: {command} is not in {sent:?}");
+            reached.insert(*command);
+        }
+    }
+    let missing: BTreeSet<&str> = ROWS.iter().map(|row| row.word).filter(|word| !reached.contains(word)).collect();
+    assert_eq!(missing, TO_COME.iter().copied().collect());
+}
