@@ -1,0 +1,166 @@
+//! CIP requests and replies (volume 1, 2-4).
+
+use std::fmt;
+
+use super::{Path, Reader, WireError, words8};
+
+/// Services of objects.
+pub mod service {
+    /// Every attribute of an instance.
+    pub const ATTRIBUTES_ALL: u8 = 0x01;
+    /// One attribute.
+    pub const ATTRIBUTE_SINGLE: u8 = 0x0E;
+    /// Changes one attribute.
+    pub const SET_ATTRIBUTE_SINGLE: u8 = 0x10;
+    /// Closes a connection.
+    pub const FORWARD_CLOSE: u8 = 0x4E;
+    /// A message for somebody behind the device.
+    pub const UNCONNECTED_SEND: u8 = 0x52;
+    /// Opens a connection with up to 511 bytes each way.
+    pub const FORWARD_OPEN: u8 = 0x54;
+    /// Opens a connection with up to 65,535 bytes each way.
+    pub const LARGE_FORWARD_OPEN: u8 = 0x5B;
+    /// Added in a reply.
+    pub const REPLY: u8 = 0x80;
+}
+
+/// A request to an object.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Request<'a> {
+    /// What is to be done; see [`service`].
+    pub service: u8,
+    /// The object.
+    pub path: Path,
+    /// What the service takes.
+    pub data: &'a [u8],
+}
+
+impl<'a> Request<'a> {
+    /// Reads a message.
+    pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
+        let mut reader = Reader::new(bytes);
+        let service = reader.u8("service")?;
+        let words = reader.u8("words of the path")?;
+        let path = Path::parse(reader.take(usize::from(words) * 2, "path")?)
+            .map_err(|error| WireError { offset: error.offset + 2, ..error })?;
+        Ok(Self { service, path, data: reader.rest() })
+    }
+
+    /// The message.
+    pub fn emit(&self) -> Vec<u8> {
+        let path = self.path.emit();
+        let mut out = vec![self.service, words8(path.len())];
+        out.extend(path);
+        out.extend(self.data);
+        out
+    }
+}
+
+/// How a request went.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
+pub struct Status {
+    /// 0 is success.
+    pub general: u8,
+    /// What there is to add; empty mostly.
+    pub extended: Vec<u16>,
+}
+
+impl Status {
+    /// Done.
+    pub const OK: Self = Self { general: 0, extended: Vec::new() };
+
+    /// A refusal without more.
+    pub const fn general(general: u8) -> Self {
+        Self { general, extended: Vec::new() }
+    }
+
+    /// A refusal of the connection manager (general status 1), with words after its code.
+    pub fn connection(extended: u16, more: &[u16]) -> Self {
+        Self { general: 1, extended: [&[extended], more].concat() }
+    }
+
+    /// Whether the request was carried out.
+    pub const fn is_ok(&self) -> bool {
+        self.general == 0
+    }
+}
+
+impl fmt::Display for Status {
+    /// "0x01/0x0109 54": general status, extended status, what follows it in decimal.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:#04x}", self.general)?;
+        if let Some((code, more)) = self.extended.split_first() {
+            write!(f, "/{code:#06x}")?;
+            more.iter().try_for_each(|word| write!(f, " {word}"))?;
+        }
+        Ok(())
+    }
+}
+
+/// The reply to a request.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Reply<'a> {
+    /// The service of the request.
+    pub service: u8,
+    /// How it went.
+    pub status: Status,
+    /// What the service gives, or more about a refusal.
+    pub data: &'a [u8],
+}
+
+impl<'a> Reply<'a> {
+    /// Reads a message.
+    pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
+        let mut reader = Reader::new(bytes);
+        let service = reader.u8("reply service")?;
+        if service & service::REPLY == 0 {
+            return Err(reader.wrong("reply service", 1, service));
+        }
+        reader.u8("reserved")?;
+        let general = reader.u8("general status")?;
+        let words = reader.u8("words of extended status")?;
+        let extended = reader.take(usize::from(words) * 2, "extended status")?;
+        let extended = extended.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect();
+        Ok(Self { service: service & !service::REPLY, status: Status { general, extended }, data: reader.rest() })
+    }
+
+    /// The message.
+    pub fn emit(&self) -> Vec<u8> {
+        let extended = &self.status.extended;
+        let mut out = vec![self.service | service::REPLY, 0, self.status.general, words8(extended.len() * 2)];
+        out.extend(extended.iter().flat_map(|word| word.to_le_bytes()));
+        out.extend(self.data);
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::hex;
+    use super::*;
+
+    #[test]
+    fn a_read_of_an_attribute() {
+        let request = Request { service: service::ATTRIBUTE_SINGLE, path: Path::attribute(4, 100, 3), data: &[] };
+        let bytes = hex("0E 03 20 04 24 64 30 03");
+        assert_eq!(request.emit(), bytes);
+        assert_eq!(Request::parse(&bytes), Ok(request));
+    }
+
+    /// The failure of a ForwardClose as ControlLogix sends it (cpppo, enip_test.py, `fwd_clo_reply_just_sts`).
+    #[test]
+    fn a_refusal_with_an_extended_status() {
+        let bytes = hex("CE 00 01 01 00 01");
+        let reply = Reply::parse(&bytes).unwrap();
+        assert_eq!(reply, Reply { service: 0x4E, status: Status::connection(0x0100, &[]), data: &[] });
+        assert_eq!(reply.emit(), bytes);
+        assert_eq!(reply.status.to_string(), "0x01/0x0100");
+    }
+
+    #[test]
+    fn errors_count_from_the_start_of_the_message() {
+        let error = Request::parse(&hex("0E 02 20 04 FF 00")).unwrap_err();
+        assert_eq!((error.field, error.offset), ("path segment", 4));
+        assert_eq!(Reply::parse(&hex("0E 00 00 00")).unwrap_err().field, "reply service");
+    }
+}

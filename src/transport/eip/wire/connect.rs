@@ -1,0 +1,424 @@
+//! What the connection manager is asked and answers (volume 1, 3-5.5).
+
+use super::{Path, Reader, Request, WireError, service, words8};
+
+/// Class and instance of the connection manager.
+const MANAGER: (u32, u32) = (6, 1);
+/// How long a router on the way may take for an open: 249 ticks of 128 ms, the most there is but one.
+const PATIENCE: [u8; 2] = [7, 249];
+/// Most bytes that the short form can ask for.
+const MOST_SHORT: u16 = 511;
+
+/// What makes a connection one of a kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Triad {
+    /// Its number, unique for the originator.
+    pub serial: u16,
+    /// The maker of the originator.
+    pub vendor: u16,
+    /// The serial number of the originator.
+    pub originator: u32,
+}
+
+impl Triad {
+    fn read(reader: &mut Reader<'_>) -> Result<Self, WireError> {
+        let serial = reader.u16("connection serial number")?;
+        let vendor = reader.u16("originator vendor")?;
+        let originator = reader.u32("originator serial number")?;
+        Ok(Self { serial, vendor, originator })
+    }
+
+    fn bytes(self) -> [u8; 8] {
+        let mut out = [0; 8];
+        out[0..2].copy_from_slice(&self.serial.to_le_bytes());
+        out[2..4].copy_from_slice(&self.vendor.to_le_bytes());
+        out[4..8].copy_from_slice(&self.originator.to_le_bytes());
+        out
+    }
+}
+
+/// How one direction of a connection travels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Net {
+    /// Not at all.
+    Null,
+    /// To a group.
+    Multicast,
+    /// To the other end.
+    PointToPoint,
+    /// The fourth value, which has no meaning.
+    Reserved,
+}
+
+const NETS: [Net; 4] = [Net::Null, Net::Multicast, Net::PointToPoint, Net::Reserved];
+
+/// One direction of a connection as it is asked for (volume 1, 3-5.5.1.1).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Flow {
+    /// Microseconds from packet to packet.
+    pub rpi_us: u32,
+    /// How it travels.
+    pub net: Net,
+    /// Bytes of a packet: sequence count, header and data. Up to 511 in the short form of the request.
+    pub size: u16,
+    /// Whether smaller packets are good, too.
+    pub variable: bool,
+    /// 0 low, 1 high, 2 scheduled, 3 urgent.
+    pub priority: u8,
+    /// Whether more than one originator may own it.
+    pub redundant: bool,
+}
+
+impl Flow {
+    fn read(reader: &mut Reader<'_>, large: bool) -> Result<Self, WireError> {
+        let rpi_us = reader.u32("requested packet interval")?;
+        let (bits, size) = if large {
+            let size = reader.u16("connection size")?;
+            (reader.u16("connection parameters")?, size)
+        } else {
+            let bits = reader.u16("connection parameters")?;
+            (bits, bits & MOST_SHORT)
+        };
+        Ok(Self {
+            rpi_us,
+            net: NETS[usize::from(bits >> 13 & 3)],
+            size,
+            variable: bits >> 9 & 1 == 1,
+            priority: [0, 1, 2, 3][usize::from(bits >> 10 & 3)],
+            redundant: bits >> 15 == 1,
+        })
+    }
+
+    fn emit(&self, large: bool, out: &mut Vec<u8>) {
+        let net = NETS.iter().zip(0u16..).find_map(|(net, code)| (*net == self.net).then_some(code)).unwrap_or(0);
+        let bits = u16::from(self.redundant) << 15
+            | net << 13
+            | u16::from(self.priority & 3) << 10
+            | u16::from(self.variable) << 9;
+        out.extend(self.rpi_us.to_le_bytes());
+        if large {
+            out.extend(self.size.to_le_bytes());
+            out.extend(bits.to_le_bytes());
+        } else {
+            out.extend((bits | self.size).to_le_bytes());
+        }
+    }
+}
+
+/// A request to open a connection.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Open {
+    /// Ignored by the target, which chooses.
+    pub o_t_id: u32,
+    /// The id that the originator chooses; ignored for multicast.
+    pub t_o_id: u32,
+    /// Which connection it is.
+    pub triad: Triad,
+    /// The time-out is the interval times 4, 8, … 512, for 0 to 7.
+    pub multiplier: u8,
+    /// From the originator to the target.
+    pub o_t: Flow,
+    /// From the target to the originator.
+    pub t_o: Flow,
+    /// Class in bits 3 to 0, trigger in bits 6 to 4; 1 is class 1, cyclic.
+    pub transport: u8,
+    /// Key, class, configuration, connection points, configuration data.
+    pub path: Path,
+}
+
+impl Open {
+    /// The request; in the large form where a size needs it.
+    pub fn emit(&self) -> Vec<u8> {
+        let large = self.is_large();
+        let mut data = PATIENCE.to_vec();
+        data.extend(self.o_t_id.to_le_bytes());
+        data.extend(self.t_o_id.to_le_bytes());
+        data.extend(self.triad.bytes());
+        data.extend([self.multiplier, 0, 0, 0]);
+        self.o_t.emit(large, &mut data);
+        self.t_o.emit(large, &mut data);
+        let path = self.path.emit();
+        data.extend([self.transport, words8(path.len())]);
+        data.extend(path);
+        manager(if large { service::LARGE_FORWARD_OPEN } else { service::FORWARD_OPEN }, &data)
+    }
+
+    /// Whether a size needs the large form.
+    pub fn is_large(&self) -> bool {
+        self.o_t.size.max(self.t_o.size) > MOST_SHORT
+    }
+
+    /// Reads the data of a request.
+    pub fn parse(data: &[u8], large: bool) -> Result<Self, WireError> {
+        let mut reader = Reader::new(data);
+        reader.take(PATIENCE.len(), "time-out of the request")?;
+        let o_t_id = reader.u32("O->T connection id")?;
+        let t_o_id = reader.u32("T->O connection id")?;
+        let triad = Triad::read(&mut reader)?;
+        let multiplier = reader.u8("time-out multiplier")?;
+        reader.take(3, "reserved")?;
+        let o_t = Flow::read(&mut reader, large)?;
+        let t_o = Flow::read(&mut reader, large)?;
+        let transport = reader.u8("transport class and trigger")?;
+        let words = reader.u8("words of the connection path")?;
+        let start = reader.at;
+        let path = Path::parse(reader.take(usize::from(words) * 2, "connection path")?)
+            .map_err(|error| WireError { offset: error.offset + start, ..error })?;
+        reader.end("end of the request")?;
+        Ok(Self { o_t_id, t_o_id, triad, multiplier, o_t, t_o, transport, path })
+    }
+}
+
+/// The data of a reply that a connection is open.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Opened {
+    /// The id of what goes to the target.
+    pub o_t_id: u32,
+    /// The id of what comes from it.
+    pub t_o_id: u32,
+    /// Which connection it is.
+    pub triad: Triad,
+    /// Microseconds from packet to packet to the target.
+    pub o_t_api_us: u32,
+    /// Microseconds from packet to packet from the target.
+    pub t_o_api_us: u32,
+    /// What the device adds.
+    pub application: Vec<u8>,
+}
+
+impl Opened {
+    /// Reads the data of a reply.
+    pub fn parse(data: &[u8]) -> Result<Self, WireError> {
+        let mut reader = Reader::new(data);
+        let o_t_id = reader.u32("O->T connection id")?;
+        let t_o_id = reader.u32("T->O connection id")?;
+        let triad = Triad::read(&mut reader)?;
+        let o_t_api_us = reader.u32("O->T actual packet interval")?;
+        let t_o_api_us = reader.u32("T->O actual packet interval")?;
+        let words = reader.u8("words of the application reply")?;
+        reader.u8("reserved")?;
+        let application = reader.take(usize::from(words) * 2, "application reply")?.to_vec();
+        Ok(Self { o_t_id, t_o_id, triad, o_t_api_us, t_o_api_us, application })
+    }
+
+    /// The data of a reply.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = Vec::with_capacity(26 + self.application.len());
+        out.extend(self.o_t_id.to_le_bytes());
+        out.extend(self.t_o_id.to_le_bytes());
+        out.extend(self.triad.bytes());
+        out.extend(self.o_t_api_us.to_le_bytes());
+        out.extend(self.t_o_api_us.to_le_bytes());
+        out.extend([words8(self.application.len()), 0]);
+        out.extend(&self.application);
+        out
+    }
+}
+
+/// The data of a reply that a connection is not opened, or not closed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Refused {
+    /// Which connection it would be.
+    pub triad: Triad,
+    /// Words of the path from where it was not understood; devices leave it out.
+    pub remaining: Option<u8>,
+}
+
+impl Refused {
+    /// Reads the data of a reply.
+    pub fn parse(data: &[u8]) -> Result<Self, WireError> {
+        let mut reader = Reader::new(data);
+        Ok(Self { triad: Triad::read(&mut reader)?, remaining: reader.u8("remaining path").ok() })
+    }
+
+    /// The data of a reply.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = self.triad.bytes().to_vec();
+        if let Some(remaining) = self.remaining {
+            out.extend([remaining, 0]);
+        }
+        out
+    }
+}
+
+/// A request to close a connection.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Close {
+    /// Which one.
+    pub triad: Triad,
+    /// The path it was opened with.
+    pub path: Path,
+}
+
+impl Close {
+    /// The request.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut data = PATIENCE.to_vec();
+        data.extend(self.triad.bytes());
+        let path = self.path.emit();
+        data.extend([words8(path.len()), 0]);
+        data.extend(path);
+        manager(service::FORWARD_CLOSE, &data)
+    }
+
+    /// Reads the data of a request.
+    pub fn parse(data: &[u8]) -> Result<Self, WireError> {
+        let mut reader = Reader::new(data);
+        reader.take(PATIENCE.len(), "time-out of the request")?;
+        let triad = Triad::read(&mut reader)?;
+        let words = reader.u8("words of the connection path")?;
+        reader.u8("reserved")?;
+        let start = reader.at;
+        let path = Path::parse(reader.take(usize::from(words) * 2, "connection path")?)
+            .map_err(|error| WireError { offset: error.offset + start, ..error })?;
+        reader.end("end of the request")?;
+        Ok(Self { triad, path })
+    }
+}
+
+/// The data of a reply that a connection is closed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Closed {
+    /// Which one.
+    pub triad: Triad,
+}
+
+impl Closed {
+    /// Reads the data of a reply.
+    pub fn parse(data: &[u8]) -> Result<Self, WireError> {
+        Ok(Self { triad: Triad::read(&mut Reader::new(data))? })
+    }
+
+    /// The data of a reply: nothing is added.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = self.triad.bytes().to_vec();
+        out.extend([0, 0]);
+        out
+    }
+}
+
+fn manager(service: u8, data: &[u8]) -> Vec<u8> {
+    Request { service, path: Path::object(MANAGER.0, MANAGER.1), data }.emit()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Frame, Key, Reply, RrData, Segment, Status, hex};
+    use super::*;
+
+    fn cyclic(size: u16) -> Flow {
+        Flow { rpi_us: 20_000, net: Net::PointToPoint, size, variable: false, priority: 2, redundant: false }
+    }
+
+    fn open(o_t: u16, t_o: u16) -> Open {
+        Open {
+            o_t_id: 0,
+            t_o_id: 0x1234_5678,
+            triad: Triad { serial: 0x0102, vendor: 0x0304, originator: 0x0506_0708 },
+            multiplier: 2,
+            o_t: cyclic(o_t),
+            t_o: cyclic(t_o),
+            transport: 1,
+            path: Path(vec![Segment::Class(4), Segment::Instance(151), Segment::Point(150), Segment::Point(100)]),
+        }
+    }
+
+    /// Field by field after volume 1, table 3-5.17. Parameters 4836 and 4832 are point to point, scheduled, fixed, 54
+    /// and 50 bytes; tshark reads the same from them (tests/eip).
+    #[test]
+    fn an_open_has_the_printed_layout() {
+        let bytes = hex(
+            "54 02 20 06 24 01 07 F9 00000000 78563412 0201 0403 08070605 02 000000 204E0000 3648 204E0000 3248 01 04 \
+             20 04 24 97 2C 96 2C 64",
+        );
+        assert_eq!(open(54, 50).emit(), bytes);
+        assert_eq!(Open::parse(&bytes[6..], false), Ok(open(54, 50)));
+    }
+
+    #[test]
+    fn large_sizes_take_the_large_form() {
+        let large = open(54, 512);
+        let bytes = large.emit();
+        assert_eq!(bytes[0], 0x5B);
+        assert_eq!(bytes[28..36], hex("204E0000 3600 0048"));
+        assert_eq!(bytes[36..44], hex("204E0000 0002 0048"));
+        assert_eq!(Open::parse(&bytes[6..], true), Ok(large));
+        assert!(!open(511, 511).is_large());
+    }
+
+    /// A class 1 request of a tool for servo drives: key, configuration data, 10 bytes out, 6 in, multiplier 12, 10 ms.
+    #[test]
+    fn an_open_with_a_key_and_configuration_data() {
+        let bytes = hex("05 9B 00000000 08401100 0100 0100 9964D200 02 000000 10270000 0A48 10270000 0648 01 0E \
+             34 04 0000 0000 0000 00 00 20 04 24 7A 2C 66 2C 65 80 04 0000000000000000");
+        let open = Open::parse(&bytes, false).unwrap();
+        assert_eq!((open.o_t.size, open.t_o.size, open.o_t.rpi_us, open.multiplier), (10, 6, 10_000, 2));
+        assert_eq!(open.o_t.net, Net::PointToPoint);
+        let path = [
+            Segment::Key(Key::default()),
+            Segment::Class(4),
+            Segment::Instance(122),
+            Segment::Point(102),
+            Segment::Point(101),
+            Segment::Data(vec![0; 8]),
+        ];
+        assert_eq!(open.path.0, path);
+        // All but how long routers may take is written as it was read.
+        assert_eq!(open.emit()[8..], bytes[2..]);
+    }
+
+    /// A whole exchange from cpppo's tests (enip_test.py, `fwd_o01_request`, `fwd_o01_reply`).
+    #[test]
+    fn a_recorded_open_and_its_reply() {
+        let request =
+            hex("6F00 4000 05000D00 00000000 D0920000 5080FF07 00000000 00000000 2000 0200 0000 0000 B200 3000 \
+             54 02 20 06 24 01 07 F9 11000080 1000FE80 1100 4D00 0F7F3D1E 00 000000 00127A00 F443 00127A00 F443 A3 03 \
+             0100 2002 2401");
+        let frame = Frame::parse(&request).unwrap();
+        let data = RrData::parse(frame.data).unwrap();
+        let message = Request::parse(data.message).unwrap();
+        let open = Open::parse(message.data, false).unwrap();
+        assert_eq!(open.triad, Triad { serial: 0x11, vendor: 0x4D, originator: 0x1E3D_7F0F });
+        assert_eq!((open.o_t.size, open.o_t.variable, open.o_t.rpi_us), (500, true, 8_000_000));
+        assert_eq!(open.emit(), data.message);
+        let frame = Frame { data: &RrData { timeout: 32, ..RrData::new(&open.emit()) }.emit(), ..frame };
+        assert_eq!(frame.emit(), request);
+
+        let reply =
+            hex("6F00 2E00 05000D00 00000000 D0920000 5080FF07 00000000 00000000 0000 0200 0000 0000 B200 1E00 \
+             D4 00 00 00 2640A3FF 1000FE80 1100 4D00 0F7F3D1E 00127A00 00127A00 00 00");
+        let data = RrData::parse(Frame::parse(&reply).unwrap().data).unwrap();
+        let reply = Reply::parse(data.message).unwrap();
+        let opened = Opened::parse(reply.data).unwrap();
+        assert_eq!((opened.o_t_id, opened.t_o_id, opened.triad), (0xFFA3_4026, 0x80FE_0010, open.triad));
+        assert_eq!((opened.o_t_api_us, opened.t_o_api_us), (8_000_000, 8_000_000));
+        assert_eq!(opened.emit(), reply.data);
+    }
+
+    /// From there, too (`fwd_f01_reply`, and without the rest of the path `fwd_f01_reply_no_remain`).
+    #[test]
+    fn recorded_refusals() {
+        let triad = Triad { serial: 0, vendor: 0xFFFF, originator: 0x1234_5678 };
+        for (text, remaining) in [("0000 FFFF 78563412 01 00", Some(1)), ("0000 FFFF 78563412", None)] {
+            let bytes = [hex("D4 00 01 01 1103"), hex(text)].concat();
+            let reply = Reply::parse(&bytes).unwrap();
+            assert_eq!(reply.status, Status::connection(0x0311, &[]));
+            let refused = Refused::parse(reply.data).unwrap();
+            assert_eq!(refused, Refused { triad, remaining });
+            assert_eq!(refused.emit(), reply.data);
+        }
+    }
+
+    /// From there, too (`fwd_c01_request`).
+    #[test]
+    fn a_recorded_close() {
+        let bytes = hex("4E 02 20 06 24 01 07 F9 0100 4D00 0F7F3D1E 03 00 0100 2002 2401");
+        let close = Close::parse(&bytes[6..]).unwrap();
+        assert_eq!(close.triad, Triad { serial: 1, vendor: 0x4D, originator: 0x1E3D_7F0F });
+        let path = [Segment::Port { port: 1, link: vec![0] }, Segment::Class(2), Segment::Instance(1)];
+        assert_eq!(close.path.0, path);
+        assert_eq!(close.emit(), bytes);
+        let closed = Closed { triad: close.triad };
+        assert_eq!(Closed::parse(&closed.emit()), Ok(closed));
+    }
+}

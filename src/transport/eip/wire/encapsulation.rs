@@ -1,0 +1,161 @@
+//! The encapsulation: a header of 24 bytes before every message but the cyclic ones (volume 2, 2-3).
+
+use super::{Reader, WireError, len16};
+
+/// Bytes of the header.
+pub const HEADER_LEN: usize = 24;
+
+/// What a message is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Command(
+    /// The number.
+    pub u16,
+);
+
+impl Command {
+    /// Nothing; never answered.
+    pub const NOP: Self = Self(0x00);
+    /// Which services the device has.
+    pub const LIST_SERVICES: Self = Self(0x04);
+    /// Who is there.
+    pub const LIST_IDENTITY: Self = Self(0x63);
+    /// Which other interfaces the device has.
+    pub const LIST_INTERFACES: Self = Self(0x64);
+    /// Begins a session.
+    pub const REGISTER_SESSION: Self = Self(0x65);
+    /// Ends one; never answered.
+    pub const UNREGISTER_SESSION: Self = Self(0x66);
+    /// An unconnected CIP message and its answer.
+    pub const SEND_RR_DATA: Self = Self(0x6F);
+    /// A message on a connection.
+    pub const SEND_UNIT_DATA: Self = Self(0x70);
+}
+
+/// A message with its header.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Frame<'a> {
+    /// What it is for.
+    pub command: Command,
+    /// The session it belongs to; 0 for none.
+    pub session: u32,
+    /// 0 in requests and in what went well.
+    pub status: u32,
+    /// Copied into the answer.
+    pub context: [u8; 8],
+    /// At most 65,535 bytes.
+    pub data: &'a [u8],
+}
+
+impl<'a> Frame<'a> {
+    /// A request without data outside a session.
+    pub const fn new(command: Command) -> Self {
+        Self { command, session: 0, status: 0, context: [0; 8], data: &[] }
+    }
+
+    /// Reads a message that is all there, as [`Frames`] cuts them or a datagram holds one.
+    pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
+        let mut reader = Reader::new(bytes);
+        let command = Command(reader.u16("command")?);
+        let len = usize::from(reader.u16("length")?);
+        let session = reader.u32("session")?;
+        let status = reader.u32("status")?;
+        let context = reader.array("sender context")?;
+        reader.u32("options")?;
+        let data = reader.take(len, "data")?;
+        reader.end("end of the message")?;
+        Ok(Self { command, session, status, context, data })
+    }
+
+    /// The bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = Vec::with_capacity(HEADER_LEN + self.data.len());
+        out.extend(self.command.0.to_le_bytes());
+        out.extend(len16(self.data.len()));
+        out.extend(self.session.to_le_bytes());
+        out.extend(self.status.to_le_bytes());
+        out.extend(self.context);
+        out.extend([0; 4]);
+        out.extend(self.data);
+        out
+    }
+
+    /// Begins a session: protocol version 1, no options.
+    pub const fn register(context: [u8; 8]) -> Frame<'static> {
+        Frame { command: Command::REGISTER_SESSION, session: 0, status: 0, context, data: &[1, 0, 0, 0] }
+    }
+
+    /// Ends a session.
+    pub const fn unregister(session: u32) -> Frame<'static> {
+        Frame { command: Command::UNREGISTER_SESSION, session, status: 0, context: [0; 8], data: &[] }
+    }
+}
+
+/// Cuts what arrives on a TCP connection into messages. The length field bounds what is kept.
+#[derive(Debug, Clone, Default)]
+pub struct Frames {
+    bytes: Vec<u8>,
+}
+
+impl Frames {
+    /// Takes what arrived.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+    }
+
+    /// The next message that is all there, header and data.
+    pub fn pop(&mut self) -> Option<Vec<u8>> {
+        let header = self.bytes.get(..HEADER_LEN)?;
+        let len = HEADER_LEN + usize::from(u16::from_le_bytes([header[2], header[3]]));
+        if self.bytes.len() < len {
+            return None;
+        }
+        let rest = self.bytes.split_off(len);
+        Some(std::mem::replace(&mut self.bytes, rest))
+    }
+
+    /// Forgets what is there, as for a new connection.
+    pub fn clear(&mut self) {
+        self.bytes.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Problem, hex};
+    use super::*;
+
+    /// Volume 2, 2-4.4; the same bytes are in the captures that come with cpppo.
+    #[test]
+    fn a_session_begins_as_printed() {
+        let bytes = hex("6500 0400 00000000 00000000 0000000000000000 00000000 01000000");
+        assert_eq!(Frame::register([0; 8]).emit(), bytes);
+        assert_eq!(Frame::parse(&bytes), Ok(Frame::register([0; 8])));
+    }
+
+    #[test]
+    fn a_stream_is_cut_where_the_lengths_say() {
+        let one = Frame::register(*b"context1").emit();
+        let two = Frame::unregister(7).emit();
+        let all = [one.clone(), two.clone(), one[..30.min(one.len() - 1)].to_vec()].concat();
+        for size in 1..all.len() {
+            let mut frames = Frames::default();
+            let mut found = Vec::new();
+            for part in all.chunks(size) {
+                frames.push(part);
+                while let Some(frame) = frames.pop() {
+                    found.push(frame);
+                }
+            }
+            assert_eq!(found, [one.clone(), two.clone()], "in parts of {size}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_length_is_named() {
+        let mut bytes = Frame::register([0; 8]).emit();
+        bytes.pop();
+        let error = Frame::parse(&bytes).unwrap_err();
+        assert_eq!((error.field, error.offset), ("data", 24));
+        assert_eq!(error.problem, Problem::Short { needed: 4, present: 3 });
+    }
+}

@@ -1,0 +1,172 @@
+//! The common packet format: typed items with lengths (volume 2, 2-6).
+
+use std::net::{Ipv4Addr, SocketAddrV4};
+
+use super::{Reader, WireError, len16};
+
+/// Kinds of items.
+pub mod kind {
+    /// No address: the message is unconnected.
+    pub const NULL: u16 = 0x0000;
+    /// The id of a connection.
+    pub const CONNECTED_ADDRESS: u16 = 0x00A1;
+    /// A message on a connection.
+    pub const CONNECTED_DATA: u16 = 0x00B1;
+    /// An unconnected message.
+    pub const UNCONNECTED_DATA: u16 = 0x00B2;
+    /// Where cyclic data to the target goes.
+    pub const SOCKADDR_O_T: u16 = 0x8000;
+    /// Where cyclic data to the originator goes.
+    pub const SOCKADDR_T_O: u16 = 0x8001;
+    /// The id of a connection and a sequence number.
+    pub const SEQUENCED_ADDRESS: u16 = 0x8002;
+}
+
+/// Most items in a packet; no message has more than four.
+const MOST_ITEMS: u16 = 16;
+/// Address family of IPv4 in a socket address.
+const AF_INET: u16 = 2;
+
+/// An item.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Item<'a> {
+    /// What it is; see [`kind`].
+    pub kind: u16,
+    /// At most 65,535 bytes.
+    pub data: &'a [u8],
+}
+
+impl<'a> Item<'a> {
+    /// An item.
+    pub const fn new(kind: u16, data: &'a [u8]) -> Self {
+        Self { kind, data }
+    }
+
+    /// Reads the count and the items; nothing may follow.
+    pub fn parse_all(bytes: &'a [u8]) -> Result<Vec<Self>, WireError> {
+        Self::read_all(&mut Reader::new(bytes))
+    }
+
+    pub(super) fn read_all(reader: &mut Reader<'a>) -> Result<Vec<Self>, WireError> {
+        let count = reader.u16("item count")?;
+        if count > MOST_ITEMS {
+            return Err(reader.wrong("item count", 2, count));
+        }
+        let mut items = Vec::with_capacity(usize::from(count));
+        for _ in 0..count {
+            let kind = reader.u16("item type")?;
+            let len = reader.u16("item length")?;
+            items.push(Self { kind, data: reader.take(usize::from(len), "item")? });
+        }
+        reader.end("end of the items")?;
+        Ok(items)
+    }
+
+    /// The count and the items.
+    pub fn emit_all(items: &[Self]) -> Vec<u8> {
+        let mut out = Vec::with_capacity(2 + items.iter().map(|item| 4 + item.data.len()).sum::<usize>());
+        out.extend(len16(items.len()));
+        for item in items {
+            out.extend(item.kind.to_le_bytes());
+            out.extend(len16(item.data.len()));
+            out.extend(item.data);
+        }
+        out
+    }
+}
+
+/// The data of SendRRData: an unconnected message, and where cyclic data is to go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RrData<'a> {
+    /// How long the device may take, in seconds; 0 leaves it to the message.
+    pub timeout: u16,
+    /// The CIP message.
+    pub message: &'a [u8],
+    /// Where cyclic data to the target goes.
+    pub o_t: Option<SocketAddrV4>,
+    /// Where cyclic data to the originator goes.
+    pub t_o: Option<SocketAddrV4>,
+}
+
+impl<'a> RrData<'a> {
+    /// A message without socket addresses.
+    pub const fn new(message: &'a [u8]) -> Self {
+        Self { timeout: 0, message, o_t: None, t_o: None }
+    }
+
+    /// Reads the data of a frame.
+    pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
+        let mut reader = Reader::new(bytes);
+        let interface = reader.u32("interface handle")?;
+        if interface != 0 {
+            return Err(reader.wrong("interface handle", 4, interface));
+        }
+        let timeout = reader.u16("timeout")?;
+        let items = Item::read_all(&mut reader)?;
+        let address = |kind| items.iter().find(|item| item.kind == kind).map(|item| sockaddr(item.data)).transpose();
+        let (o_t, t_o) = (address(kind::SOCKADDR_O_T)?, address(kind::SOCKADDR_T_O)?);
+        let message = items.iter().find(|item| item.kind == kind::UNCONNECTED_DATA);
+        let message = message.ok_or_else(|| reader.wrong("unconnected data item", 0, 0u8))?.data;
+        Ok(Self { timeout, message, o_t, t_o })
+    }
+
+    /// The data of a frame.
+    pub fn emit(&self) -> Vec<u8> {
+        let addresses = [(kind::SOCKADDR_O_T, self.o_t), (kind::SOCKADDR_T_O, self.t_o)];
+        let addresses: Vec<(u16, [u8; 16])> =
+            addresses.into_iter().filter_map(|(kind, address)| Some((kind, sockaddr_bytes(address?)))).collect();
+        let mut items = vec![Item::new(kind::NULL, &[]), Item::new(kind::UNCONNECTED_DATA, self.message)];
+        items.extend(addresses.iter().map(|(kind, bytes)| Item::new(*kind, bytes)));
+        let mut out = vec![0; 4];
+        out.extend(self.timeout.to_le_bytes());
+        out.extend(Item::emit_all(&items));
+        out
+    }
+}
+
+/// Reads a socket address, which is big-endian (volume 2, 2-6.3.3).
+pub(super) fn sockaddr(bytes: &[u8]) -> Result<SocketAddrV4, WireError> {
+    let mut reader = Reader::new(bytes);
+    let family = u16::from_be_bytes(reader.array("address family")?);
+    if family != AF_INET {
+        return Err(reader.wrong("address family", 2, family));
+    }
+    let port = u16::from_be_bytes(reader.array("port")?);
+    let address = Ipv4Addr::from(reader.array::<4>("address")?);
+    reader.take(8, "padding of the address")?;
+    reader.end("end of the address")?;
+    Ok(SocketAddrV4::new(address, port))
+}
+
+pub(super) fn sockaddr_bytes(address: SocketAddrV4) -> [u8; 16] {
+    let mut out = [0; 16];
+    out[0..2].copy_from_slice(&AF_INET.to_be_bytes());
+    out[2..4].copy_from_slice(&address.port().to_be_bytes());
+    out[4..8].copy_from_slice(&address.ip().octets());
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::hex;
+    use super::*;
+
+    #[test]
+    fn addresses_travel_beside_the_message() {
+        let data = RrData { t_o: Some("0.0.0.0:2222".parse().unwrap()), ..RrData::new(&[0x0E, 0]) };
+        let bytes = hex("00000000 0000 0300 0000 0000 B200 0200 0E00 0180 1000 0002 08AE 00000000 0000000000000000");
+        assert_eq!(data.emit(), bytes);
+        assert_eq!(RrData::parse(&bytes), Ok(data));
+    }
+
+    #[test]
+    fn a_packet_without_a_message_is_named() {
+        let error = RrData::parse(&hex("00000000 0000 0100 0000 0000")).unwrap_err();
+        assert_eq!(error.field, "unconnected data item");
+    }
+
+    #[test]
+    fn counts_are_bounded() {
+        assert_eq!(Item::parse_all(&hex("FFFF")).unwrap_err().field, "item count");
+    }
+}
