@@ -1,0 +1,70 @@
+//! What an adapter can be made to do wrong, for tests of the other end.
+
+use super::super::wire::Cyclic;
+
+/// A thing to do wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Mischief {
+    /// Sends every other image only.
+    Drop,
+    /// Sends no images.
+    Stall,
+    /// Sends every image with the numbers of the one before.
+    Stale,
+    /// Sends every image twice.
+    Double,
+    /// Counts backwards.
+    WrongSequence,
+    /// Sends images under an id that nobody has.
+    WrongId,
+    /// Sends images that are a byte short.
+    WrongSize,
+    /// Ends the TCP connection at every request.
+    Reset,
+    /// Answers no request.
+    Mute,
+    /// Answers noise.
+    Garbage,
+}
+
+impl Mischief {
+    /// All there are, with the names they are asked for by.
+    pub const ALL: [(&'static str, Self); 10] = [
+        ("drop", Self::Drop),
+        ("stall", Self::Stall),
+        ("stale", Self::Stale),
+        ("double", Self::Double),
+        ("wrong-sequence", Self::WrongSequence),
+        ("wrong-id", Self::WrongId),
+        ("wrong-size", Self::WrongSize),
+        ("reset", Self::Reset),
+        ("mute", Self::Mute),
+        ("garbage", Self::Garbage),
+    ];
+}
+
+/// What is sent in place of an image, which is the `number`th.
+pub(super) fn images(mischief: Option<Mischief>, number: u64, bytes: Vec<u8>) -> Vec<Vec<u8>> {
+    let Some(mischief) = mischief else { return vec![bytes] };
+    let changed = |change: fn(&mut Cyclic<'_>)| {
+        let Ok(mut datagram) = Cyclic::parse(&bytes) else { return Vec::new() };
+        change(&mut datagram);
+        vec![datagram.emit(None)]
+    };
+    match mischief {
+        Mischief::Drop if number % 2 == 0 => Vec::new(),
+        Mischief::Stall => Vec::new(),
+        Mischief::Stale => changed(|datagram| {
+            // The first is as it should be: there is none before.
+            datagram.sequence = datagram.sequence.min(1);
+            datagram.count = datagram.count.min(1);
+        }),
+        Mischief::Double => vec![bytes.clone(), bytes],
+        Mischief::WrongSequence => changed(|datagram| datagram.sequence = u32::MAX - datagram.sequence),
+        Mischief::WrongId => changed(|datagram| datagram.id = !datagram.id),
+        Mischief::WrongSize => {
+            changed(|datagram| datagram.body = &datagram.body[..datagram.body.len().saturating_sub(1)])
+        }
+        Mischief::Drop | Mischief::Reset | Mischief::Mute | Mischief::Garbage => vec![bytes],
+    }
+}

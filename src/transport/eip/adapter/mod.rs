@@ -1,0 +1,467 @@
+//! The other end: an adapter with assemblies, without sockets and without a clock. It is stricter than devices are.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::net::{Ipv4Addr, SocketAddrV4};
+use std::ops::RangeInclusive;
+use std::time::Duration;
+
+use super::class1::{Consumer, Producer, Verdict};
+use super::settings::Role;
+use super::wire::{
+    Close, Closed, Command, Cyclic, Frame, Frames, Identity, Item, Refused, Reply, Request, RrData, Services, Status,
+    Triad, service,
+};
+use super::{Now, PORT};
+
+mod mischief;
+mod objects;
+mod open;
+
+pub use mischief::Mischief;
+
+/// Class and instance of the connection manager.
+const MANAGER: (u32, u32) = (6, 1);
+/// Refusals of the encapsulation.
+const UNSUPPORTED_COMMAND: u32 = 0x01;
+const NO_MEMORY: u32 = 0x02;
+const INCORRECT_DATA: u32 = 0x03;
+const INVALID_SESSION: u32 = 0x64;
+const INVALID_LENGTH: u32 = 0x65;
+const UNSUPPORTED_VERSION: u32 = 0x69;
+/// Refusals of objects.
+const PATH_SEGMENT: u8 = 0x04;
+const UNKNOWN_DESTINATION: u8 = 0x05;
+const UNKNOWN_SERVICE: u8 = 0x08;
+const NOT_ENOUGH_DATA: u8 = 0x13;
+/// Refusal of a close.
+const NOT_FOUND: u16 = 0x0107;
+
+/// What an assembly is for, seen from the originator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Purpose {
+    /// Sent by the adapter.
+    Input,
+    /// Taken by the adapter.
+    Output,
+    /// Taken when a connection is opened.
+    Configuration,
+}
+
+/// An assembly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Assembly {
+    /// Its number.
+    pub instance: u32,
+    /// What it is for.
+    pub purpose: Purpose,
+    /// Its bytes.
+    pub size: u16,
+}
+
+/// What an adapter is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Setup {
+    /// Who it is; its address is the one it listens on.
+    pub identity: Identity,
+    /// What it has.
+    pub assemblies: Vec<Assembly>,
+    /// The output instance that connections without outputs name.
+    pub input_only: u32,
+    /// The output instance that listeners name.
+    pub listen_only: u32,
+    /// The intervals it takes.
+    pub rpi: RangeInclusive<Duration>,
+    /// Intervals are rounded up to a multiple of this.
+    pub tick: Duration,
+    /// Most connections at a time.
+    pub most_connections: usize,
+    /// Most sessions at a time.
+    pub most_sessions: usize,
+    /// UDP port on which it takes images.
+    pub io_port: u16,
+    /// The group it sends to when asked for multicast.
+    pub group: Ipv4Addr,
+}
+
+/// What an adapter is for.
+pub trait Application: Send {
+    /// A new image from the owner, and whether its master runs.
+    fn image_out(&mut self, now: Now, instance: u32, image: &[u8], run: bool);
+    /// Fills the image that goes to originators; it has the bytes of the last time.
+    fn image_in(&mut self, now: Now, instance: u32, image: &mut [u8]);
+    /// A connection came or went.
+    fn event(&mut self, now: Now, event: &Event);
+}
+
+/// What became of a connection.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Event {
+    /// It was opened.
+    Opened(Peer),
+    /// It was closed by its originator, or with the connection it listened to.
+    Closed(Peer),
+    /// Its originator went silent.
+    TimedOut(Peer),
+}
+
+/// Who is at the other end of a connection, and what for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Peer {
+    /// Its host.
+    pub address: Ipv4Addr,
+    /// What it wants.
+    pub role: Role,
+    /// The assembly it is sent.
+    pub input: u32,
+    /// The assembly it sets, if it is an owner.
+    pub output: Option<u32>,
+    /// The interval to the adapter.
+    pub o_t: Duration,
+    /// The interval from it.
+    pub t_o: Duration,
+}
+
+/// What is to be done.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Output {
+    /// Send this to a client on its TCP connection.
+    Send(u64, Vec<u8>),
+    /// Close the TCP connection of a client.
+    HangUp(u64),
+    /// Send an image from the port for images.
+    Datagram(SocketAddrV4, Vec<u8>),
+    /// Answer from the port for ListIdentity.
+    Discovered(SocketAddrV4, Vec<u8>),
+}
+
+/// A TCP connection.
+#[derive(Debug)]
+struct Client {
+    address: Ipv4Addr,
+    frames: Frames,
+    session: Option<u32>,
+}
+
+/// A connection.
+#[derive(Debug)]
+struct Held {
+    peer: Peer,
+    triad: Triad,
+    consumer: Consumer,
+    /// `None` where another connection has the same group served.
+    producer: Option<Producer>,
+    t_o_id: u32,
+    destination: SocketAddrV4,
+    is_multicast: bool,
+    run: bool,
+}
+
+/// The adapter.
+#[derive(Debug)]
+pub struct Adapter<A> {
+    setup: Setup,
+    application: A,
+    images: BTreeMap<u32, Vec<u8>>,
+    clients: BTreeMap<u64, Client>,
+    held: Vec<Held>,
+    last_session: u32,
+    last_id: u32,
+    mischief: Option<Mischief>,
+    outputs: VecDeque<Output>,
+}
+
+impl<A: Application> Adapter<A> {
+    /// An adapter before anybody came.
+    pub fn new(setup: Setup, application: A) -> Self {
+        let images = setup.assemblies.iter().map(|assembly| (assembly.instance, vec![0; assembly.size.into()]));
+        Self {
+            images: images.collect(),
+            setup,
+            application,
+            clients: BTreeMap::new(),
+            held: Vec::new(),
+            last_session: 0,
+            last_id: fastrand::u32(..),
+            mischief: None,
+            outputs: VecDeque::new(),
+        }
+    }
+
+    /// What it is for.
+    pub const fn application(&mut self) -> &mut A {
+        &mut self.application
+    }
+
+    /// Where it listens, once that is known.
+    pub const fn listens(&mut self, address: SocketAddrV4, io_port: u16) {
+        self.setup.identity.address = address;
+        self.setup.io_port = io_port;
+    }
+
+    /// Makes it do something wrong from now on, or no longer.
+    pub const fn misbehave(&mut self, mischief: Option<Mischief>) {
+        self.mischief = mischief;
+    }
+
+    /// Who is connected.
+    pub fn peers(&self) -> impl Iterator<Item = &Peer> {
+        self.held.iter().map(|held| &held.peer)
+    }
+
+    /// A client connected by TCP.
+    pub fn connected(&mut self, client: u64, address: Ipv4Addr) {
+        self.clients.insert(client, Client { address, frames: Frames::default(), session: None });
+    }
+
+    /// A client is gone. Its connections stay until they are silent.
+    pub fn hung_up(&mut self, client: u64) {
+        self.clients.remove(&client);
+    }
+
+    /// A client sent something.
+    pub fn received(&mut self, now: Now, client: u64, bytes: &[u8]) {
+        let Some(state) = self.clients.get_mut(&client) else { return };
+        state.frames.push(bytes);
+        while let Some(bytes) = self.clients.get_mut(&client).and_then(|state| state.frames.pop()) {
+            let Ok(frame) = Frame::parse(&bytes) else { return };
+            match self.mischief {
+                Some(Mischief::Mute) => {}
+                Some(Mischief::Reset) if frame.command == Command::SEND_RR_DATA => {
+                    self.outputs.push_back(Output::HangUp(client));
+                }
+                Some(Mischief::Garbage) if frame.command == Command::SEND_RR_DATA => {
+                    let noise = Frame { data: &[0xFF; 40], ..frame };
+                    self.outputs.push_back(Output::Send(client, noise.emit()));
+                }
+                _ => self.take(now, client, &frame),
+            }
+        }
+    }
+
+    /// A datagram came on the port for ListIdentity.
+    pub fn discovered(&mut self, from: SocketAddrV4, bytes: &[u8]) {
+        let Ok(frame) = Frame::parse(bytes) else { return };
+        if self.mischief == Some(Mischief::Mute) {
+            return;
+        }
+        if let Some(data) = self.listed(frame.command) {
+            let answer = Frame { session: 0, status: 0, data: &data, ..frame };
+            self.outputs.push_back(Output::Discovered(from, answer.emit()));
+        }
+    }
+
+    /// A datagram came on the port for images.
+    pub fn hear(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]) {
+        let Ok(datagram) = Cyclic::parse(bytes) else { return };
+        let is_meant = |held: &&mut Held| held.consumer.id() == datagram.id && held.peer.address == *from.ip();
+        let Some(held) = self.held.iter_mut().find(is_meant) else { return };
+        let Verdict::Image { run, image } = held.consumer.take(now, &datagram) else { return };
+        held.run = run;
+        let Some(instance) = held.peer.output else { return };
+        if let Some(kept) = self.images.get_mut(&instance) {
+            kept.copy_from_slice(image);
+        }
+        self.application.image_out(now, instance, image, run);
+    }
+
+    /// What to do at `now`; call until it answers `None`.
+    pub fn poll(&mut self, now: Now) -> Option<Output> {
+        if self.outputs.is_empty() {
+            self.expire(now);
+            self.produce(now);
+        }
+        self.outputs.pop_front()
+    }
+
+    /// When to call again at the latest.
+    pub fn wake(&self) -> Option<Now> {
+        if !self.outputs.is_empty() {
+            return Some(Now::ZERO);
+        }
+        let times = self.held.iter().flat_map(|held| {
+            [held.producer.as_ref().map(Producer::due), Some(held.consumer.until())].into_iter().flatten()
+        });
+        times.min()
+    }
+
+    fn expire(&mut self, now: Now) {
+        while let Some(index) = self.held.iter().position(|held| now >= held.consumer.until()) {
+            let peer = self.remove(now, index);
+            self.application.event(now, &Event::TimedOut(peer));
+        }
+    }
+
+    fn produce(&mut self, now: Now) {
+        for held in &mut self.held {
+            let Some(producer) = held.producer.as_mut().filter(|producer| now >= producer.due()) else { continue };
+            let instance = held.peer.input;
+            let Some(image) = self.images.get_mut(&instance) else { continue };
+            self.application.image_in(now, instance, image);
+            let datagram = producer.produce(now, None, image);
+            for bytes in mischief::images(self.mischief, producer.sent, datagram) {
+                self.outputs.push_back(Output::Datagram(held.destination, bytes));
+            }
+        }
+    }
+
+    /// Takes a connection out, with those that only listened to it.
+    fn remove(&mut self, now: Now, index: usize) -> Peer {
+        let held = self.held.remove(index);
+        if held.is_multicast {
+            let mut same = self.held.iter_mut().filter(|other| other.is_multicast && other.t_o_id == held.t_o_id);
+            if let (Some(producer), Some(next)) = (held.producer, same.next()) {
+                next.producer = Some(producer);
+            }
+            let feeds = |other: &Held| other.t_o_id == held.t_o_id && other.peer.role != Role::ListenOnly;
+            if !self.held.iter().any(feeds) {
+                let listens = |other: &mut Held| other.is_multicast && other.t_o_id == held.t_o_id;
+                let orphans: Vec<Held> = self.held.extract_if(.., listens).collect();
+                for orphan in orphans {
+                    self.application.event(now, &Event::Closed(orphan.peer));
+                }
+            }
+        }
+        held.peer
+    }
+
+    fn take(&mut self, now: Now, client: u64, frame: &Frame<'_>) {
+        let Some(state) = self.clients.get(&client) else { return };
+        let (session, address) = (state.session, state.address);
+        let result = match frame.command {
+            Command::NOP => return,
+            Command::UNREGISTER_SESSION => {
+                self.outputs.push_back(Output::HangUp(client));
+                return;
+            }
+            Command::REGISTER_SESSION => self.register(client, frame.data),
+            Command::SEND_RR_DATA if session.is_none_or(|session| session != frame.session) => Err(INVALID_SESSION),
+            Command::SEND_RR_DATA => match RrData::parse(frame.data) {
+                Ok(data) => Ok((frame.session, self.message(now, address, &data))),
+                Err(_) => Err(INCORRECT_DATA),
+            },
+            command => self.listed(command).map(|data| (frame.session, data)).ok_or(UNSUPPORTED_COMMAND),
+        };
+        let answer = match &result {
+            Ok((session, data)) => Frame { session: *session, status: 0, data, ..*frame },
+            Err(status) => Frame { status: *status, data: &[], ..*frame },
+        };
+        self.outputs.push_back(Output::Send(client, answer.emit()));
+    }
+
+    fn register(&mut self, client: u64, data: &[u8]) -> Result<(u32, Vec<u8>), u32> {
+        let [version, 0, options @ ..] = data else { return Err(INVALID_LENGTH) };
+        if options.len() != 2 {
+            return Err(INVALID_LENGTH);
+        }
+        if *version != 1 || options != [0, 0] {
+            return Err(UNSUPPORTED_VERSION);
+        }
+        let sessions = self.clients.values().filter(|client| client.session.is_some()).count();
+        let state = self.clients.get_mut(&client).ok_or(NO_MEMORY)?;
+        if state.session.is_some() {
+            return Err(UNSUPPORTED_COMMAND);
+        }
+        if sessions >= self.setup.most_sessions {
+            return Err(NO_MEMORY);
+        }
+        self.last_session += 1;
+        state.session = Some(self.last_session);
+        Ok((self.last_session, data.to_vec()))
+    }
+
+    /// The data of an answer to a command that asks what there is.
+    fn listed(&self, command: Command) -> Option<Vec<u8>> {
+        match command {
+            Command::LIST_IDENTITY => Some(self.identity().emit()),
+            Command::LIST_SERVICES => Some(Services::cyclic().emit()),
+            Command::LIST_INTERFACES => Some(Item::emit_all(&[])),
+            _ => None,
+        }
+    }
+
+    /// Who it is, with a status of now (volume 1, 5-2.2.1.5).
+    fn identity(&self) -> Identity {
+        let is_owned = self.held.iter().any(|held| held.peer.role == Role::ExclusiveOwner);
+        let extended = match (self.held.is_empty(), self.held.iter().any(|held| held.run)) {
+            (true, _) => 3,
+            (false, true) => 6,
+            (false, false) => 7,
+        };
+        Identity { status: u16::from(is_owned) | extended << 4, ..self.setup.identity.clone() }
+    }
+
+    /// Answers an unconnected message: the data of the answer.
+    fn message(&mut self, now: Now, from: Ipv4Addr, data: &RrData<'_>) -> Vec<u8> {
+        let Ok(request) = Request::parse(data.message) else {
+            let service = data.message.first().copied().unwrap_or_default();
+            let reply = Reply { service, status: Status::general(PATH_SEGMENT), data: &[] }.emit();
+            return RrData::new(&reply).emit();
+        };
+        let mut addresses = (None, None);
+        let answer = match (request.path.object_named(), request.service) {
+            (Some((class, instance, None)), kind) if (class, instance) == MANAGER => match kind {
+                service::FORWARD_OPEN | service::LARGE_FORWARD_OPEN => {
+                    let large = kind == service::LARGE_FORWARD_OPEN;
+                    let opened = self.open(now, from, data.t_o, request.data, large);
+                    opened.map(|opened| {
+                        addresses = opened.addresses;
+                        opened.data
+                    })
+                }
+                service::FORWARD_CLOSE => self.close(now, request.data),
+                _ => Err((Status::general(UNKNOWN_SERVICE), Vec::new())),
+            },
+            (Some(object), _) => {
+                self.object(now, object, &request).map_err(|general| (Status::general(general), Vec::new()))
+            }
+            (None, _) => Err((Status::general(UNKNOWN_DESTINATION), Vec::new())),
+        };
+        let (status, data) = match answer {
+            Ok(data) => (Status::OK, data),
+            Err((status, data)) => (status, data),
+        };
+        let reply = Reply { service: request.service, status, data: &data }.emit();
+        RrData { o_t: addresses.0, t_o: addresses.1, ..RrData::new(&reply) }.emit()
+    }
+
+    fn close(&mut self, now: Now, data: &[u8]) -> Result<Vec<u8>, (Status, Vec<u8>)> {
+        let Ok(close) = Close::parse(data) else {
+            return Err((Status::general(NOT_ENOUGH_DATA), Vec::new()));
+        };
+        let Some(index) = self.held.iter().position(|held| held.triad == close.triad) else {
+            let refused = Refused { triad: close.triad, remaining: Some(0) };
+            return Err((Status::connection(NOT_FOUND, &[]), refused.emit()));
+        };
+        let peer = self.remove(now, index);
+        self.application.event(now, &Event::Closed(peer));
+        Ok(Closed { triad: close.triad }.emit())
+    }
+}
+
+impl Setup {
+    /// An adapter with one input and one output assembly, and one for a configuration of no bytes, as `identity`.
+    pub fn new(identity: Identity, input: (u32, u16), output: (u32, u16), configuration: u32) -> Self {
+        let assembly = |instance, purpose, size| Assembly { instance, purpose, size };
+        Self {
+            identity: Identity { address: SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, PORT), ..identity },
+            assemblies: vec![
+                assembly(input.0, Purpose::Input, input.1),
+                assembly(output.0, Purpose::Output, output.1),
+                assembly(configuration, Purpose::Configuration, 0),
+            ],
+            // The instances that data sheets name most.
+            input_only: 238,
+            listen_only: 237,
+            rpi: Duration::from_millis(2)..=Duration::from_millis(3200),
+            tick: Duration::from_millis(1),
+            most_connections: 8,
+            most_sessions: 8,
+            io_port: super::IO_PORT,
+            group: Ipv4Addr::new(239, 192, 1, 32),
+        }
+    }
+
+    fn assembly(&self, instance: u32, purpose: Purpose) -> Option<&Assembly> {
+        self.assemblies.iter().find(|assembly| assembly.instance == instance && assembly.purpose == purpose)
+    }
+}

@@ -1,0 +1,239 @@
+//! Whether an adapter opens a connection.
+
+use std::net::{Ipv4Addr, SocketAddrV4};
+use std::time::Duration;
+
+use super::super::settings::{Multiplier, Role};
+use super::super::wire::{Flow, Key, Net, Open, Opened, Problem, Refused, Segment, Status};
+use super::super::{ASSEMBLY, IO_PORT, Now};
+use super::{Adapter, Application, Consumer, Event, Held, NOT_ENOUGH_DATA, Peer, Producer, Purpose, Setup};
+
+/// Refusals (volume 1, table 3-5.29).
+const DUPLICATE: u16 = 0x0100;
+const TRANSPORT: u16 = 0x0103;
+const OWNED: u16 = 0x0106;
+const CONNECTION_TYPE: u16 = 0x0108;
+const SIZE: u16 = 0x0109;
+const RPI: u16 = 0x0111;
+const OUT_OF_CONNECTIONS: u16 = 0x0113;
+const VENDOR_OR_PRODUCT: u16 = 0x0114;
+const DEVICE_TYPE: u16 = 0x0115;
+const REVISION: u16 = 0x0116;
+const POINT: u16 = 0x0117;
+const CONFIGURATION: u16 = 0x0118;
+const NOTHING_TO_HEAR: u16 = 0x0119;
+const CONFIGURATION_SIZE: u16 = 0x0126;
+const SEGMENT: u16 = 0x0315;
+/// A multiplier there is not.
+const INVALID_PARAMETER: u8 = 0x20;
+
+/// Class 1, cyclic, the originator as client: the only transport there is.
+const CYCLIC: u8 = 0x01;
+/// Sizes of a heartbeat: nothing, a count, or a count and a header.
+const HEARTBEATS: [u16; 3] = [0, COUNT, COUNT + HEADER];
+const COUNT: u16 = 2;
+const HEADER: u16 = 4;
+
+/// A connection that was opened.
+pub(super) struct Granted {
+    /// The data of the reply.
+    pub(super) data: Vec<u8>,
+    /// Where images go: to the adapter, to the originator.
+    pub(super) addresses: (Option<SocketAddrV4>, Option<SocketAddrV4>),
+}
+
+/// What a connection path says.
+#[derive(Debug)]
+struct Points<'a> {
+    key: Option<Key>,
+    configuration: Option<u32>,
+    output: u32,
+    input: u32,
+    data: &'a [u8],
+}
+
+impl<A: Application> Adapter<A> {
+    pub(super) fn open(
+        &mut self,
+        now: Now,
+        from: Ipv4Addr,
+        to: Option<SocketAddrV4>,
+        data: &[u8],
+        large: bool,
+    ) -> Result<Granted, (Status, Vec<u8>)> {
+        let open = Open::parse(data, large).map_err(|error| {
+            let in_path = matches!(error.problem, Problem::Value { .. });
+            let status = if in_path { Status::connection(SEGMENT, &[]) } else { Status::general(NOT_ENOUGH_DATA) };
+            (status, Vec::new())
+        })?;
+        self.granted(now, from, to, &open)
+            .map_err(|status| (status, Refused { triad: open.triad, remaining: Some(0) }.emit()))
+    }
+
+    fn granted(&mut self, now: Now, from: Ipv4Addr, to: Option<SocketAddrV4>, open: &Open) -> Result<Granted, Status> {
+        let points = points(open)?;
+        let role = self.setup.allows(open, &points)?;
+        let intervals = Multiplier::from_code(open.multiplier).ok_or(Status::general(INVALID_PARAMETER))?.intervals();
+        if self.held.iter().any(|held| held.triad == open.triad) {
+            return Err(Status::connection(DUPLICATE, &[]));
+        }
+        let output = (role == Role::ExclusiveOwner).then_some(points.output);
+        if output.is_some() && self.held.iter().any(|held| held.peer.output == output) {
+            return Err(Status::connection(OWNED, &[]));
+        }
+        if self.held.len() >= self.setup.most_connections {
+            return Err(Status::connection(OUT_OF_CONNECTIONS, &[]));
+        }
+        let o_t = self.setup.interval(&open.o_t);
+        let mut t_o = self.setup.interval(&open.t_o);
+        let is_multicast = open.t_o.net == Net::Multicast;
+        // A group is served once for all that want the same at the same interval; who only listens takes what there is.
+        let shared = self.held.iter().find(|held| {
+            let fits = held.peer.t_o == t_o || role == Role::ListenOnly;
+            held.is_multicast && is_multicast && held.peer.input == points.input && fits
+        });
+        let shared = shared.map(|held| (held.t_o_id, held.peer.t_o));
+        if role == Role::ListenOnly && shared.is_none() {
+            return Err(Status::connection(NOTHING_TO_HEAR, &[]));
+        }
+        let o_t_id = self.next_id();
+        let (t_o_id, producer) = match shared {
+            Some((id, interval)) => {
+                t_o = interval;
+                (id, None)
+            }
+            None => {
+                let id = if is_multicast { self.next_id() } else { open.t_o_id };
+                (id, Some(Producer::new(id, t_o, now)))
+            }
+        };
+        let group = is_multicast.then(|| SocketAddrV4::new(self.setup.group, IO_PORT));
+        // The originator says on which port it listens; its host is the one that asks.
+        let own = SocketAddrV4::new(from, to.map_or(IO_PORT, |address| address.port()));
+        let header = open.o_t.size >= COUNT + HEADER;
+        let size = output.and_then(|output| self.setup.assembly(output, Purpose::Output)).map_or(0, |found| found.size);
+        let peer = Peer { address: from, role, input: points.input, output, o_t, t_o };
+        self.held.push(Held {
+            peer,
+            triad: open.triad,
+            consumer: Consumer::new(o_t_id, size.into(), header, o_t, intervals, now),
+            producer,
+            t_o_id,
+            destination: group.unwrap_or(own),
+            is_multicast,
+            run: false,
+        });
+        self.application.event(now, &Event::Opened(peer));
+        let micros = |interval: Duration| u32::try_from(interval.as_micros()).unwrap_or(u32::MAX);
+        let opened = Opened {
+            o_t_id,
+            t_o_id,
+            triad: open.triad,
+            o_t_api_us: micros(o_t),
+            t_o_api_us: micros(t_o),
+            application: Vec::new(),
+        };
+        let here = SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, self.setup.io_port);
+        Ok(Granted { data: opened.emit(), addresses: (Some(here), group) })
+    }
+
+    fn next_id(&mut self) -> u32 {
+        self.last_id = self.last_id.wrapping_add(1).max(1);
+        self.last_id
+    }
+}
+
+impl Setup {
+    /// Checks all that does not depend on who else is connected.
+    fn allows(&self, open: &Open, points: &Points<'_>) -> Result<Role, Status> {
+        let refuse = |code| Err(Status::connection(code, &[]));
+        if open.transport != CYCLIC {
+            return refuse(TRANSPORT);
+        }
+        if let Some(key) = &points.key {
+            self.fits(key)?;
+        }
+        let output = self.assembly(points.output, Purpose::Output);
+        let role = match points.output {
+            _ if output.is_some() => Role::ExclusiveOwner,
+            instance if instance == self.input_only => Role::InputOnly,
+            instance if instance == self.listen_only => Role::ListenOnly,
+            _ => return refuse(POINT),
+        };
+        let Some(input) = self.assembly(points.input, Purpose::Input) else { return refuse(POINT) };
+        if let Some(instance) = points.configuration {
+            let Some(found) = self.assembly(instance, Purpose::Configuration) else { return refuse(CONFIGURATION) };
+            if !points.data.is_empty() && points.data.len() != usize::from(found.size) {
+                return Err(Status::connection(CONFIGURATION_SIZE, &[found.size.div_ceil(2)]));
+            }
+        } else if !points.data.is_empty() {
+            return refuse(CONFIGURATION);
+        }
+        if open.o_t.net != Net::PointToPoint || !matches!(open.t_o.net, Net::PointToPoint | Net::Multicast) {
+            return refuse(CONNECTION_TYPE);
+        }
+        if ![open.o_t, open.t_o].iter().all(|flow| self.rpi.contains(&Duration::from_micros(flow.rpi_us.into()))) {
+            return refuse(RPI);
+        }
+        match output {
+            Some(output) => sized(&open.o_t, COUNT + HEADER + output.size)?,
+            None if HEARTBEATS.contains(&open.o_t.size) => {}
+            None => return Err(Status::connection(SIZE, &[COUNT])),
+        }
+        sized(&open.t_o, COUNT + input.size)?;
+        Ok(role)
+    }
+
+    fn fits(&self, key: &Key) -> Result<(), Status> {
+        let own = &self.identity;
+        let differs = |wanted: u16, is: u16| wanted != 0 && wanted != is;
+        if differs(key.vendor, own.vendor) || differs(key.product, own.product) {
+            return Err(Status::connection(VENDOR_OR_PRODUCT, &[]));
+        }
+        if differs(key.device_type, own.device_type) {
+            return Err(Status::connection(DEVICE_TYPE, &[]));
+        }
+        let revision = own.revision;
+        let minor_fits = key.minor == 0 || key.minor == revision.minor || key.compatible && key.minor < revision.minor;
+        if key.major != 0 && !(key.major == revision.major && minor_fits) {
+            return Err(Status::connection(REVISION, &[]));
+        }
+        Ok(())
+    }
+
+    /// The interval that is kept: what was asked for, rounded up.
+    fn interval(&self, flow: &Flow) -> Duration {
+        let tick = self.tick.as_micros().max(1);
+        let asked = u128::from(flow.rpi_us).next_multiple_of(tick);
+        Duration::from_micros(u64::try_from(asked).unwrap_or(u64::MAX))
+    }
+}
+
+/// Key, assembly class, configuration or none, output, input, configuration data.
+fn points(open: &Open) -> Result<Points<'_>, Status> {
+    let (key, rest) = match &open.path.0[..] {
+        [Segment::Key(key), rest @ ..] => (Some(*key), rest),
+        rest => (None, rest),
+    };
+    let (rest, data) = match rest {
+        [rest @ .., Segment::Data(data)] => (rest, &data[..]),
+        rest => (rest, &[][..]),
+    };
+    let strange = |segment: &Segment| !matches!(segment, Segment::Class(_) | Segment::Instance(_) | Segment::Point(_));
+    if rest.iter().any(strange) {
+        return Err(Status::connection(SEGMENT, &[]));
+    }
+    let (configuration, output, input) = match *rest {
+        [Segment::Class(ASSEMBLY), Segment::Instance(configuration), Segment::Point(output), Segment::Point(input)] => {
+            (Some(configuration), output, input)
+        }
+        [Segment::Class(ASSEMBLY), Segment::Point(output), Segment::Point(input)] => (None, output, input),
+        _ => return Err(Status::connection(POINT, &[])),
+    };
+    Ok(Points { key, configuration, output, input, data })
+}
+
+/// A size must be exact; a variable one may be smaller in use, but not here. The right one goes with the refusal.
+fn sized(flow: &Flow, right: u16) -> Result<(), Status> {
+    if flow.size == right { Ok(()) } else { Err(Status::connection(SIZE, &[right])) }
+}

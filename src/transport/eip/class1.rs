@@ -1,0 +1,230 @@
+//! Both ends of a cyclic stream: when to send what, and what to make of what comes.
+
+use std::time::Duration;
+
+use super::Now;
+use super::settings::FIRST_PACKET;
+use super::wire::Cyclic;
+
+/// Sends at a fixed interval.
+#[derive(Debug, Clone)]
+pub(super) struct Producer {
+    id: u32,
+    interval: Duration,
+    due: Now,
+    sequence: u32,
+    count: u16,
+    /// Datagrams made.
+    pub(super) sent: u64,
+    /// Moments that were missed by a whole interval.
+    pub(super) skipped: u64,
+}
+
+impl Producer {
+    /// Begins at `now`.
+    pub(super) const fn new(id: u32, interval: Duration, now: Now) -> Self {
+        Self { id, interval, due: now, sequence: 0, count: 0, sent: 0, skipped: 0 }
+    }
+
+    /// When the next datagram is due.
+    pub(super) const fn due(&self) -> Now {
+        self.due
+    }
+
+    /// The datagram that is due at `now`. The next one is due an interval after this one was, so that there is no drift;
+    /// whole intervals that were missed are left out, so that there is no burst.
+    pub(super) fn produce(&mut self, now: Now, header: Option<u32>, image: &[u8]) -> Vec<u8> {
+        self.sequence = self.sequence.wrapping_add(1);
+        self.count = self.count.wrapping_add(1);
+        self.sent += 1;
+        let interval = self.interval.as_nanos().max(1);
+        let missed = now.saturating_sub(self.due).as_nanos() / interval;
+        let missed = u32::try_from(missed).unwrap_or(u32::MAX);
+        self.skipped += u64::from(missed);
+        self.due = self.due.saturating_add(self.interval.saturating_mul(missed.saturating_add(1)));
+        Cyclic { id: self.id, sequence: self.sequence, count: self.count, body: image }.emit(header)
+    }
+}
+
+/// What a datagram is worth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict<'a> {
+    /// An image, and for streams with a header whether the sender runs.
+    Image {
+        /// The run bit; `true` for streams without a header.
+        run: bool,
+        /// The image.
+        image: &'a [u8],
+    },
+    /// A sign of life without an image, as of a sender that has none, or for heartbeats.
+    Alive,
+    /// Older than what came before, or the same again.
+    Stale,
+    /// Of another size than was agreed.
+    Misfit,
+}
+
+/// Hears a stream, and notices when it ends.
+#[derive(Debug, Clone)]
+pub(super) struct Consumer {
+    id: u32,
+    size: usize,
+    header: bool,
+    interval: Duration,
+    timeout: Duration,
+    until: Now,
+    last: Option<(u32, Now)>,
+    /// Datagrams that were good.
+    pub(super) received: u64,
+    /// Numbers that never came.
+    pub(super) lost: u64,
+    /// Datagrams that came more than half an interval late.
+    pub(super) late: u64,
+    /// Datagrams that were old or came again.
+    pub(super) stale: u64,
+    /// Datagrams of a wrong size.
+    pub(super) misfit: u64,
+}
+
+impl Consumer {
+    /// Begins at `now`. The first datagram may take [`FIRST_PACKET`], or the time-out if that is longer.
+    pub(super) fn new(id: u32, size: usize, header: bool, interval: Duration, intervals: u32, now: Now) -> Self {
+        let timeout = interval.saturating_mul(intervals);
+        Self {
+            id,
+            size,
+            header,
+            interval,
+            timeout,
+            until: now.saturating_add(timeout.max(FIRST_PACKET)),
+            last: None,
+            received: 0,
+            lost: 0,
+            late: 0,
+            stale: 0,
+            misfit: 0,
+        }
+    }
+
+    /// The id of the stream.
+    pub(super) const fn id(&self) -> u32 {
+        self.id
+    }
+
+    /// When the stream counts as ended, if nothing comes.
+    pub(super) const fn until(&self) -> Now {
+        self.until
+    }
+
+    /// How long a silence ends it now.
+    pub(super) fn patience(&self) -> Duration {
+        if self.last.is_some() { self.timeout } else { self.timeout.max(FIRST_PACKET) }
+    }
+
+    /// Takes a datagram of the stream.
+    pub(super) fn take<'a>(&mut self, now: Now, datagram: &Cyclic<'a>) -> Verdict<'a> {
+        if let Some((last, _)) = self.last
+            && !is_after(datagram.sequence, last)
+        {
+            self.stale += 1;
+            return Verdict::Stale;
+        }
+        let body = datagram.body;
+        let (run, image) = match body.split_first_chunk::<4>() {
+            _ if !self.header || body.is_empty() => (true, body),
+            Some((header, image)) => (header[0] & 1 == 1, image),
+            None => return self.misfits(),
+        };
+        if image.len() != self.size && !body.is_empty() {
+            return self.misfits();
+        }
+        if let Some((last, at)) = self.last {
+            self.lost += u64::from(datagram.sequence.wrapping_sub(last).saturating_sub(1));
+            self.late += u64::from(now.saturating_sub(at) > self.interval.saturating_mul(3) / 2);
+        }
+        self.received += 1;
+        self.last = Some((datagram.sequence, now));
+        self.until = now.saturating_add(self.timeout);
+        if image.is_empty() { Verdict::Alive } else { Verdict::Image { run, image } }
+    }
+
+    const fn misfits(&mut self) -> Verdict<'static> {
+        self.misfit += 1;
+        Verdict::Misfit
+    }
+}
+
+/// Whether one number follows another, around the end of their range.
+const fn is_after(one: u32, other: u32) -> bool {
+    let ahead = one.wrapping_sub(other);
+    ahead != 0 && ahead < 1 << 31
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    fn number(bytes: &[u8]) -> (u32, u16) {
+        let datagram = Cyclic::parse(bytes).unwrap();
+        (datagram.sequence, datagram.count)
+    }
+
+    #[test]
+    fn a_producer_neither_drifts_nor_bursts() {
+        let mut producer = Producer::new(1, 10 * MS, 100 * MS);
+        assert_eq!(number(&producer.produce(103 * MS, None, &[])), (1, 1));
+        assert_eq!(producer.due(), 110 * MS, "3 ms late moves nothing");
+        producer.produce(147 * MS, None, &[]);
+        assert_eq!((producer.due(), producer.skipped), (150 * MS, 3));
+        assert_eq!(number(&producer.produce(150 * MS, None, &[])), (3, 3));
+        assert_eq!((producer.due(), producer.sent), (160 * MS, 3));
+    }
+
+    #[test]
+    fn numbers_go_around() {
+        let mut producer = Producer::new(1, 10 * MS, 0 * MS);
+        (producer.sequence, producer.count) = (u32::MAX, u16::MAX);
+        assert_eq!(number(&producer.produce(0 * MS, None, &[])), (0, 0));
+        assert!(is_after(0, u32::MAX) && is_after(5, 4) && !is_after(4, 4) && !is_after(4, 5));
+        assert!(!is_after(1 << 31, 0));
+    }
+
+    fn consumer() -> Consumer {
+        Consumer::new(1, 2, true, 10 * MS, 16, 0 * MS)
+    }
+
+    fn datagram(sequence: u32, body: &[u8]) -> Cyclic<'_> {
+        Cyclic { id: 1, sequence, count: 0, body }
+    }
+
+    #[test]
+    fn the_first_datagram_has_ten_seconds_and_the_next_the_time_out() {
+        let mut consumer = consumer();
+        assert_eq!((consumer.until(), consumer.patience()), (10_000 * MS, 10_000 * MS));
+        consumer.take(50 * MS, &datagram(9, &[1, 0, 0, 0, 5, 6]));
+        assert_eq!((consumer.until(), consumer.patience()), (210 * MS, 160 * MS));
+        let slow = Consumer::new(1, 2, true, 1000 * MS, 16, 0 * MS);
+        assert_eq!(slow.until(), 16_000 * MS);
+    }
+
+    #[test]
+    fn old_doubled_and_odd_datagrams_feed_no_watchdog() {
+        let mut consumer = consumer();
+        let image = [1, 0, 0, 0, 5, 6];
+        assert_eq!(consumer.take(10 * MS, &datagram(9, &image)), Verdict::Image { run: true, image: &[5, 6] });
+        assert_eq!(consumer.take(20 * MS, &datagram(9, &image)), Verdict::Stale);
+        assert_eq!(consumer.take(20 * MS, &datagram(8, &image)), Verdict::Stale);
+        assert_eq!(consumer.take(20 * MS, &datagram(10, &image[..5])), Verdict::Misfit);
+        assert_eq!(consumer.take(20 * MS, &datagram(10, &[0; 7])), Verdict::Misfit);
+        assert_eq!(consumer.take(20 * MS, &datagram(10, &[5, 6])), Verdict::Misfit, "no header");
+        assert_eq!(consumer.until(), 170 * MS);
+        let idle = [0, 0, 0, 0, 5, 6];
+        assert_eq!(consumer.take(30 * MS, &datagram(13, &idle)), Verdict::Image { run: false, image: &[5, 6] });
+        assert_eq!(consumer.take(40 * MS, &datagram(14, &[])), Verdict::Alive);
+        assert_eq!(consumer.until(), 200 * MS);
+        assert_eq!((consumer.received, consumer.lost, consumer.late), (3, 3, 1));
+        assert_eq!((consumer.stale, consumer.misfit), (2, 3));
+    }
+}

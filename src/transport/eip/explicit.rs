@@ -1,0 +1,64 @@
+//! Messages to objects of a device, and what it answers.
+
+use super::trouble::Trouble;
+use super::wire::{Path, Reply, Request, RrData, Status, service};
+
+/// A request to an object.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message {
+    /// What is to be done; see [`service`].
+    pub service: u8,
+    /// The object.
+    pub path: Path,
+    /// What the service takes.
+    pub data: Vec<u8>,
+}
+
+impl Message {
+    /// Reads an attribute.
+    pub fn get(class: u32, instance: u32, attribute: u32) -> Self {
+        let path = Path::attribute(class, instance, attribute);
+        Self { service: service::ATTRIBUTE_SINGLE, path, data: Vec::new() }
+    }
+
+    /// Reads all attributes of an instance.
+    pub fn get_all(class: u32, instance: u32) -> Self {
+        Self { service: service::ATTRIBUTES_ALL, path: Path::object(class, instance), data: Vec::new() }
+    }
+
+    /// Changes an attribute.
+    pub fn set(class: u32, instance: u32, attribute: u32, value: &[u8]) -> Self {
+        let path = Path::attribute(class, instance, attribute);
+        Self { service: service::SET_ATTRIBUTE_SINGLE, path, data: value.to_vec() }
+    }
+
+    /// The data of the frame that carries it.
+    pub fn emit(&self) -> Vec<u8> {
+        let Self { service, path, data } = self;
+        RrData::new(&Request { service: *service, path: path.clone(), data }.emit()).emit()
+    }
+}
+
+/// What a device answered; a refusal is an answer, too.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Answer {
+    /// How it went.
+    pub status: Status,
+    /// What the service gives, or more about a refusal.
+    pub data: Vec<u8>,
+}
+
+impl Answer {
+    /// Reads the data of a frame that answers `what`.
+    pub fn parse(what: &'static str, data: &[u8]) -> Result<Self, Trouble> {
+        let malformed = |error| Trouble::Malformed { what, error };
+        let message = RrData::parse(data).map_err(malformed)?.message;
+        let reply = Reply::parse(message).map_err(malformed)?;
+        Ok(Self { status: reply.status, data: reply.data.to_vec() })
+    }
+
+    /// What the service gives; a refusal is a trouble.
+    pub fn done(self, what: &'static str) -> Result<Vec<u8>, Trouble> {
+        if self.status.is_ok() { Ok(self.data) } else { Err(Trouble::Refused { what, status: self.status }) }
+    }
+}

@@ -1,0 +1,604 @@
+//! The originator's end of a connection: opens it, sends and hears images, notices its loss, opens it again. Without
+//! sockets and without a clock.
+//!
+//! Every opening is a generation. What is to be sent names the generation it is meant for: after a loss the device gets
+//! the resting image, idle, until somebody who knows of the loss says otherwise. So nothing that was meant for the time
+//! before can happen a second time.
+
+use std::collections::VecDeque;
+use std::net::{Ipv4Addr, SocketAddrV4};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
+use std::time::Duration;
+
+use super::class1::{Consumer, Producer, Verdict};
+use super::explicit::Answer;
+use super::session::{Ask, Session, Step, Token};
+use super::settings::{Role, Settings};
+use super::trouble::Trouble;
+use super::wire::{Close, Command, Cyclic, Net, Open, Opened, RUN, RrData, Triad};
+use super::{IO_PORT, Now, UNREGISTERED_VENDOR};
+
+const OPEN: Token = Token(0);
+const CLOSE: Token = Token(1);
+const FORWARD_OPEN: &str = "ForwardOpen";
+const FORWARD_CLOSE: &str = "ForwardClose";
+/// Class 1, cyclic.
+const TRANSPORT: u8 = 1;
+/// Extended status of a close: there is no such connection.
+const NOT_FOUND: u16 = 0x0107;
+/// Waits before another try, one after the other; the last one again and again.
+const BACKOFF: [Duration; 5] = [
+    Duration::from_millis(250),
+    Duration::from_millis(500),
+    Duration::from_secs(1),
+    Duration::from_secs(2),
+    Duration::from_secs(5),
+];
+
+/// Numbers that are unique in a process, and very likely elsewhere.
+#[derive(Debug)]
+pub struct Numbers {
+    originator: u32,
+    serial: AtomicU16,
+    id: AtomicU32,
+}
+
+impl Numbers {
+    /// Begins anywhere, so that what an earlier process left open is not hit.
+    pub fn random() -> Self {
+        Self::new(fastrand::u32(..), fastrand::u16(..), fastrand::u32(..))
+    }
+
+    /// Serial number of the originator, and where the numbers of connections and their ids begin.
+    pub const fn new(originator: u32, serial: u16, id: u32) -> Self {
+        Self { originator, serial: AtomicU16::new(serial), id: AtomicU32::new(id) }
+    }
+
+    fn triad(&self) -> Triad {
+        let serial = self.serial.fetch_add(1, Ordering::Relaxed);
+        Triad { serial, vendor: UNREGISTERED_VENDOR, originator: self.originator }
+    }
+
+    fn id(&self) -> u32 {
+        // 0 is no id.
+        match self.id.fetch_add(1, Ordering::Relaxed) {
+            0 => self.id.fetch_add(1, Ordering::Relaxed),
+            id => id,
+        }
+    }
+}
+
+/// How a connection is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum State {
+    /// Being opened for the first time.
+    Opening,
+    /// Images travel.
+    Open,
+    /// Lost, and being opened again.
+    Lost,
+    /// Being closed.
+    Closing,
+    /// At its end: closed, or never opened.
+    Closed,
+}
+
+/// An image from the device.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Input {
+    /// The bytes.
+    pub image: Arc<[u8]>,
+    /// The number of its datagram.
+    pub sequence: u32,
+    /// When it came.
+    pub at: Now,
+    /// In which generation.
+    pub generation: u32,
+}
+
+/// What was counted, over all generations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Statistics {
+    /// Datagrams sent.
+    pub sent: u64,
+    /// Moments to send that were missed by a whole interval, as by a machine that is too busy.
+    pub skipped: u64,
+    /// Datagrams that were good.
+    pub received: u64,
+    /// Numbers that never came.
+    pub lost: u64,
+    /// Datagrams that came more than half an interval late.
+    pub late: u64,
+    /// Datagrams that were old or came again, and were passed over.
+    pub stale: u64,
+    /// Datagrams of a wrong size, which were passed over.
+    pub misfit: u64,
+}
+
+impl Statistics {
+    fn add(&mut self, io: &Io) {
+        self.sent += io.producer.sent;
+        self.skipped += io.producer.skipped;
+        self.received += io.consumer.received;
+        self.lost += io.consumer.lost;
+        self.late += io.consumer.late;
+        self.stale += io.consumer.stale;
+        self.misfit += io.consumer.misfit;
+    }
+}
+
+/// All that can be seen of a connection.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct View {
+    /// How it is doing.
+    pub state: State,
+    /// Counts the openings; 0 before the first.
+    pub generation: u32,
+    /// The newest image of the device. It stays when the connection is lost: compare the generation.
+    pub input: Option<Input>,
+    /// The newest change of what is sent that went out at least once.
+    pub sent: u64,
+    /// Whether the device is told to run.
+    pub run: bool,
+    /// Why it was lost, or not opened, the last time.
+    pub trouble: Option<Trouble>,
+    /// The intervals that the device keeps: to it, from it.
+    pub intervals: Option<(Duration, Duration)>,
+    /// What was counted.
+    pub statistics: Statistics,
+}
+
+/// What is to be done.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Action {
+    /// Open the TCP connection to the device; then [`Originator::connected`] or [`Originator::hung_up`].
+    Connect,
+    /// Send this on it.
+    Send(Vec<u8>),
+    /// Close it.
+    Disconnect,
+    /// Send this by UDP.
+    Datagram(SocketAddrV4, Vec<u8>),
+    /// Hear this group.
+    Join(Ipv4Addr),
+    /// Hear it no longer.
+    Leave(Ipv4Addr),
+    /// A message of the caller's was answered.
+    Answer(Token, Result<Vec<u8>, Trouble>),
+}
+
+/// A stream each way.
+#[derive(Debug, Clone)]
+struct Io {
+    producer: Producer,
+    consumer: Consumer,
+    destination: SocketAddrV4,
+    group: Option<Ipv4Addr>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    /// Before the first poll.
+    New,
+    /// ForwardOpen is on its way.
+    Opening,
+    Open,
+    /// The last image, idle, goes out before the close: as many datagrams had been sent.
+    Parting(u64),
+    /// ForwardClose is on its way; then all ends, or it is opened again.
+    Closing {
+        again: bool,
+    },
+    /// Until the next try.
+    Waiting(Now),
+    Ended,
+}
+
+/// A connection.
+#[derive(Debug)]
+pub struct Originator {
+    settings: Settings,
+    numbers: Arc<Numbers>,
+    target: SocketAddrV4,
+    port: u16,
+    session: Session,
+    phase: Phase,
+    triad: Triad,
+    id: u32,
+    io: Option<Io>,
+    image: Vec<u8>,
+    revision: u64,
+    /// Whether it is to end as soon as it can.
+    is_over: bool,
+    tries: usize,
+    /// What earlier generations counted.
+    before: Statistics,
+    view: View,
+    has_changed: bool,
+    actions: VecDeque<Action>,
+}
+
+impl Originator {
+    /// A connection to the device at `target` (its TCP address); images are heard on UDP port `port`.
+    ///
+    /// # Errors
+    /// If no connection can be as `settings` say.
+    pub fn new(target: SocketAddrV4, port: u16, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, Trouble> {
+        settings.check()?;
+        let view = View {
+            state: State::Opening,
+            generation: 0,
+            input: None,
+            sent: 0,
+            run: false,
+            trouble: None,
+            intervals: None,
+            statistics: Statistics::default(),
+        };
+        Ok(Self {
+            session: Session::new(settings.timeout),
+            image: settings.resting.clone(),
+            triad: numbers.triad(),
+            id: numbers.id(),
+            settings,
+            numbers,
+            target,
+            port,
+            phase: Phase::New,
+            io: None,
+            revision: 0,
+            is_over: false,
+            tries: 0,
+            before: Statistics::default(),
+            view,
+            has_changed: true,
+            actions: VecDeque::new(),
+        })
+    }
+
+    /// Where the device is.
+    pub const fn target(&self) -> SocketAddrV4 {
+        self.target
+    }
+
+    /// What there is to see now.
+    pub fn view(&self) -> View {
+        let mut view = self.view.clone();
+        view.statistics = self.before;
+        if let Some(io) = &self.io {
+            view.statistics.add(io);
+        }
+        view
+    }
+
+    /// Whether there is something new to see since this was last asked.
+    pub const fn take_changed(&mut self) -> bool {
+        std::mem::replace(&mut self.has_changed, false)
+    }
+
+    /// Whether all has ended and nothing is left to do.
+    pub fn is_finished(&self) -> bool {
+        self.phase == Phase::Ended && self.actions.is_empty()
+    }
+
+    /// Sends this image from the next interval on, and says which change it was: it has gone out when the view's `sent`
+    /// is as high.
+    ///
+    /// # Errors
+    /// If the connection is not open in this generation, or the image has another size.
+    pub fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, Trouble> {
+        self.is_current(generation)?;
+        if image.len() != self.image.len() {
+            let (len, size) = (image.len(), self.image.len());
+            return Err(Trouble::Settings(format!("the output image has {size} bytes, not {len}")));
+        }
+        self.image.copy_from_slice(image);
+        self.revision += 1;
+        Ok(self.revision)
+    }
+
+    /// Tells the device to run, or that its master idles; likewise.
+    ///
+    /// # Errors
+    /// If the connection is not open in this generation.
+    pub fn set_run(&mut self, generation: u32, run: bool) -> Result<u64, Trouble> {
+        self.is_current(generation)?;
+        self.view.run = run;
+        self.revision += 1;
+        Ok(self.revision)
+    }
+
+    /// Asks something over the same session. Tokens 0 and 1 are taken.
+    pub fn ask(&mut self, ask: Ask) {
+        if self.phase == Phase::Ended {
+            self.actions.push_back(Action::Answer(ask.token, Err(Trouble::Ended)));
+        } else {
+            self.session.ask(ask);
+        }
+    }
+
+    /// Ends the connection: idle once more, then a proper close.
+    pub fn close(&mut self) {
+        if self.is_over {
+            return;
+        }
+        self.is_over = true;
+        match self.phase {
+            Phase::Open => {
+                self.view.run = false;
+                self.phase = Phase::Parting(self.io.as_ref().map_or(0, |io| io.producer.sent));
+                self.show(State::Closing);
+            }
+            Phase::New | Phase::Waiting(_) => self.finish(None),
+            // The answer that is awaited comes first.
+            Phase::Opening | Phase::Closing { .. } => self.show(State::Closing),
+            Phase::Parting(_) | Phase::Ended => {}
+        }
+    }
+
+    /// The TCP connection is there.
+    pub fn connected(&mut self, now: Now) {
+        self.session.connected(now);
+    }
+
+    /// The TCP connection did not come about, or ended. Images travel on without it.
+    pub fn hung_up(&mut self, why: &Trouble) {
+        self.session.lost(why);
+    }
+
+    /// Something arrived on the TCP connection.
+    pub fn received(&mut self, now: Now, bytes: &[u8]) {
+        self.session.received(now, bytes);
+    }
+
+    /// Whether datagrams of this id, from this address, are for this connection.
+    pub fn expects(&self, from: Ipv4Addr, id: u32) -> bool {
+        from == *self.target.ip() && self.io.as_ref().is_some_and(|io| io.consumer.id() == id)
+    }
+
+    /// A datagram for this connection arrived.
+    pub fn hear(&mut self, now: Now, datagram: &Cyclic<'_>) {
+        let Some(io) = &mut self.io else { return };
+        match io.consumer.take(now, datagram) {
+            Verdict::Image { image, .. } => {
+                self.tries = 0;
+                let before = self.view.input.as_ref().filter(|input| *input.image == *image);
+                self.view.input = Some(Input {
+                    image: before.map_or_else(|| image.into(), |input| Arc::clone(&input.image)),
+                    sequence: datagram.sequence,
+                    at: now,
+                    generation: self.view.generation,
+                });
+                self.has_changed = true;
+            }
+            Verdict::Alive => self.tries = 0,
+            Verdict::Stale | Verdict::Misfit => {}
+        }
+    }
+
+    /// What to do at `now`; call until it answers `None`.
+    pub fn poll(&mut self, now: Now) -> Option<Action> {
+        loop {
+            if let Some(action) = self.actions.pop_front() {
+                return Some(action);
+            }
+            match self.session.poll(now) {
+                Some(Step::Connect) => return Some(Action::Connect),
+                Some(Step::Send(bytes)) => return Some(Action::Send(bytes)),
+                Some(Step::Disconnect) => return Some(Action::Disconnect),
+                Some(Step::Answer { token: OPEN, sent, result }) => self.answered(now, sent, result),
+                Some(Step::Answer { token: CLOSE, result, .. }) => self.closed(now, result),
+                Some(Step::Answer { token, result, .. }) => return Some(Action::Answer(token, result)),
+                None if self.advance(now) => {}
+                None => return None,
+            }
+        }
+    }
+
+    /// When to call again at the latest.
+    pub fn wake(&self) -> Option<Now> {
+        let own = match self.phase {
+            Phase::New => Some(Now::ZERO),
+            Phase::Waiting(until) => Some(until),
+            _ => None,
+        };
+        let io = self.io.as_ref().map(|io| io.producer.due().min(io.consumer.until()));
+        [own, io, self.session.wake()].into_iter().flatten().min()
+    }
+
+    /// Does what is due; says whether anything was.
+    fn advance(&mut self, now: Now) -> bool {
+        match self.phase {
+            Phase::New => self.open(),
+            Phase::Waiting(until) if now >= until => self.open(),
+            Phase::Parting(before) if self.io.as_ref().is_none_or(|io| io.producer.sent > before) => {
+                self.ask_close(false);
+            }
+            _ => return self.exchange(now),
+        }
+        true
+    }
+
+    /// Sends what is due, and looks whether the device has gone.
+    fn exchange(&mut self, now: Now) -> bool {
+        let Some(io) = &mut self.io else { return false };
+        if now >= io.consumer.until() {
+            let after = io.consumer.patience();
+            self.lose(Trouble::Silent { after });
+            return true;
+        }
+        if now < io.producer.due() {
+            return false;
+        }
+        let header = (self.settings.role == Role::ExclusiveOwner).then_some(if self.view.run { RUN } else { 0 });
+        let datagram = io.producer.produce(now, header, &self.image);
+        self.actions.push_back(Action::Datagram(io.destination, datagram));
+        self.has_changed |= self.view.sent != self.revision;
+        self.view.sent = self.revision;
+        true
+    }
+
+    fn open(&mut self) {
+        self.phase = Phase::Opening;
+        self.triad = self.numbers.triad();
+        self.id = self.numbers.id();
+        let open = Open {
+            o_t_id: 0,
+            t_o_id: self.id,
+            triad: self.triad,
+            multiplier: self.settings.multiplier.code(),
+            o_t: self.settings.o_t(),
+            t_o: self.settings.t_o(),
+            transport: TRANSPORT,
+            path: self.settings.path(),
+        };
+        // A group has its port from the device; else this is where we listen.
+        let own = (open.t_o.net == Net::PointToPoint).then(|| SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, self.port));
+        let data = RrData { t_o: own, ..RrData::new(&open.emit()) }.emit();
+        self.session.ask(Ask { token: OPEN, what: FORWARD_OPEN, command: Command::SEND_RR_DATA, data });
+    }
+
+    /// ForwardOpen has come to its end.
+    fn answered(&mut self, now: Now, sent: bool, result: Result<Vec<u8>, Trouble>) {
+        let trouble = match result.and_then(|data| self.opened(now, &data)) {
+            Ok(()) if self.is_over => return self.ask_close(false),
+            Ok(()) => return,
+            Err(trouble) => trouble,
+        };
+        // Unless it was refused, the device may have opened it.
+        let is_refusal = matches!(trouble, Trouble::Refused { .. } | Trouble::Encapsulation { .. });
+        let again = self.view.generation > 0 && !self.is_over;
+        self.view.trouble = Some(trouble);
+        if sent && !is_refusal {
+            self.ask_close(again);
+        } else if again {
+            self.wait(now);
+        } else {
+            self.finish(None);
+        }
+    }
+
+    fn opened(&mut self, now: Now, data: &[u8]) -> Result<(), Trouble> {
+        let malformed = |error| Trouble::Malformed { what: FORWARD_OPEN, error };
+        let senseless = |why| Trouble::Senseless { what: FORWARD_OPEN, why };
+        let answer = Answer::parse(FORWARD_OPEN, data)?;
+        let addresses = RrData::parse(data).map_err(malformed)?;
+        let opened = Opened::parse(&answer.done(FORWARD_OPEN)?).map_err(malformed)?;
+        if opened.triad != self.triad {
+            return Err(senseless("it is about another connection"));
+        }
+        if opened.t_o_id != self.id && !self.settings.multicast {
+            return Err(senseless("it changes the id that is ours to choose"));
+        }
+        let interval = |us: u32| {
+            let interval = Duration::from_micros(us.into());
+            if interval < super::settings::SHORTEST {
+                Err(senseless("its interval is too short"))
+            } else {
+                Ok(interval)
+            }
+        };
+        let (to, from) = (interval(opened.o_t_api_us)?, interval(opened.t_o_api_us)?);
+        let destination = match addresses.o_t {
+            Some(address) if address.ip().is_unspecified() => SocketAddrV4::new(*self.target.ip(), address.port()),
+            Some(address) => address,
+            None => SocketAddrV4::new(*self.target.ip(), IO_PORT),
+        };
+        let group = addresses.t_o.map(|address| *address.ip()).filter(|address| address.is_multicast());
+        if self.settings.multicast && group.is_none() {
+            return Err(senseless("it names no group to hear"));
+        }
+        self.actions.extend(group.map(Action::Join));
+        let intervals = self.settings.multiplier.intervals();
+        let size = usize::from(self.settings.input_size);
+        self.io = Some(Io {
+            producer: Producer::new(opened.o_t_id, to, now),
+            consumer: Consumer::new(opened.t_o_id, size, false, from, intervals, now),
+            destination,
+            group,
+        });
+        self.phase = Phase::Open;
+        self.view.generation += 1;
+        self.view.intervals = Some((to, from));
+        self.view.trouble = None;
+        self.show(State::Open);
+        Ok(())
+    }
+
+    /// The device has gone silent.
+    fn lose(&mut self, trouble: Trouble) {
+        self.stop();
+        self.view.trouble = Some(trouble);
+        match self.phase {
+            Phase::Open => {
+                self.image.clone_from(&self.settings.resting);
+                self.view.run = false;
+                self.show(State::Lost);
+                // The device may only have lost its way to us: a proper close frees it for the next opening.
+                self.ask_close(true);
+            }
+            Phase::Parting(_) => self.ask_close(false),
+            _ => {}
+        }
+    }
+
+    fn ask_close(&mut self, again: bool) {
+        self.phase = Phase::Closing { again };
+        let message = Close { triad: self.triad, path: self.settings.path() }.emit();
+        let data = RrData::new(&message).emit();
+        self.session.ask(Ask { token: CLOSE, what: FORWARD_CLOSE, command: Command::SEND_RR_DATA, data });
+    }
+
+    /// ForwardClose has come to its end.
+    fn closed(&mut self, now: Now, result: Result<Vec<u8>, Trouble>) {
+        self.stop();
+        let Phase::Closing { again } = self.phase else { return };
+        if again && !self.is_over {
+            return self.wait(now);
+        }
+        let outcome = result.and_then(|data| Answer::parse(FORWARD_CLOSE, &data)).and_then(|answer| {
+            if answer.status.extended.first() == Some(&NOT_FOUND) { Ok(Vec::new()) } else { answer.done(FORWARD_CLOSE) }
+        });
+        // A close that failed is told, unless something else had gone wrong before.
+        self.finish(outcome.err());
+    }
+
+    fn wait(&mut self, now: Now) {
+        let wait = BACKOFF[self.tries.min(BACKOFF.len() - 1)];
+        self.tries += 1;
+        self.phase = Phase::Waiting(now.saturating_add(wait));
+        self.show(State::Lost);
+    }
+
+    fn finish(&mut self, trouble: Option<Trouble>) {
+        self.stop();
+        self.session.end();
+        self.phase = Phase::Ended;
+        if self.view.trouble.is_none() {
+            self.view.trouble = trouble;
+        }
+        self.show(State::Closed);
+    }
+
+    /// Ends the streams, and keeps what they counted.
+    fn stop(&mut self) {
+        if let Some(io) = self.io.take() {
+            self.before.add(&io);
+            self.actions.extend(io.group.map(Action::Leave));
+        }
+    }
+
+    fn show(&mut self, state: State) {
+        self.view.state = state;
+        self.has_changed = true;
+    }
+
+    fn is_current(&self, generation: u32) -> Result<(), Trouble> {
+        match self.view.state {
+            State::Open if generation == self.view.generation => Ok(()),
+            State::Closing | State::Closed => Err(Trouble::Ended),
+            _ => Err(Trouble::Outdated),
+        }
+    }
+}

@@ -1,0 +1,364 @@
+//! A session on a TCP connection: one request at a time, each with its answer, without sockets and without a clock.
+//!
+//! The TCP connection is opened when there is something to ask, and again when it was lost meanwhile. A request that
+//! was sent is never sent again.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use super::Now;
+use super::trouble::Trouble;
+use super::wire::{Command, Frame, Frames};
+
+/// Most requests that wait.
+const MOST_WAITING: usize = 64;
+
+/// Tells answers apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Token(
+    /// Chosen by whoever asks.
+    pub u64,
+);
+
+/// A request.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Ask {
+    /// Which one it is.
+    pub token: Token,
+    /// What it is called in error texts.
+    pub what: &'static str,
+    /// The encapsulation command.
+    pub command: Command,
+    /// Its data.
+    pub data: Vec<u8>,
+}
+
+/// What a session wants done.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Step {
+    /// Open the TCP connection; then call [`Session::connected`] or [`Session::lost`].
+    Connect,
+    /// Send this on it.
+    Send(Vec<u8>),
+    /// Close it; nothing more of it may be handed in.
+    Disconnect,
+    /// A request has come to its end.
+    Answer {
+        /// Which one.
+        token: Token,
+        /// Whether it had left the house, so that the device may have acted on it.
+        sent: bool,
+        /// The data of the answer.
+        result: Result<Vec<u8>, Trouble>,
+    },
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    Down,
+    Connecting { until: Now },
+    Registering { until: Now },
+    Up,
+}
+
+/// The session.
+#[derive(Debug, Clone)]
+pub struct Session {
+    phase: Phase,
+    handle: u32,
+    frames: Frames,
+    waiting: VecDeque<Ask>,
+    pending: Option<(Ask, Now)>,
+    /// Number of the request that is on its way; it goes in the context, so that no late answer is mistaken.
+    number: u64,
+    timeout: Duration,
+    steps: VecDeque<Step>,
+}
+
+impl Session {
+    /// A session that waits this long for a connection, and for an answer.
+    pub fn new(timeout: Duration) -> Self {
+        Self {
+            phase: Phase::Down,
+            handle: 0,
+            frames: Frames::default(),
+            waiting: VecDeque::new(),
+            pending: None,
+            number: 0,
+            timeout,
+            steps: VecDeque::new(),
+        }
+    }
+
+    /// Asks, after what waits already.
+    pub fn ask(&mut self, ask: Ask) {
+        if self.waiting.len() >= MOST_WAITING {
+            let why = "too many requests wait already";
+            self.answer(ask.token, false, Err(Trouble::Settings(why.to_owned())));
+        } else {
+            self.waiting.push_back(ask);
+        }
+    }
+
+    /// What to do at `now`; call until it answers `None`.
+    pub fn poll(&mut self, now: Now) -> Option<Step> {
+        if self.steps.is_empty() {
+            self.advance(now);
+        }
+        self.steps.pop_front()
+    }
+
+    /// When to call again at the latest.
+    pub fn wake(&self) -> Option<Now> {
+        match self.phase {
+            Phase::Connecting { until } | Phase::Registering { until } => Some(until),
+            Phase::Down | Phase::Up => self.pending.as_ref().map(|(_, until)| *until),
+        }
+    }
+
+    /// The TCP connection is there.
+    pub fn connected(&mut self, now: Now) {
+        if matches!(self.phase, Phase::Connecting { .. }) {
+            self.frames.clear();
+            self.number += 1;
+            self.steps.push_back(Step::Send(Frame::register(self.number.to_le_bytes()).emit()));
+            self.phase = Phase::Registering { until: now.saturating_add(self.timeout) };
+        }
+    }
+
+    /// Something arrived on the TCP connection.
+    pub fn received(&mut self, now: Now, bytes: &[u8]) {
+        if self.phase == Phase::Down {
+            return;
+        }
+        self.frames.push(bytes);
+        while let Some(bytes) = self.frames.pop() {
+            if let Ok(frame) = Frame::parse(&bytes) {
+                self.take(now, &frame);
+            }
+        }
+    }
+
+    /// The TCP connection did not come about, or ended; `why` tells whoever waits.
+    pub fn lost(&mut self, why: &Trouble) {
+        let was_up = self.phase == Phase::Up;
+        self.phase = Phase::Down;
+        if let Some((ask, _)) = self.pending.take() {
+            self.answer(ask.token, true, Err(Trouble::Hangup { what: ask.what }));
+        }
+        // Where nobody answers, nobody is kept waiting. After a hang-up the rest goes by a new connection.
+        if !was_up {
+            self.fail_waiting(why);
+        }
+    }
+
+    /// Takes leave and closes the TCP connection; what waits is told that all has ended.
+    pub fn end(&mut self) {
+        if self.phase == Phase::Up {
+            self.steps.push_back(Step::Send(Frame::unregister(self.handle).emit()));
+        }
+        self.disconnect();
+        if let Some((ask, _)) = self.pending.take() {
+            self.answer(ask.token, true, Err(Trouble::Ended));
+        }
+        self.fail_waiting(&Trouble::Ended);
+    }
+
+    fn advance(&mut self, now: Now) {
+        match self.phase {
+            Phase::Down if !self.waiting.is_empty() => {
+                self.steps.push_back(Step::Connect);
+                self.phase = Phase::Connecting { until: now.saturating_add(self.timeout) };
+            }
+            Phase::Connecting { until } if now >= until => self.give_up("the TCP connection"),
+            Phase::Registering { until } if now >= until => self.give_up("RegisterSession"),
+            Phase::Up => match &self.pending {
+                Some((ask, until)) if now >= *until => {
+                    let (token, what) = (ask.token, ask.what);
+                    self.pending = None;
+                    // What comes late must not be heard; a new connection is quiet.
+                    self.disconnect();
+                    self.answer(token, true, Err(Trouble::NoAnswer { what, after: self.timeout }));
+                }
+                Some(_) => {}
+                None => self.send_next(now),
+            },
+            _ => {}
+        }
+    }
+
+    fn send_next(&mut self, now: Now) {
+        let Some(ask) = self.waiting.pop_front() else { return };
+        self.number += 1;
+        let context = self.number.to_le_bytes();
+        let frame = Frame { command: ask.command, session: self.handle, status: 0, context, data: &ask.data };
+        self.steps.push_back(Step::Send(frame.emit()));
+        self.pending = Some((ask, now.saturating_add(self.timeout)));
+    }
+
+    fn take(&mut self, now: Now, frame: &Frame<'_>) {
+        if frame.context != self.number.to_le_bytes() {
+            return;
+        }
+        match self.phase {
+            Phase::Registering { .. } if frame.command == Command::REGISTER_SESSION => {
+                if frame.status == 0 {
+                    self.handle = frame.session;
+                    self.phase = Phase::Up;
+                    self.advance(now);
+                } else {
+                    let trouble = Trouble::Encapsulation { what: "RegisterSession", status: frame.status };
+                    self.disconnect();
+                    self.fail_waiting(&trouble);
+                }
+            }
+            Phase::Up => {
+                let Some((ask, _)) = self.pending.take_if(|(ask, _)| ask.command == frame.command) else { return };
+                let result = if frame.status == 0 {
+                    Ok(frame.data.to_vec())
+                } else {
+                    // The session may be what is wrong, so the next request begins a new one.
+                    self.disconnect();
+                    Err(Trouble::Encapsulation { what: ask.what, status: frame.status })
+                };
+                self.answer(ask.token, true, result);
+            }
+            _ => {}
+        }
+    }
+
+    fn give_up(&mut self, what: &'static str) {
+        self.disconnect();
+        self.fail_waiting(&Trouble::NoAnswer { what, after: self.timeout });
+    }
+
+    fn disconnect(&mut self) {
+        if self.phase != Phase::Down {
+            self.phase = Phase::Down;
+            self.steps.push_back(Step::Disconnect);
+        }
+    }
+
+    fn fail_waiting(&mut self, why: &Trouble) {
+        for ask in std::mem::take(&mut self.waiting) {
+            self.answer(ask.token, false, Err(why.clone()));
+        }
+    }
+
+    fn answer(&mut self, token: Token, sent: bool, result: Result<Vec<u8>, Trouble>) {
+        self.steps.push_back(Step::Answer { token, sent, result });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TIMEOUT: Duration = Duration::from_secs(3);
+    const NOW: Now = Duration::from_secs(100);
+
+    fn ask(token: u64) -> Ask {
+        Ask { token: Token(token), what: "the test", command: Command::SEND_RR_DATA, data: vec![1, 2] }
+    }
+
+    fn sent(session: &mut Session, now: Now) -> Vec<u8> {
+        match session.poll(now) {
+            Some(Step::Send(bytes)) => bytes,
+            other => panic!("nothing is sent: {other:?}"),
+        }
+    }
+
+    /// Answers the frame that was sent, with a session of 7.
+    fn answer(bytes: &[u8], status: u32, data: &[u8]) -> Vec<u8> {
+        Frame { session: 7, status, data, ..Frame::parse(bytes).unwrap() }.emit()
+    }
+
+    /// A session with a request on its way.
+    fn asking() -> (Session, Vec<u8>) {
+        let mut session = Session::new(TIMEOUT);
+        session.ask(ask(1));
+        assert_eq!(session.poll(NOW), Some(Step::Connect));
+        assert_eq!(session.poll(NOW), None);
+        session.connected(NOW);
+        let register = sent(&mut session, NOW);
+        session.received(NOW, &answer(&register, 0, &[1, 0, 0, 0]));
+        let request = sent(&mut session, NOW);
+        assert_eq!(session.poll(NOW), None);
+        (session, request)
+    }
+
+    #[test]
+    fn a_request_opens_what_it_needs() {
+        let (mut session, request) = asking();
+        let frame = Frame::parse(&request).unwrap();
+        assert_eq!((frame.command, frame.session, frame.data), (Command::SEND_RR_DATA, 7, &[1, 2][..]));
+        let reply = answer(&request, 0, &[9]);
+        let (one, two) = reply.split_at(20);
+        session.received(NOW, one);
+        assert_eq!(session.poll(NOW), None);
+        session.received(NOW, two);
+        assert_eq!(session.poll(NOW), Some(Step::Answer { token: Token(1), sent: true, result: Ok(vec![9]) }));
+        session.end();
+        assert_eq!(session.poll(NOW), Some(Step::Send(Frame::unregister(7).emit())));
+        assert_eq!(session.poll(NOW), Some(Step::Disconnect));
+        assert_eq!((session.poll(NOW), session.wake()), (None, None));
+    }
+
+    #[test]
+    fn an_answer_to_something_else_is_passed_over() {
+        let (mut session, request) = asking();
+        let mut other = answer(&request, 0, &[9]);
+        other[12] ^= 1;
+        session.received(NOW, &other);
+        assert_eq!(session.poll(NOW), None);
+    }
+
+    #[test]
+    fn a_lost_answer_ends_the_connection_and_is_not_asked_again() {
+        let (mut session, request) = asking();
+        session.ask(ask(2));
+        let late = NOW + TIMEOUT;
+        assert_eq!(session.wake(), Some(late));
+        assert_eq!(session.poll(late), Some(Step::Disconnect));
+        let result = Err(Trouble::NoAnswer { what: "the test", after: TIMEOUT });
+        assert_eq!(session.poll(late), Some(Step::Answer { token: Token(1), sent: true, result }));
+        session.received(late, &answer(&request, 0, &[9]));
+        assert_eq!(session.poll(late), Some(Step::Connect), "for the second");
+    }
+
+    #[test]
+    fn nobody_waits_where_nobody_answers() {
+        let mut session = Session::new(TIMEOUT);
+        session.ask(ask(1));
+        session.ask(ask(2));
+        assert_eq!(session.poll(NOW), Some(Step::Connect));
+        let trouble = Trouble::NoAnswer { what: "the TCP connection", after: TIMEOUT };
+        session.lost(&trouble);
+        for token in [1, 2] {
+            let result = Err(trouble.clone());
+            assert_eq!(session.poll(NOW), Some(Step::Answer { token: Token(token), sent: false, result }));
+        }
+        assert_eq!(session.poll(NOW), None);
+    }
+
+    #[test]
+    fn a_forgotten_session_is_begun_again() {
+        let (mut session, request) = asking();
+        session.received(NOW, &answer(&request, 0x64, &[]));
+        assert_eq!(session.poll(NOW), Some(Step::Disconnect));
+        let result = Err(Trouble::Encapsulation { what: "the test", status: 0x64 });
+        assert_eq!(session.poll(NOW), Some(Step::Answer { token: Token(1), sent: true, result }));
+        session.ask(ask(2));
+        assert_eq!(session.poll(NOW), Some(Step::Connect));
+    }
+
+    #[test]
+    fn a_hangup_loses_what_was_sent_and_keeps_what_was_not() {
+        let (mut session, _) = asking();
+        session.ask(ask(2));
+        session.lost(&Trouble::Ended);
+        let result = Err(Trouble::Hangup { what: "the test" });
+        assert_eq!(session.poll(NOW), Some(Step::Answer { token: Token(1), sent: true, result }));
+        assert_eq!(session.poll(NOW), Some(Step::Connect));
+    }
+}

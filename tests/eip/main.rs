@@ -1,0 +1,5 @@
+//! EtherNet/IP: both ends against each other in virtual time and on sockets, and each against ends that others wrote.
+
+mod bytes;
+mod virtual_time;
+mod world;
