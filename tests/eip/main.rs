@@ -1,5 +1,6 @@
 //! EtherNet/IP: both ends against each other in virtual time and on sockets, and each against ends that others wrote.
 
 mod bytes;
+mod sockets;
 mod virtual_time;
 mod world;

@@ -6,11 +6,16 @@ use std::time::Duration;
 
 pub mod adapter;
 mod class1;
+pub mod client;
+pub mod discovery;
+mod engine;
 pub mod explicit;
 pub mod originator;
+pub mod scanner;
 pub mod session;
 pub mod settings;
 pub mod status;
+pub mod tap;
 pub mod trouble;
 pub mod wire;
 

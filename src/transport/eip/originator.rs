@@ -141,7 +141,7 @@ pub struct View {
     pub sent: u64,
     /// Whether the device is told to run.
     pub run: bool,
-    /// Why it was lost, or not opened, the last time.
+    /// Why it was lost, or not opened, the last time; while it is open, what went wrong on a socket here.
     pub trouble: Option<Trouble>,
     /// The intervals that the device keeps: to it, from it.
     pub intervals: Option<(Duration, Duration)>,
@@ -350,6 +350,12 @@ impl Originator {
     /// Something arrived on the TCP connection.
     pub fn received(&mut self, now: Now, bytes: &[u8]) {
         self.session.received(now, bytes);
+    }
+
+    /// Something that was to be done on a local socket did not work. The connection lives on as long as it can.
+    pub fn failed(&mut self, trouble: Trouble) {
+        self.view.trouble = Some(trouble);
+        self.has_changed = true;
     }
 
     /// Whether datagrams of this id, from this address, are for this connection.

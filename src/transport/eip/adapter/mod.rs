@@ -16,6 +16,7 @@ use super::{Now, PORT};
 mod mischief;
 mod objects;
 mod open;
+pub mod server;
 
 pub use mischief::Mischief;
 

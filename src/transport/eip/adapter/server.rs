@@ -1,0 +1,291 @@
+//! An adapter on sockets: sessions by TCP, ListIdentity by UDP on the same port, images by UDP.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::runtime::Handle;
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+
+use super::super::engine::{Alarm, Engine, Prepared, spawn};
+use super::super::{IO_PORT, Now, PORT};
+use super::{Adapter, Application, Output, Setup};
+use crate::transport::fault::Faults;
+
+/// Room for the largest datagram.
+const BUFFER: usize = 65_536;
+/// Most TCP connections; more are closed at once.
+const MOST_CLIENTS: usize = 64;
+/// Where the system chooses the port, TCP and UDP must get the same one; how often that is tried.
+const TRIES: usize = 16;
+
+/// Pause after a TCP connection that could not be taken.
+const PAUSE: Duration = Duration::from_millis(50);
+
+/// Where an adapter listens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Listen {
+    /// Its address.
+    pub address: Ipv4Addr,
+    /// TCP port of sessions, and UDP port of ListIdentity; 0 lets the system choose.
+    pub port: u16,
+    /// UDP port of images; likewise. Originators that do not look at where the adapter says it listens want 2222.
+    pub io_port: u16,
+}
+
+impl Listen {
+    /// On the usual ports.
+    pub const fn usual(address: Ipv4Addr) -> Self {
+        Self { address, port: PORT, io_port: IO_PORT }
+    }
+
+    /// On ports that the system chooses.
+    pub const fn anywhere(address: Ipv4Addr) -> Self {
+        Self { address, port: 0, io_port: 0 }
+    }
+}
+
+/// An adapter that is running; it ends when it is dropped, without taking leave.
+#[derive(Debug)]
+pub struct Server<A: Application + 'static> {
+    inner: Arc<Inner<A>>,
+    address: SocketAddrV4,
+    io_port: u16,
+    _engine: Engine,
+}
+
+#[derive(Debug)]
+struct Inner<A> {
+    start: Instant,
+    alarm: Arc<Alarm>,
+    images: UdpSocket,
+    discovery: UdpSocket,
+    state: Mutex<State<A>>,
+}
+
+#[derive(Debug)]
+struct State<A> {
+    adapter: Adapter<A>,
+    lines: BTreeMap<u64, UnboundedSender<Vec<u8>>>,
+    last: u64,
+    /// Of images: to the adapter, from it.
+    faults: Option<(Faults, Faults)>,
+    /// Images that faults delay.
+    delayed: Vec<(Now, Delayed)>,
+}
+
+#[derive(Debug)]
+enum Delayed {
+    Arriving(SocketAddrV4, Vec<u8>),
+    Leaving(SocketAddrV4, Vec<u8>),
+}
+
+impl<A: Application> Server<A> {
+    /// Begins to listen. `faults` are those of images on their way there and back.
+    pub fn start(setup: Setup, application: A, listen: Listen, faults: Option<(Faults, Faults)>) -> io::Result<Self> {
+        let prepared = Prepared::new()?;
+        let _guard = prepared.handle().enter();
+        let (sessions, discovery) = bind(listen)?;
+        let images = UdpSocket::bind((listen.address, listen.io_port))?;
+        images.set_nonblocking(true)?;
+        discovery.set_nonblocking(true)?;
+        sessions.set_nonblocking(true)?;
+        let (SocketAddr::V4(address), SocketAddr::V4(image_address)) = (sessions.local_addr()?, images.local_addr()?)
+        else {
+            return Err(io::ErrorKind::Unsupported.into());
+        };
+        let mut adapter = Adapter::new(setup, application);
+        adapter.listens(address, image_address.port());
+        let sessions = TcpListener::from_std(sessions)?;
+        let heard = tokio::net::UdpSocket::from_std(images.try_clone()?)?;
+        let asked = tokio::net::UdpSocket::from_std(discovery.try_clone()?)?;
+        let alarm = Arc::new(Alarm::default());
+        let start = Instant::now();
+        let state = State { adapter, lines: BTreeMap::new(), last: 0, faults, delayed: Vec::new() };
+        let inner =
+            Arc::new(Inner { start, alarm: Arc::clone(&alarm), images, discovery, state: Mutex::new(state) });
+        spawn(prepared.handle(), accept(Arc::clone(&inner), sessions, prepared.handle().clone()));
+        spawn(prepared.handle(), receive(Arc::clone(&inner), heard, Inner::heard));
+        spawn(prepared.handle(), receive(Arc::clone(&inner), asked, Inner::asked));
+        drop(_guard);
+        let turned = Arc::clone(&inner);
+        let engine = prepared.start("adapter", start, alarm, move || turned.turn())?;
+        Ok(Self { inner, address, io_port: image_address.port(), _engine: engine })
+    }
+
+    /// Where it takes sessions.
+    pub const fn address(&self) -> SocketAddrV4 {
+        self.address
+    }
+
+    /// Where it takes images.
+    pub const fn io_port(&self) -> u16 {
+        self.io_port
+    }
+
+    /// Looks at the adapter, or changes it, and at what it is for.
+    pub fn with<T>(&self, look: impl FnOnce(&mut Adapter<A>, Now) -> T) -> T {
+        let result = look(&mut self.inner.state().adapter, self.inner.start.elapsed());
+        self.inner.alarm.set(Some(Now::ZERO));
+        result
+    }
+}
+
+impl<A: Application> Inner<A> {
+    fn state(&self) -> MutexGuard<'_, State<A>> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Lets something happen to the adapter, and all that follows from it.
+    fn with(&self, change: impl FnOnce(&mut State<A>, Now)) {
+        let mut state = self.state();
+        let now = self.start.elapsed();
+        change(&mut state, now);
+        let wake = self.follow(&mut state, now);
+        self.alarm.set(wake);
+    }
+
+    /// Does what is due by the clock, and says when to do so again.
+    fn turn(&self) -> Option<Now> {
+        let mut state = self.state();
+        let now = self.start.elapsed();
+        let (due, later) = std::mem::take(&mut state.delayed).into_iter().partition(|(at, _)| *at <= now);
+        state.delayed = later;
+        let mut due: Vec<(Now, Delayed)> = due;
+        due.sort_by_key(|(at, _)| *at);
+        for (_, delayed) in due {
+            match delayed {
+                Delayed::Arriving(from, bytes) => state.adapter.hear(now, from, &bytes),
+                Delayed::Leaving(to, bytes) => self.send(&self.images, to, &bytes),
+            }
+        }
+        self.follow(&mut state, now)
+    }
+
+    fn follow(&self, state: &mut State<A>, now: Now) -> Option<Now> {
+        while let Some(output) = state.adapter.poll(now) {
+            match output {
+                Output::Send(client, bytes) => {
+                    if let Some(line) = state.lines.get(&client) {
+                        // A line that has ended says so by itself.
+                        let _ = line.send(bytes);
+                    }
+                }
+                Output::HangUp(client) => {
+                    state.lines.remove(&client);
+                    state.adapter.hung_up(client);
+                }
+                Output::Datagram(to, bytes) => match &mut state.faults {
+                    None => self.send(&self.images, to, &bytes),
+                    Some((_, back)) => {
+                        let copies = back.pass(now, &bytes);
+                        state.delayed.extend(copies.into_iter().map(|(at, bytes)| (at, Delayed::Leaving(to, bytes))));
+                    }
+                },
+                Output::Discovered(to, bytes) => self.send(&self.discovery, to, &bytes),
+            }
+        }
+        state.delayed.iter().map(|(at, _)| *at).chain(state.adapter.wake()).min()
+    }
+
+    /// Devices do not care whether their datagrams arrive; nor does this one.
+    fn send(&self, socket: &UdpSocket, to: SocketAddrV4, bytes: &[u8]) {
+        let _ = socket.send_to(bytes, to);
+    }
+
+    fn heard(&self, from: SocketAddrV4, bytes: &[u8]) {
+        self.with(|state, now| match &mut state.faults {
+            None => state.adapter.hear(now, from, bytes),
+            Some((there, _)) => {
+                let copies = there.pass(now, bytes);
+                state.delayed.extend(copies.into_iter().map(|(at, bytes)| (at, Delayed::Arriving(from, bytes))));
+            }
+        });
+    }
+
+    fn asked(&self, from: SocketAddrV4, bytes: &[u8]) {
+        self.with(|state, _| state.adapter.discovered(from, bytes));
+    }
+}
+
+/// TCP and UDP on the same port.
+fn bind(listen: Listen) -> io::Result<(std::net::TcpListener, UdpSocket)> {
+    let mut tries = if listen.port == 0 { TRIES } else { 1 };
+    loop {
+        let sessions = std::net::TcpListener::bind((listen.address, listen.port))?;
+        match UdpSocket::bind((listen.address, sessions.local_addr()?.port())) {
+            Err(_) if tries > 1 => tries -= 1,
+            discovery => return Ok((sessions, discovery?)),
+        }
+    }
+}
+
+async fn accept<A: Application + 'static>(inner: Arc<Inner<A>>, sessions: TcpListener, handle: Handle) {
+    loop {
+        // An error is about one who came and went, or about too many open files; both pass.
+        let Ok((stream, SocketAddr::V4(from))) = sessions.accept().await else {
+            tokio::time::sleep(PAUSE).await;
+            continue;
+        };
+        let (line, orders) = unbounded_channel();
+        let mut client = None;
+        inner.with(|state, _| {
+            if state.lines.len() < MOST_CLIENTS {
+                state.last += 1;
+                state.lines.insert(state.last, line);
+                state.adapter.connected(state.last, *from.ip());
+                client = Some(state.last);
+            }
+        });
+        if let Some(client) = client {
+            spawn(&handle, serve(Arc::clone(&inner), client, stream, orders));
+        }
+    }
+}
+
+async fn serve<A: Application>(
+    inner: Arc<Inner<A>>,
+    client: u64,
+    mut stream: TcpStream,
+    mut orders: UnboundedReceiver<Vec<u8>>,
+) {
+    // Without it an answer may wait for the acknowledgement of the one before; it works all the same.
+    let _ = stream.set_nodelay(true);
+    let (mut from, mut to) = stream.split();
+    let mut buffer = [0; 4096];
+    loop {
+        tokio::select! {
+            biased;
+            order = orders.recv() => match order {
+                Some(bytes) if to.write_all(&bytes).await.is_ok() => {}
+                _ => break,
+            },
+            read = from.read(&mut buffer) => match read {
+                Ok(len @ 1..) => inner.with(|state, now| state.adapter.received(now, client, &buffer[..len])),
+                Ok(0) | Err(_) => break,
+            },
+        }
+    }
+    inner.with(|state, _| {
+        state.lines.remove(&client);
+        state.adapter.hung_up(client);
+    });
+}
+
+async fn receive<A: Application>(
+    inner: Arc<Inner<A>>,
+    socket: tokio::net::UdpSocket,
+    take: fn(&Inner<A>, SocketAddrV4, &[u8]),
+) {
+    let mut buffer = vec![0; BUFFER];
+    loop {
+        // An error is about one who is gone (Windows: port unreachable), and nothing to the others.
+        if let Ok((len, SocketAddr::V4(from))) = socket.recv_from(&mut buffer).await {
+            take(&inner, from, &buffer[..len]);
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Messages to a device without a connection for images.
+
+use std::net::{SocketAddr, SocketAddrV4};
+
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::TcpStream;
+use tokio::time::{Duration, Instant, timeout_at};
+
+use super::explicit::{Answer, Message};
+use super::session::{Ask, Session, Step, Token};
+use super::tap::Tap;
+use super::trouble::Trouble;
+use super::wire::{Command, Identity, Services};
+
+/// The one request that is on its way.
+const TOKEN: Token = Token(0);
+/// Room for what is read at once.
+const BUFFER: usize = 4096;
+
+/// A session with a device, opened when first used.
+#[derive(Debug)]
+pub struct Client {
+    target: SocketAddrV4,
+    session: Session,
+    stream: Option<TcpStream>,
+    start: Instant,
+    timeout: Duration,
+    tap: Tap,
+}
+
+impl Client {
+    /// For the device whose TCP address this is; `timeout` is for connecting, and for each answer.
+    pub fn new(target: SocketAddrV4, timeout: Duration, tap: Tap) -> Self {
+        Self { target, session: Session::new(timeout), stream: None, start: Instant::now(), timeout, tap }
+    }
+
+    /// Where the device is.
+    pub const fn target(&self) -> SocketAddrV4 {
+        self.target
+    }
+
+    /// Asks an object. A refusal is an answer.
+    pub async fn ask(&mut self, what: &'static str, message: &Message) -> Result<Answer, Trouble> {
+        Answer::parse(what, &self.send(what, Command::SEND_RR_DATA, message.emit()).await?)
+    }
+
+    /// Asks who the device is.
+    pub async fn identity(&mut self) -> Result<Option<Identity>, Trouble> {
+        let what = "ListIdentity";
+        let data = self.send(what, Command::LIST_IDENTITY, Vec::new()).await?;
+        Identity::parse(&data).map_err(|error| Trouble::Malformed { what, error })
+    }
+
+    /// Asks what the device can do.
+    pub async fn services(&mut self) -> Result<Option<Services>, Trouble> {
+        let what = "ListServices";
+        let data = self.send(what, Command::LIST_SERVICES, Vec::new()).await?;
+        Services::parse(&data).map_err(|error| Trouble::Malformed { what, error })
+    }
+
+    /// Takes leave of the device.
+    pub async fn close(mut self) {
+        self.session.end();
+        while let Some(step) = self.session.poll(self.start.elapsed()) {
+            if let Step::Send(bytes) = step {
+                // It is told out of politeness; the end of the connection says the same.
+                let _ = self.write(&bytes).await;
+            }
+        }
+    }
+
+    pub(super) async fn send(&mut self, what: &'static str, command: Command, data: Vec<u8>) -> Result<Vec<u8>, Trouble> {
+        self.session.ask(Ask { token: TOKEN, what, command, data });
+        loop {
+            match self.session.poll(self.start.elapsed()) {
+                Some(Step::Connect) => self.connect().await,
+                Some(Step::Send(bytes)) => {
+                    if self.write(&bytes).await.is_err() {
+                        self.stream = None;
+                        self.session.lost(&Trouble::Hangup { what });
+                    }
+                }
+                Some(Step::Disconnect) => self.stream = None,
+                Some(Step::Answer { result, .. }) => return result,
+                None => self.read(what).await,
+            }
+        }
+    }
+
+    async fn connect(&mut self) {
+        let until = Instant::now() + self.timeout;
+        match timeout_at(until, TcpStream::connect(self.target)).await {
+            Ok(Ok(stream)) => {
+                // Without it a request may wait for the acknowledgement of the one before; it works all the same.
+                let _ = stream.set_nodelay(true);
+                self.stream = Some(stream);
+                self.session.connected(self.start.elapsed());
+            }
+            Ok(Err(error)) => self.session.lost(&Trouble::unreachable(&error)),
+            Err(_) => {
+                self.session.lost(&Trouble::NoAnswer { what: "the TCP connection", after: self.timeout });
+            }
+        }
+    }
+
+    async fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        let Some(stream) = &mut self.stream else { return Err(std::io::ErrorKind::NotConnected.into()) };
+        if let Ok(SocketAddr::V4(here)) = stream.local_addr() {
+            self.tap.pass(true, here, self.target, bytes);
+        }
+        stream.write_all(bytes).await
+    }
+
+    /// Reads once, or waits until the session wants to do something.
+    async fn read(&mut self, what: &'static str) {
+        let Some(stream) = &mut self.stream else { return };
+        let mut buffer = [0; BUFFER];
+        let until = self.session.wake().map_or_else(|| Instant::now() + self.timeout, |wake| self.start + wake);
+        match timeout_at(until, stream.read(&mut buffer)).await {
+            Ok(Ok(len @ 1..)) => {
+                if let Ok(SocketAddr::V4(here)) = stream.local_addr() {
+                    self.tap.pass(true, self.target, here, &buffer[..len]);
+                }
+                self.session.received(self.start.elapsed(), &buffer[..len]);
+            }
+            Ok(Ok(0) | Err(_)) => {
+                self.stream = None;
+                self.session.lost(&Trouble::Hangup { what });
+            }
+            Err(_) => {}
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Who is there: ListIdentity by UDP, to one device or to all of a network.
+
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
+use std::time::Duration;
+
+use tokio::net::UdpSocket;
+use tokio::time::{Instant, timeout_at};
+
+use super::tap::Tap;
+use super::wire::{Command, Frame, Identity};
+
+/// How long devices may spread their answers to a broadcast (volume 2, 2-4.2.2).
+const SPREAD: Duration = Duration::from_millis(500);
+/// Room for an answer.
+const BUFFER: usize = 2048;
+/// Most devices that are told of.
+const MOST: usize = 1024;
+
+/// A device that answered.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Found {
+    /// Where the answer came from.
+    pub address: SocketAddrV4,
+    /// Who it says it is.
+    pub identity: Identity,
+}
+
+/// Asks devices, or whole networks by their broadcast addresses, and gathers answers until `wait` is over, or until
+/// every single device has answered. Devices answer a broadcast within half a second; over 2 s is a good wait.
+///
+/// # Errors
+/// When no socket can be opened, or nothing can be sent to any target.
+pub async fn list_identity(targets: &[SocketAddrV4], wait: Duration, tap: &Tap) -> io::Result<Vec<Found>> {
+    let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).await?;
+    socket.set_broadcast(true)?;
+    let SocketAddr::V4(here) = socket.local_addr()? else { return Err(io::ErrorKind::Unsupported.into()) };
+    let spread = u16::try_from(SPREAD.as_millis()).unwrap_or(u16::MAX).to_le_bytes();
+    let request = Frame { context: [spread[0], spread[1], 0, 0, 0, 0, 0, 0], ..Frame::new(Command::LIST_IDENTITY) };
+    let request = request.emit();
+    let start = Instant::now();
+    let mut found: Vec<Found> = Vec::new();
+    // Datagrams get lost, so everybody who has not answered by half-time is asked once more.
+    for until in [start + wait / 2, start + wait] {
+        let mut failure = None;
+        let mut sent = false;
+        for target in targets.iter().filter(|target| !found.iter().any(|found| found.address == **target)) {
+            match socket.send_to(&request, SocketAddr::V4(*target)).await {
+                Ok(_) => {
+                    tap.pass(false, here, *target, &request);
+                    sent = true;
+                }
+                Err(error) => failure = Some(error),
+            }
+        }
+        if let (false, Some(error)) = (sent, failure) {
+            return Err(error);
+        }
+        gather(&socket, here, until, targets, &mut found, tap).await;
+    }
+    Ok(found)
+}
+
+async fn gather(
+    socket: &UdpSocket,
+    here: SocketAddrV4,
+    until: Instant,
+    targets: &[SocketAddrV4],
+    found: &mut Vec<Found>,
+    tap: &Tap,
+) {
+    let mut buffer = [0; BUFFER];
+    while found.len() < MOST && !targets.iter().all(|target| found.iter().any(|found| found.address == *target)) {
+        let (len, address) = match timeout_at(until, socket.recv_from(&mut buffer)).await {
+            Ok(Ok((len, SocketAddr::V4(address)))) => (len, address),
+            // Port unreachable, as Windows tells it: others may answer still.
+            Ok(_) => continue,
+            Err(_) => return,
+        };
+        tap.pass(false, address, here, &buffer[..len]);
+        let Ok(frame) = Frame::parse(&buffer[..len]) else { continue };
+        let is_new = !found.iter().any(|found| found.address == address);
+        if let (Command::LIST_IDENTITY, true, Ok(Some(identity))) = (frame.command, is_new, Identity::parse(frame.data)) {
+            found.push(Found { address, identity });
+        }
+    }
+}

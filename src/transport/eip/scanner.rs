@@ -1,0 +1,360 @@
+//! Connections to any number of devices on one UDP socket.
+
+use std::collections::{BTreeMap, HashMap};
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use tokio::runtime::Handle;
+use tokio::sync::{mpsc, oneshot, watch};
+
+use super::engine::{Alarm, Engine, Prepared, spawn};
+use super::explicit::{Answer, Message};
+use super::originator::{Action, Numbers, Originator, State, View};
+use super::session::{Ask, Token};
+use super::settings::Settings;
+use super::tap::Tap;
+use super::trouble::Trouble;
+use super::wire::{Command, Cyclic};
+use super::{IO_PORT, Now};
+
+mod tcp;
+
+use tcp::Line;
+
+/// First token for messages of callers; the ones before are the originator's own.
+const FIRST_TOKEN: u64 = 2;
+/// Datagrams taken at once before others have their turn.
+const AT_ONCE: usize = 64;
+/// Room for the largest datagram.
+const BUFFER: usize = 65_536;
+
+/// Holds connections. It is cheap to clone; its threads end with the last clone and the last connection.
+#[derive(Debug, Clone)]
+pub struct Scanner {
+    owner: Arc<Owner>,
+}
+
+#[derive(Debug)]
+struct Owner {
+    inner: Arc<Inner>,
+    /// Ends the threads, which hold `inner`, too.
+    _engine: Engine,
+}
+
+#[derive(Debug)]
+struct Inner {
+    start: Instant,
+    alarm: Arc<Alarm>,
+    handle: Handle,
+    socket: UdpSocket,
+    local: SocketAddrV4,
+    numbers: Arc<Numbers>,
+    tap: Tap,
+    slots: Mutex<BTreeMap<u64, Slot>>,
+    last: AtomicU64,
+    /// Groups with the interface they are heard on, and by how many connections.
+    groups: Mutex<HashMap<(Ipv4Addr, Ipv4Addr), usize>>,
+}
+
+/// A connection and what belongs to it.
+#[derive(Debug)]
+struct Slot {
+    core: Originator,
+    line: Option<Line>,
+    /// Our address on the way to the device, once it is known.
+    here: Ipv4Addr,
+    view: watch::Sender<View>,
+    answers: HashMap<Token, oneshot::Sender<Result<Vec<u8>, Trouble>>>,
+}
+
+impl Scanner {
+    /// Listens for images on UDP port 2222 of this address, or on any port if another program has that one.
+    pub fn start(address: Ipv4Addr, tap: Tap) -> Result<Self, Trouble> {
+        let failed = |error: &io::Error| Trouble::local("UDP socket for images", error);
+        let socket = match UdpSocket::bind((address, IO_PORT)) {
+            Err(error) if error.kind() == io::ErrorKind::AddrInUse => UdpSocket::bind((address, 0)),
+            bound => bound,
+        };
+        Self::on(socket.map_err(|error| failed(&error))?, tap).map_err(|error| failed(&error))
+    }
+
+    fn on(socket: UdpSocket, tap: Tap) -> io::Result<Self> {
+        socket.set_nonblocking(true)?;
+        let SocketAddr::V4(local) = socket.local_addr()? else { return Err(io::ErrorKind::Unsupported.into()) };
+        let engine = Prepared::new()?;
+        let heard = {
+            let _guard = engine.handle().enter();
+            tokio::net::UdpSocket::from_std(socket.try_clone()?)?
+        };
+        let alarm = Arc::new(Alarm::default());
+        let start = Instant::now();
+        let inner = Arc::new(Inner {
+            start,
+            alarm: Arc::clone(&alarm),
+            handle: engine.handle().clone(),
+            socket,
+            local,
+            numbers: Arc::new(Numbers::random()),
+            tap,
+            slots: Mutex::default(),
+            last: AtomicU64::new(0),
+            groups: Mutex::default(),
+        });
+        spawn(engine.handle(), hear(Arc::clone(&inner), heard));
+        let turned = Arc::clone(&inner);
+        let engine = engine.start("eip", start, alarm, move || turned.turn())?;
+        Ok(Self { owner: Arc::new(Owner { inner, _engine: engine }) })
+    }
+
+    /// The UDP port on which images are heard.
+    pub fn port(&self) -> u16 {
+        self.owner.inner.local.port()
+    }
+
+    /// Opens a connection to the device whose TCP address this is, and holds it until it is closed or dropped.
+    pub async fn open(&self, target: SocketAddrV4, settings: Settings) -> Result<Connection, Trouble> {
+        let inner = &self.owner.inner;
+        if settings.multicast && self.port() != IO_PORT {
+            let text = format!("images to a group come on UDP port {IO_PORT}, which another program here has");
+            return Err(Trouble::Settings(text));
+        }
+        let core = Originator::new(target, self.port(), settings, Arc::clone(&inner.numbers))?;
+        let (view, views) = watch::channel(core.view());
+        let slot = Slot { core, line: None, here: *inner.local.ip(), view, answers: HashMap::new() };
+        let id = inner.last.fetch_add(1, Ordering::Relaxed);
+        inner.slots().insert(id, slot);
+        inner.with(id, |_, _| ());
+        let mut connection = Connection { owner: Arc::clone(&self.owner), id, views, tokens: FIRST_TOKEN };
+        let view = connection.until(|view| view.state != State::Opening).await;
+        match (view.state, view.trouble) {
+            (State::Closed, Some(trouble)) => Err(trouble),
+            (State::Closed, None) => Err(Trouble::Ended),
+            _ => Ok(connection),
+        }
+    }
+}
+
+/// A connection that is held. Dropping it closes it, as long as the process lives to do so.
+#[derive(Debug)]
+pub struct Connection {
+    owner: Arc<Owner>,
+    id: u64,
+    views: watch::Receiver<View>,
+    tokens: u64,
+}
+
+impl Connection {
+    /// What there is to see now.
+    pub fn view(&self) -> View {
+        self.views.borrow().clone()
+    }
+
+    /// The moment, on the clock of the view's images.
+    pub fn now(&self) -> Now {
+        self.owner.inner.now()
+    }
+
+    /// Waits for something new: an image, or a change of state. After the view that says that the connection is closed
+    /// nothing comes any more.
+    pub async fn changed(&mut self) -> View {
+        // The other end goes with the slot, when all has ended; then nothing changes any more.
+        if self.views.changed().await.is_err() {
+            return std::future::pending().await;
+        }
+        self.views.borrow_and_update().clone()
+    }
+
+    /// Waits until the view is so. It never is again once the connection is closed.
+    pub async fn until(&mut self, mut condition: impl FnMut(&View) -> bool) -> View {
+        loop {
+            let view = self.views.borrow_and_update().clone();
+            if condition(&view) || view.state == State::Closed {
+                return view;
+            }
+            if self.views.changed().await.is_err() {
+                return self.view();
+            }
+        }
+    }
+
+    /// Sends this image from the next interval on; see [`Originator::set_image`].
+    pub fn set_image(&self, generation: u32, image: &[u8]) -> Result<u64, Trouble> {
+        self.with(|core| core.set_image(generation, image))
+    }
+
+    /// Tells the device to run, or that its master idles; see [`Originator::set_run`].
+    pub fn set_run(&self, generation: u32, run: bool) -> Result<u64, Trouble> {
+        self.with(|core| core.set_run(generation, run))
+    }
+
+    /// Asks an object of the device, over the same session. A refusal is an answer.
+    pub async fn ask(&mut self, what: &'static str, message: &Message) -> Result<Answer, Trouble> {
+        let token = Token(self.tokens);
+        self.tokens += 1;
+        let (sender, answer) = oneshot::channel();
+        let ask = Ask { token, what, command: Command::SEND_RR_DATA, data: message.emit() };
+        self.owner.inner.with(self.id, |slot, _| {
+            slot.answers.insert(token, sender);
+            slot.core.ask(ask);
+        });
+        let data = answer.await.unwrap_or(Err(Trouble::Ended))?;
+        Answer::parse(what, &data)
+    }
+
+    /// Closes it: idle once more, then a proper close. Says if the device did not confirm that.
+    pub async fn close(mut self) -> Result<(), Trouble> {
+        let before = self.view().trouble;
+        self.with(|core| {
+            core.close();
+            Ok(())
+        })
+        .or_else(|trouble| if trouble == Trouble::Ended { Ok(()) } else { Err(trouble) })?;
+        let view = self.until(|view| view.state == State::Closed).await;
+        view.trouble.filter(|trouble| before.as_ref() != Some(trouble)).map_or(Ok(()), Err)
+    }
+
+    fn with<T>(&self, change: impl FnOnce(&mut Originator) -> Result<T, Trouble>) -> Result<T, Trouble> {
+        self.owner.inner.with(self.id, |slot, _| change(&mut slot.core)).unwrap_or(Err(Trouble::Ended))
+    }
+}
+
+impl Drop for Connection {
+    fn drop(&mut self) {
+        self.owner.inner.with(self.id, |slot, _| slot.core.close());
+    }
+}
+
+impl Inner {
+    fn now(&self) -> Now {
+        self.start.elapsed()
+    }
+
+    fn slots(&self) -> MutexGuard<'_, BTreeMap<u64, Slot>> {
+        self.slots.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Does something with a connection, and all that follows from it; `None` if it is gone.
+    fn with<T>(self: &Arc<Self>, id: u64, change: impl FnOnce(&mut Slot, Now) -> T) -> Option<T> {
+        let mut slots = self.slots();
+        let slot = slots.get_mut(&id)?;
+        let now = self.now();
+        let result = change(slot, now);
+        self.follow(id, slot, now);
+        self.alarm.set(slot.core.wake());
+        if slot.core.is_finished() {
+            slots.remove(&id);
+        }
+        Some(result)
+    }
+
+    /// Does what is due by the clock, and says when to do so again.
+    fn turn(self: &Arc<Self>) -> Option<Now> {
+        let mut slots = self.slots();
+        let now = self.now();
+        for (id, slot) in slots.iter_mut() {
+            if slot.core.wake().is_some_and(|wake| wake <= now) {
+                self.follow(*id, slot, now);
+            }
+        }
+        slots.retain(|_, slot| !slot.core.is_finished());
+        slots.values().filter_map(|slot| slot.core.wake()).min()
+    }
+
+    /// Does what a connection wants done, and shows what came of it.
+    fn follow(self: &Arc<Self>, id: u64, slot: &mut Slot, now: Now) {
+        while let Some(action) = slot.core.poll(now) {
+            match action {
+                Action::Connect => {
+                    let (line, orders) = Line::new();
+                    spawn(&self.handle, tcp::run(Arc::clone(self), id, line.number, slot.core.target(), orders));
+                    slot.line = Some(line);
+                }
+                Action::Send(bytes) => {
+                    if let Some(line) = &slot.line {
+                        line.send(bytes);
+                    }
+                }
+                Action::Disconnect => slot.line = None,
+                Action::Datagram(to, bytes) => match self.socket.send_to(&bytes, to) {
+                    Ok(_) => self.tap.pass(false, SocketAddrV4::new(slot.here, self.local.port()), to, &bytes),
+                    Err(error) => slot.core.failed(Trouble::local("sending an image", &error)),
+                },
+                Action::Join(group) => {
+                    if let Err(error) = self.join(group, slot.here) {
+                        slot.core.failed(Trouble::local("joining the group", &error));
+                    }
+                }
+                Action::Leave(group) => self.leave(group, slot.here),
+                Action::Answer(token, result) => {
+                    if let Some(answer) = slot.answers.remove(&token) {
+                        // Who asked may have gone.
+                        let _ = answer.send(result);
+                    }
+                }
+            }
+        }
+        if slot.core.take_changed() {
+            slot.view.send_replace(slot.core.view());
+        }
+    }
+
+    /// A datagram came.
+    fn heard(&self, from: SocketAddrV4, bytes: &[u8]) {
+        let Ok(datagram) = Cyclic::parse(bytes) else { return };
+        let now = self.now();
+        let mut slots = self.slots();
+        let Some(slot) = slots.values_mut().find(|slot| slot.core.expects(*from.ip(), datagram.id)) else { return };
+        self.tap.pass(false, from, SocketAddrV4::new(slot.here, self.local.port()), bytes);
+        slot.core.hear(now, &datagram);
+        if slot.core.take_changed() {
+            slot.view.send_replace(slot.core.view());
+        }
+    }
+
+    fn groups(&self) -> MutexGuard<'_, HashMap<(Ipv4Addr, Ipv4Addr), usize>> {
+        self.groups.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn join(&self, group: Ipv4Addr, here: Ipv4Addr) -> io::Result<()> {
+        let mut groups = self.groups();
+        let members = groups.entry((group, here)).or_default();
+        if *members == 0 {
+            self.socket.join_multicast_v4(&group, &here)?;
+        }
+        *members += 1;
+        Ok(())
+    }
+
+    fn leave(&self, group: Ipv4Addr, here: Ipv4Addr) {
+        let mut groups = self.groups();
+        let Some(members) = groups.get_mut(&(group, here)).filter(|members| **members > 0) else { return };
+        *members -= 1;
+        if *members == 0 {
+            // Where this fails the interface is gone, and the group with it.
+            let _ = self.socket.leave_multicast_v4(&group, &here);
+        }
+    }
+}
+
+/// Takes datagrams until the runtime ends.
+async fn hear(inner: Arc<Inner>, socket: tokio::net::UdpSocket) {
+    let mut buffer = vec![0; BUFFER];
+    loop {
+        if socket.readable().await.is_err() {
+            return;
+        }
+        for _ in 0..AT_ONCE {
+            match socket.try_recv_from(&mut buffer) {
+                Ok((len, SocketAddr::V4(from))) => inner.heard(from, &buffer[..len]),
+                Ok(_) => {}
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => break,
+                // What one device's host says (Windows: port unreachable) is nothing to the others.
+                Err(_) => {}
+            }
+        }
+        tokio::task::yield_now().await;
+    }
+}

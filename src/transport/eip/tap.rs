@@ -1,0 +1,41 @@
+//! What passes on the wire, for records.
+
+use std::fmt;
+use std::net::SocketAddrV4;
+use std::sync::Arc;
+
+/// A datagram, or a piece of a TCP stream.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Passed<'a> {
+    /// Whether it is a piece of a TCP stream.
+    pub is_tcp: bool,
+    /// Where it comes from.
+    pub from: SocketAddrV4,
+    /// Where it goes.
+    pub to: SocketAddrV4,
+    /// The bytes.
+    pub bytes: &'a [u8],
+}
+
+/// Called with all that passes, from the threads that move it; it must not block.
+#[derive(Clone, Default)]
+pub struct Tap(Option<Arc<dyn Fn(&Passed<'_>) + Send + Sync>>);
+
+impl Tap {
+    /// Calls this.
+    pub fn new(tap: impl Fn(&Passed<'_>) + Send + Sync + 'static) -> Self {
+        Self(Some(Arc::new(tap)))
+    }
+
+    pub(super) fn pass(&self, is_tcp: bool, from: SocketAddrV4, to: SocketAddrV4, bytes: &[u8]) {
+        if let Some(tap) = &self.0 {
+            tap(&Passed { is_tcp, from, to, bytes });
+        }
+    }
+}
+
+impl fmt::Debug for Tap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.0.is_some() { "Tap" } else { "no Tap" })
+    }
+}

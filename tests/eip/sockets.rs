@@ -1,0 +1,171 @@
+//! Both ends on sockets of the loopback. Nothing here waits for a time, only for what is to come.
+
+use std::net::{Ipv4Addr, SocketAddrV4};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use armctl::transport::eip::adapter::server::{Listen, Server};
+use armctl::transport::eip::adapter::{Mischief, Setup};
+use armctl::transport::eip::client::Client;
+use armctl::transport::eip::discovery::list_identity;
+use armctl::transport::eip::explicit::{Answer, Message};
+use armctl::transport::eip::originator::State;
+use armctl::transport::eip::scanner::Scanner;
+use armctl::transport::eip::settings::Settings;
+use armctl::transport::eip::tap::Tap;
+use armctl::transport::eip::trouble::Trouble;
+use armctl::transport::eip::wire::Status;
+
+use crate::world::{MS, Mirror, identity, resting, settings, setup};
+
+const LOOPBACK: Ipv4Addr = Ipv4Addr::LOCALHOST;
+
+fn serve(setup: Setup) -> Server<Mirror> {
+    Server::start(setup, Mirror::default(), Listen::anywhere(LOOPBACK), None).unwrap()
+}
+
+fn quick() -> Settings {
+    Settings { rpi: 10 * MS, ..settings() }
+}
+
+#[tokio::test]
+async fn images_and_messages_travel() {
+    let server = serve(setup());
+    let scanner = Scanner::start(LOOPBACK, Tap::default()).unwrap();
+    let mut connection = scanner.open(server.address(), quick()).await.unwrap();
+    let generation = connection.view().generation;
+    connection.set_image(generation, &[0x5A; 48]).unwrap();
+    let change = connection.set_run(generation, true).unwrap();
+    let is_back = |image: &[u8]| image == [0xA5; 48];
+    let view = connection.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))).await;
+    assert!(view.sent >= change);
+    assert!(server.with(|adapter, _| adapter.application().run));
+
+    let answer = connection.ask("the size", &Message::get(4, 150, 4)).await.unwrap();
+    assert_eq!(answer, Answer { status: Status::OK, data: vec![48, 0] });
+    let answer = connection.ask("nothing", &Message::get(4, 99, 4)).await.unwrap();
+    assert_eq!(answer.status, Status::general(0x05));
+
+    connection.close().await.unwrap();
+    assert_eq!(server.with(|adapter, _| adapter.peers().count()), 0);
+    assert!(server.with(|adapter, _| !adapter.application().run));
+}
+
+#[tokio::test]
+async fn many_connections_share_a_socket() {
+    let servers: Vec<_> = (0..20).map(|_| serve(setup())).collect();
+    let scanner = Scanner::start(LOOPBACK, Tap::default()).unwrap();
+    let mut connections = Vec::new();
+    for (server, mark) in servers.iter().zip(1u8..) {
+        let connection = scanner.open(server.address(), quick()).await.unwrap();
+        connection.set_image(1, &[mark; 48]).unwrap();
+        connections.push(connection);
+    }
+    for (connection, mark) in connections.iter_mut().zip(1u8..) {
+        let wanted = [!mark; 48];
+        let view = connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == wanted)).await;
+        assert_eq!(view.state, State::Open);
+    }
+}
+
+#[tokio::test]
+async fn refusals_come_back_from_open() {
+    let server = serve(setup());
+    let scanner = Scanner::start(LOOPBACK, Tap::default()).unwrap();
+    let wrong = Settings { input_size: 46, ..quick() };
+    let refused = scanner.open(server.address(), wrong).await.unwrap_err();
+    assert_eq!(refused.to_string(), "ForwardOpen was refused: invalid connection size (0x01/0x0109), the right one is 50 bytes");
+    let first = scanner.open(server.address(), quick()).await.unwrap();
+    let second = scanner.open(server.address(), quick()).await.unwrap_err();
+    assert_eq!(second, Trouble::Refused { what: "ForwardOpen", status: Status::connection(0x0106, &[]) });
+    first.close().await.unwrap();
+    let third = scanner.open(server.address(), quick()).await.unwrap();
+    third.close().await.unwrap();
+}
+
+#[tokio::test]
+async fn a_dropped_connection_is_closed() {
+    let server = serve(setup());
+    let scanner = Scanner::start(LOOPBACK, Tap::default()).unwrap();
+    drop(scanner.open(server.address(), quick()).await.unwrap());
+    // The device is free for the next owner, which may have to wait for the close to arrive.
+    while let Err(trouble) = scanner.open(server.address(), quick()).await {
+        assert_eq!(trouble.code().unwrap().code, 0x0106, "{trouble}");
+    }
+}
+
+#[tokio::test]
+async fn a_lost_link_is_opened_again() {
+    let server = serve(setup());
+    let scanner = Scanner::start(LOOPBACK, Tap::default()).unwrap();
+    let mut connection = scanner.open(server.address(), quick()).await.unwrap();
+    connection.set_image(1, &[7; 48]).unwrap();
+    connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!7; 48])).await;
+    server.with(|adapter, _| adapter.misbehave(Some(Mischief::Stall)));
+    let view = connection.until(|view| view.state == State::Lost).await;
+    assert_eq!(view.trouble, Some(Trouble::Silent { after: 160 * MS }));
+    assert_eq!(connection.set_image(1, &[8; 48]), Err(Trouble::Outdated));
+    server.with(|adapter, _| adapter.misbehave(None));
+    connection.until(|view| view.generation == 2).await;
+    let rest: Vec<u8> = resting().iter().map(|byte| !byte).collect();
+    connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *rest)).await;
+}
+
+#[tokio::test]
+async fn nobody_there_is_told() {
+    let server = serve(setup());
+    let address = server.address();
+    drop(server);
+    let scanner = Scanner::start(LOOPBACK, Tap::default()).unwrap();
+    assert!(matches!(scanner.open(address, quick()).await, Err(Trouble::Unreachable { .. })));
+    let mut client = Client::new(address, Duration::from_secs(3), Tap::default());
+    assert!(matches!(client.identity().await, Err(Trouble::Unreachable { .. })));
+}
+
+#[tokio::test]
+async fn a_reset_is_told_and_the_next_request_goes_by_a_new_connection() {
+    let server = serve(setup());
+    let mut client = Client::new(server.address(), Duration::from_secs(3), Tap::default());
+    let message = Message::get(1, 1, 1);
+    assert_eq!(client.ask("the vendor", &message).await.unwrap().data, [0x7C, 0x02]);
+    server.with(|adapter, _| adapter.misbehave(Some(Mischief::Reset)));
+    assert_eq!(client.ask("the vendor", &message).await, Err(Trouble::Hangup { what: "the vendor" }));
+    server.with(|adapter, _| adapter.misbehave(None));
+    assert_eq!(client.ask("the vendor", &message).await.unwrap().data, [0x7C, 0x02]);
+    client.close().await;
+}
+
+#[tokio::test]
+async fn a_device_says_who_it_is_by_tcp_and_by_udp() {
+    let server = serve(setup());
+    let expected = armctl::transport::eip::wire::Identity { address: server.address(), status: 0x30, ..identity() };
+    let mut client = Client::new(server.address(), Duration::from_secs(3), Tap::default());
+    assert_eq!(client.identity().await.unwrap(), Some(expected.clone()));
+    assert_eq!(client.services().await.unwrap().unwrap().name, "Communications");
+    let nobody = SocketAddrV4::new(LOOPBACK, 9);
+    let found = list_identity(&[server.address()], Duration::from_secs(20), &Tap::default()).await.unwrap();
+    assert_eq!(found.len(), 1);
+    assert_eq!((found[0].address, &found[0].identity), (server.address(), &expected));
+    let found = list_identity(&[nobody], Duration::from_millis(1), &Tap::default()).await.unwrap();
+    assert_eq!(found, []);
+}
+
+#[tokio::test]
+async fn a_tap_sees_all_that_passes() {
+    let server = serve(setup());
+    let seen = Arc::new(Mutex::new(Vec::new()));
+    let tap = {
+        let seen = Arc::clone(&seen);
+        Tap::new(move |passed| seen.lock().unwrap().push((passed.is_tcp, passed.from, passed.to)))
+    };
+    let scanner = Scanner::start(LOOPBACK, tap).unwrap();
+    let mut connection = scanner.open(server.address(), quick()).await.unwrap();
+    connection.until(|view| view.input.is_some()).await;
+    connection.close().await.unwrap();
+    let seen = seen.lock().unwrap();
+    let images = SocketAddrV4::new(LOOPBACK, server.io_port());
+    assert!(seen.iter().any(|(tcp, _, to)| *tcp && *to == server.address()));
+    assert!(seen.iter().any(|(tcp, from, _)| *tcp && *from == server.address()));
+    assert!(seen.iter().any(|(tcp, _, to)| !tcp && *to == images));
+    assert!(seen.iter().any(|(tcp, from, to)| !tcp && *from == images && to.port() == scanner.port()));
+}
