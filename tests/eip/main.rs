@@ -1,6 +1,8 @@
 //! EtherNet/IP: both ends against each other in virtual time and on sockets, and each against ends that others wrote.
 
 mod bytes;
+mod pcap;
+mod peers;
 mod sockets;
 mod virtual_time;
 mod world;

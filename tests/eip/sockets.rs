@@ -74,7 +74,10 @@ async fn refusals_come_back_from_open() {
     let scanner = Scanner::start(LOOPBACK, Tap::default()).unwrap();
     let wrong = Settings { input_size: 46, ..quick() };
     let refused = scanner.open(server.address(), wrong).await.unwrap_err();
-    assert_eq!(refused.to_string(), "ForwardOpen was refused: invalid connection size (0x01/0x0109), the right one is 50 bytes");
+    assert_eq!(
+        refused.to_string(),
+        "ForwardOpen was refused: invalid connection size (0x01/0x0109), the right one is 50 bytes"
+    );
     let first = scanner.open(server.address(), quick()).await.unwrap();
     let second = scanner.open(server.address(), quick()).await.unwrap_err();
     assert_eq!(second, Trouble::Refused { what: "ForwardOpen", status: Status::connection(0x0106, &[]) });

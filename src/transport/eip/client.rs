@@ -69,7 +69,12 @@ impl Client {
         }
     }
 
-    pub(super) async fn send(&mut self, what: &'static str, command: Command, data: Vec<u8>) -> Result<Vec<u8>, Trouble> {
+    pub(super) async fn send(
+        &mut self,
+        what: &'static str,
+        command: Command,
+        data: Vec<u8>,
+    ) -> Result<Vec<u8>, Trouble> {
         self.session.ask(Ask { token: TOKEN, what, command, data });
         loop {
             match self.session.poll(self.start.elapsed()) {

@@ -80,7 +80,8 @@ async fn gather(
         tap.pass(false, address, here, &buffer[..len]);
         let Ok(frame) = Frame::parse(&buffer[..len]) else { continue };
         let is_new = !found.iter().any(|found| found.address == address);
-        if let (Command::LIST_IDENTITY, true, Ok(Some(identity))) = (frame.command, is_new, Identity::parse(frame.data)) {
+        if let (Command::LIST_IDENTITY, true, Ok(Some(identity))) = (frame.command, is_new, Identity::parse(frame.data))
+        {
             found.push(Found { address, identity });
         }
     }

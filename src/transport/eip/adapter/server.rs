@@ -106,8 +106,7 @@ impl<A: Application> Server<A> {
         let alarm = Arc::new(Alarm::default());
         let start = Instant::now();
         let state = State { adapter, lines: BTreeMap::new(), last: 0, faults, delayed: Vec::new() };
-        let inner =
-            Arc::new(Inner { start, alarm: Arc::clone(&alarm), images, discovery, state: Mutex::new(state) });
+        let inner = Arc::new(Inner { start, alarm: Arc::clone(&alarm), images, discovery, state: Mutex::new(state) });
         spawn(prepared.handle(), accept(Arc::clone(&inner), sessions, prepared.handle().clone()));
         spawn(prepared.handle(), receive(Arc::clone(&inner), heard, Inner::heard));
         spawn(prepared.handle(), receive(Arc::clone(&inner), asked, Inner::asked));

@@ -1,11 +1,12 @@
 //! The TCP connection of a slot.
 
-use std::net::{SocketAddr, SocketAddrV4};
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
-use tokio::net::TcpStream;
+use tokio::net::{TcpSocket, TcpStream};
 use tokio::sync::mpsc::UnboundedReceiver;
 
 use super::{Inner, Slot, Trouble, mpsc};
@@ -52,7 +53,7 @@ pub(super) async fn run(
     };
     // Nothing is ordered before there is a connection; an end of the orders is an end of the wait.
     let connected = tokio::select! {
-        connected = TcpStream::connect(target) => connected,
+        connected = connect(*inner.local.ip(), target) => connected,
         _ = orders.recv() => return,
     };
     let mut stream = match connected {
@@ -89,4 +90,13 @@ pub(super) async fn run(
         }
     }
     tell(&mut |slot, _| slot.core.hung_up(&Trouble::Ended));
+}
+
+/// From the address that images are heard on: the device sends them to where the request came from.
+async fn connect(here: Ipv4Addr, target: SocketAddrV4) -> io::Result<TcpStream> {
+    let socket = TcpSocket::new_v4()?;
+    if !here.is_unspecified() {
+        socket.bind(SocketAddr::from((here, 0)))?;
+    }
+    socket.connect(target.into()).await
 }
