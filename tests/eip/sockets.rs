@@ -10,6 +10,7 @@ use armctl::transport::eip::client::Client;
 use armctl::transport::eip::discovery::list_identity;
 use armctl::transport::eip::explicit::{Answer, Message};
 use armctl::transport::eip::originator::State;
+use armctl::transport::eip::probe::{self, Connectable, Instances, probe};
 use armctl::transport::eip::scanner::Scanner;
 use armctl::transport::eip::settings::Settings;
 use armctl::transport::eip::tap::Tap;
@@ -171,4 +172,26 @@ async fn a_tap_sees_all_that_passes() {
     assert!(seen.iter().any(|(tcp, from, _)| *tcp && *from == server.address()));
     assert!(seen.iter().any(|(tcp, _, to)| !tcp && *to == images));
     assert!(seen.iter().any(|(tcp, from, to)| !tcp && *from == images && to.port() == scanner.port()));
+}
+
+#[tokio::test]
+async fn a_probe_finds_instances_and_sizes() {
+    let right = Instances { output: 101, input: 102, configuration: Some(151) };
+    let setup = Setup::new(identity(), (102, 36), (101, 20), 151);
+    let server = serve(setup);
+    let mut client = Client::new(server.address(), Duration::from_secs(20), Tap::default());
+    // Wrong in every way, and one way round or the other.
+    for thought in
+        [Instances { output: 150, input: 100, configuration: Some(1) }, Instances { input: 101, output: 102, ..right }]
+    {
+        let findings = probe(&mut client, thought).await.unwrap();
+        assert_eq!(findings.identity.unwrap().name, "RCX");
+        let assembly = |instance, size| probe::Assembly { instance, size: Some(size) };
+        assert_eq!(findings.assemblies, [assembly(101, 20), assembly(102, 36), assembly(151, 0)]);
+        let found = Connectable { instances: right, output_size: Some(20), input_size: Some(36) };
+        assert_eq!(findings.connectable, Some(found), "{:?}", findings.attempts);
+    }
+    // Nothing was opened on the way, not even for a moment.
+    assert_eq!(server.with(|adapter, _| adapter.application().events.clone()), []);
+    client.close().await;
 }

@@ -11,6 +11,7 @@ pub mod discovery;
 mod engine;
 pub mod explicit;
 pub mod originator;
+pub mod probe;
 pub mod scanner;
 pub mod session;
 pub mod settings;
