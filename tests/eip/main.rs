@@ -1,5 +1,7 @@
 //! EtherNet/IP: both ends against each other in virtual time and on sockets, and each against ends that others wrote.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
 mod bytes;
 mod pcap;
 mod peers;

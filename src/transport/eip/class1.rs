@@ -184,15 +184,15 @@ mod tests {
 
     #[test]
     fn numbers_go_around() {
-        let mut producer = Producer::new(1, 10 * MS, 0 * MS);
+        let mut producer = Producer::new(1, 10 * MS, Now::ZERO);
         (producer.sequence, producer.count) = (u32::MAX, u16::MAX);
-        assert_eq!(number(&producer.produce(0 * MS, None, &[])), (0, 0));
+        assert_eq!(number(&producer.produce(Now::ZERO, None, &[])), (0, 0));
         assert!(is_after(0, u32::MAX) && is_after(5, 4) && !is_after(4, 4) && !is_after(4, 5));
         assert!(!is_after(1 << 31, 0));
     }
 
     fn consumer() -> Consumer {
-        Consumer::new(1, 2, true, 10 * MS, 16, 0 * MS)
+        Consumer::new(1, 2, true, 10 * MS, 16, Now::ZERO)
     }
 
     fn datagram(sequence: u32, body: &[u8]) -> Cyclic<'_> {
@@ -205,7 +205,7 @@ mod tests {
         assert_eq!((consumer.until(), consumer.patience()), (10_000 * MS, 10_000 * MS));
         consumer.take(50 * MS, &datagram(9, &[1, 0, 0, 0, 5, 6]));
         assert_eq!((consumer.until(), consumer.patience()), (210 * MS, 160 * MS));
-        let slow = Consumer::new(1, 2, true, 1000 * MS, 16, 0 * MS);
+        let slow = Consumer::new(1, 2, true, 1000 * MS, 16, Now::ZERO);
         assert_eq!(slow.until(), 16_000 * MS);
     }
 

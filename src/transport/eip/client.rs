@@ -41,7 +41,7 @@ impl Client {
 
     /// Asks an object. A refusal is an answer.
     pub async fn ask(&mut self, what: &'static str, message: &Message) -> Result<Answer, Trouble> {
-        Answer::parse(what, &self.send(what, Command::SEND_RR_DATA, message.emit()).await?)
+        Answer::parse(what, &self.send(what, Command::SEND_RR_DATA, message.emit()?).await?)
     }
 
     /// Asks who the device is.

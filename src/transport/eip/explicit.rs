@@ -3,6 +3,11 @@
 use super::trouble::Trouble;
 use super::wire::{Path, Reply, Request, RrData, Status, service};
 
+/// Most data of a request: with the rest it fits a frame. Devices take less.
+const MOST_DATA: usize = 60_000;
+/// Most bytes of a path: its length has a byte, in words.
+const MOST_PATH: usize = 510;
+
 /// A request to an object.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
@@ -33,9 +38,16 @@ impl Message {
     }
 
     /// The data of the frame that carries it.
-    pub fn emit(&self) -> Vec<u8> {
+    ///
+    /// # Errors
+    /// If it takes more than a message can hold.
+    pub fn emit(&self) -> Result<Vec<u8>, Trouble> {
         let Self { service, path, data } = self;
-        RrData::new(&Request { service: *service, path: path.clone(), data }.emit()).emit()
+        if data.len() > MOST_DATA || path.emit().len() > MOST_PATH {
+            let text = format!("a message has {MOST_DATA} bytes of data and {MOST_PATH} of path at most");
+            return Err(Trouble::Settings(text));
+        }
+        Ok(RrData::new(&Request { service: *service, path: path.clone(), data }.emit()).emit())
     }
 }
 

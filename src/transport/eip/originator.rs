@@ -511,7 +511,7 @@ impl Originator {
             Some(address) => address,
             None => SocketAddrV4::new(*self.target.ip(), IO_PORT),
         };
-        let group = addresses.t_o.map(|address| *address.ip()).filter(|address| address.is_multicast());
+        let group = addresses.t_o.map(|address| *address.ip()).filter(Ipv4Addr::is_multicast);
         if self.settings.multicast && group.is_none() {
             return Err(senseless("it names no group to hear"));
         }

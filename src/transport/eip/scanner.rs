@@ -195,7 +195,7 @@ impl Connection {
         let token = Token(self.tokens);
         self.tokens += 1;
         let (sender, answer) = oneshot::channel();
-        let ask = Ask { token, what, command: Command::SEND_RR_DATA, data: message.emit() };
+        let ask = Ask { token, what, command: Command::SEND_RR_DATA, data: message.emit()? };
         self.owner.inner.with(self.id, |slot, _| {
             slot.answers.insert(token, sender);
             slot.core.ask(ask);
@@ -306,11 +306,13 @@ impl Inner {
         let Ok(datagram) = Cyclic::parse(bytes) else { return };
         let now = self.now();
         let mut slots = self.slots();
-        let Some(slot) = slots.values_mut().find(|slot| slot.core.expects(*from.ip(), datagram.id)) else { return };
-        self.tap.pass(false, from, SocketAddrV4::new(slot.here, self.local.port()), bytes);
-        slot.core.hear(now, &datagram);
-        if slot.core.take_changed() {
-            slot.view.send_replace(slot.core.view());
+        // Connections to one device may share a group.
+        for slot in slots.values_mut().filter(|slot| slot.core.expects(*from.ip(), datagram.id)) {
+            self.tap.pass(false, from, SocketAddrV4::new(slot.here, self.local.port()), bytes);
+            slot.core.hear(now, &datagram);
+            if slot.core.take_changed() {
+                slot.view.send_replace(slot.core.view());
+            }
         }
     }
 
@@ -349,10 +351,9 @@ async fn hear(inner: Arc<Inner>, socket: tokio::net::UdpSocket) {
         for _ in 0..AT_ONCE {
             match socket.try_recv_from(&mut buffer) {
                 Ok((len, SocketAddr::V4(from))) => inner.heard(from, &buffer[..len]),
-                Ok(_) => {}
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => break,
                 // What one device's host says (Windows: port unreachable) is nothing to the others.
-                Err(_) => {}
+                Ok(_) | Err(_) => {}
             }
         }
         tokio::task::yield_now().await;

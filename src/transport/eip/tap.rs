@@ -17,9 +17,11 @@ pub struct Passed<'a> {
     pub bytes: &'a [u8],
 }
 
+type Look = dyn Fn(&Passed<'_>) + Send + Sync;
+
 /// Called with all that passes, from the threads that move it; it must not block.
 #[derive(Clone, Default)]
-pub struct Tap(Option<Arc<dyn Fn(&Passed<'_>) + Send + Sync>>);
+pub struct Tap(Option<Arc<Look>>);
 
 impl Tap {
     /// Calls this.

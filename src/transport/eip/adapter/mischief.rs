@@ -52,7 +52,7 @@ pub(super) fn images(mischief: Option<Mischief>, number: u64, bytes: Vec<u8>) ->
         vec![datagram.emit(None)]
     };
     match mischief {
-        Mischief::Drop if number % 2 == 0 => Vec::new(),
+        Mischief::Drop if number.is_multiple_of(2) => Vec::new(),
         Mischief::Stall => Vec::new(),
         Mischief::Stale => changed(|datagram| {
             // The first is as it should be: there is none before.

@@ -1,11 +1,13 @@
 //! What an adapter can be asked about: itself, and its assemblies.
 
+use super::super::settings::MOST_IMAGE;
 use super::super::wire::{Request, service};
 use super::super::{ASSEMBLY, Now};
 use super::{Adapter, Application, Purpose, UNKNOWN_DESTINATION, UNKNOWN_SERVICE};
 
 const IDENTITY: u32 = 1;
 const NOT_SETTABLE: u8 = 0x0E;
+const TOO_LARGE: u8 = 0x11;
 const UNKNOWN_ATTRIBUTE: u8 = 0x14;
 /// Revisions of the classes.
 const IDENTITY_REVISION: u16 = 1;
@@ -74,6 +76,7 @@ impl<A: Application> Adapter<A> {
         let is_input = self.setup.assembly(instance, Purpose::Input).is_some();
         let image = self.images.get_mut(&instance).ok_or(UNKNOWN_DESTINATION)?;
         match attribute {
+            3 if image.len() > usize::from(MOST_IMAGE) => Err(TOO_LARGE),
             3 => {
                 if is_input {
                     self.application.image_in(now, instance, image);

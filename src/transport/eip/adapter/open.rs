@@ -97,19 +97,17 @@ impl<A: Application> Adapter<A> {
             return Err(Status::connection(NOTHING_TO_HEAR, &[]));
         }
         let o_t_id = self.next_id();
-        let (t_o_id, producer) = match shared {
-            Some((id, interval)) => {
-                t_o = interval;
-                (id, None)
-            }
-            None => {
-                let id = if is_multicast { self.next_id() } else { open.t_o_id };
-                (id, Some(Producer::new(id, t_o, now)))
-            }
+        let (t_o_id, producer) = if let Some((id, interval)) = shared {
+            t_o = interval;
+            (id, None)
+        } else {
+            let id = if is_multicast { self.next_id() } else { open.t_o_id };
+            (id, Some(Producer::new(id, t_o, now)))
         };
         let group = is_multicast.then(|| SocketAddrV4::new(self.setup.group, IO_PORT));
         // The originator says on which port it listens; its host is the one that asks.
-        let own = SocketAddrV4::new(from, to.map_or(IO_PORT, |address| address.port()));
+        let port = to.map(|address| address.port()).filter(|port| *port != 0);
+        let own = SocketAddrV4::new(from, port.unwrap_or(IO_PORT));
         let header = open.o_t.size >= COUNT + HEADER;
         let size = output.and_then(|output| self.setup.assembly(output, Purpose::Output)).map_or(0, |found| found.size);
         let peer = Peer { address: from, role, input: points.input, output, o_t, t_o };
@@ -176,11 +174,11 @@ impl Setup {
             return refuse(RPI);
         }
         match output {
-            Some(output) => sized(&open.o_t, COUNT + HEADER + output.size)?,
+            Some(output) => sized(&open.o_t, output.size.saturating_add(COUNT + HEADER))?,
             None if HEARTBEATS.contains(&open.o_t.size) => {}
             None => return Err(Status::connection(SIZE, &[COUNT])),
         }
-        sized(&open.t_o, COUNT + input.size)?;
+        sized(&open.t_o, input.size.saturating_add(COUNT))?;
         Ok(role)
     }
 

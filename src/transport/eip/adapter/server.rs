@@ -88,7 +88,6 @@ impl<A: Application> Server<A> {
     /// Begins to listen. `faults` are those of images on their way there and back.
     pub fn start(setup: Setup, application: A, listen: Listen, faults: Option<(Faults, Faults)>) -> io::Result<Self> {
         let prepared = Prepared::new()?;
-        let _guard = prepared.handle().enter();
         let (sessions, discovery) = bind(listen)?;
         let images = UdpSocket::bind((listen.address, listen.io_port))?;
         images.set_nonblocking(true)?;
@@ -100,9 +99,12 @@ impl<A: Application> Server<A> {
         };
         let mut adapter = Adapter::new(setup, application);
         adapter.listens(address, image_address.port());
-        let sessions = TcpListener::from_std(sessions)?;
-        let heard = tokio::net::UdpSocket::from_std(images.try_clone()?)?;
-        let asked = tokio::net::UdpSocket::from_std(discovery.try_clone()?)?;
+        let (sessions, heard, asked) = {
+            let _here = prepared.handle().enter();
+            let (images, discovery) = (images.try_clone()?, discovery.try_clone()?);
+            let udp = tokio::net::UdpSocket::from_std;
+            (TcpListener::from_std(sessions)?, udp(images)?, udp(discovery)?)
+        };
         let alarm = Arc::new(Alarm::default());
         let start = Instant::now();
         let state = State { adapter, lines: BTreeMap::new(), last: 0, faults, delayed: Vec::new() };
@@ -110,7 +112,6 @@ impl<A: Application> Server<A> {
         spawn(prepared.handle(), accept(Arc::clone(&inner), sessions, prepared.handle().clone()));
         spawn(prepared.handle(), receive(Arc::clone(&inner), heard, Inner::heard));
         spawn(prepared.handle(), receive(Arc::clone(&inner), asked, Inner::asked));
-        drop(_guard);
         let turned = Arc::clone(&inner);
         let engine = prepared.start("adapter", start, alarm, move || turned.turn())?;
         Ok(Self { inner, address, io_port: image_address.port(), _engine: engine })
@@ -159,7 +160,7 @@ impl<A: Application> Inner<A> {
         for (_, delayed) in due {
             match delayed {
                 Delayed::Arriving(from, bytes) => state.adapter.hear(now, from, &bytes),
-                Delayed::Leaving(to, bytes) => self.send(&self.images, to, &bytes),
+                Delayed::Leaving(to, bytes) => send(&self.images, to, &bytes),
             }
         }
         self.follow(&mut state, now)
@@ -179,21 +180,16 @@ impl<A: Application> Inner<A> {
                     state.adapter.hung_up(client);
                 }
                 Output::Datagram(to, bytes) => match &mut state.faults {
-                    None => self.send(&self.images, to, &bytes),
+                    None => send(&self.images, to, &bytes),
                     Some((_, back)) => {
                         let copies = back.pass(now, &bytes);
                         state.delayed.extend(copies.into_iter().map(|(at, bytes)| (at, Delayed::Leaving(to, bytes))));
                     }
                 },
-                Output::Discovered(to, bytes) => self.send(&self.discovery, to, &bytes),
+                Output::Discovered(to, bytes) => send(&self.discovery, to, &bytes),
             }
         }
         state.delayed.iter().map(|(at, _)| *at).chain(state.adapter.wake()).min()
-    }
-
-    /// Devices do not care whether their datagrams arrive; nor does this one.
-    fn send(&self, socket: &UdpSocket, to: SocketAddrV4, bytes: &[u8]) {
-        let _ = socket.send_to(bytes, to);
     }
 
     fn heard(&self, from: SocketAddrV4, bytes: &[u8]) {
@@ -209,6 +205,11 @@ impl<A: Application> Inner<A> {
     fn asked(&self, from: SocketAddrV4, bytes: &[u8]) {
         self.with(|state, _| state.adapter.discovered(from, bytes));
     }
+}
+
+/// Devices do not care whether their datagrams arrive; nor does this one.
+fn send(socket: &UdpSocket, to: SocketAddrV4, bytes: &[u8]) {
+    let _ = socket.send_to(bytes, to);
 }
 
 /// TCP and UDP on the same port.

@@ -113,8 +113,7 @@ impl Identity {
     /// The product name as an attribute: its length in a byte, and its characters.
     pub fn name_attribute(&self) -> Vec<u8> {
         let name: Vec<u8> = self.name.bytes().take(LONGEST_NAME).collect();
-        let len = u8::try_from(name.len()).expect("names are cut to 32 bytes");
-        [vec![len], name].concat()
+        [vec![u8::try_from(name.len()).unwrap_or_default()], name].concat()
     }
 }
 

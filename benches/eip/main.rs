@@ -1,0 +1,313 @@
+//! How well images keep their time, beside a bare timer loop, and how many connections one process holds.
+//!
+//! `cargo bench --bench eip` measures; `-- --quick`, and `cargo test --benches`, only show that all of it works.
+
+#![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
+
+use std::net::{Ipv4Addr, SocketAddrV4, UdpSocket};
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, ensure};
+use armctl::transport::eip::adapter::server::{Listen, Server};
+use armctl::transport::eip::adapter::{Application, Assembly, Event, Purpose, Setup};
+use armctl::transport::eip::originator::State;
+use armctl::transport::eip::scanner::{Connection, Scanner};
+use armctl::transport::eip::settings::Settings;
+use armctl::transport::eip::tap::Tap;
+use armctl::transport::eip::wire::{Cyclic, Identity, Revision};
+use armctl::transport::eip::{IO_PORT, Now, PORT};
+use tokio::runtime::{Builder, Runtime};
+
+const RPI: Duration = Duration::from_millis(10);
+const SIZE: u16 = 48;
+const MANY: u32 = 50;
+/// Most that the spread of images may be above that of a bare loop.
+const GOAL: f64 = 1.2;
+
+/// How much is measured.
+struct Effort {
+    /// Of each round of spread.
+    time: Duration,
+    rounds: u32,
+    many: Duration,
+    trips: u32,
+}
+
+const FULL: Effort = Effort { time: Duration::from_secs(10), rounds: 5, many: Duration::from_secs(30), trips: 200 };
+const QUICK: Effort =
+    Effort { time: Duration::from_millis(300), rounds: 1, many: Duration::from_millis(500), trips: 3 };
+
+fn main() -> anyhow::Result<()> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    // `cargo bench` says so; `cargo test` says nothing.
+    let is_quick = args.iter().any(|arg| arg == "--quick") || !args.iter().any(|arg| arg == "--bench");
+    let effort = if is_quick { QUICK } else { FULL };
+    spread(&effort).context("spread")?;
+    trips(&effort).context("trips")?;
+    many(&effort).context("many")?;
+    if is_quick || cfg!(debug_assertions) {
+        println!("A short or unoptimized run: it shows that all of it works, the figures mean nothing.");
+    }
+    Ok(())
+}
+
+/// How far intervals between images to the device are from 10 ms: ours, and those of two bare loops at the same time.
+fn spread(effort: &Effort) -> anyhow::Result<()> {
+    println!("interval between images to the device, RPI 10 ms: deviation                p50       p99       max");
+    let mut ratios = Vec::new();
+    for _ in 0..effort.rounds {
+        let runtime = runtime()?;
+        let server = Server::start(setup(1), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
+        let sent = Arc::new(Mutex::new(Vec::new()));
+        let tap = {
+            let (sent, images) = (Arc::clone(&sent), SocketAddrV4::new(Ipv4Addr::LOCALHOST, server.io_port()));
+            Tap::new(move |passed| {
+                if passed.to == images {
+                    sent.lock().expect("nobody panics with it").push(Instant::now());
+                }
+            })
+        };
+        let scanner = Scanner::start(Ipv4Addr::LOCALHOST, tap)?;
+        let connection = runtime.block_on(scanner.open(server.address(), settings()))?;
+        let time = effort.time;
+        let bare = thread::spawn(move || bare(time));
+        let tokio = thread::spawn(move || runtime_loop(time));
+        let bare = bare.join().expect("the loop does not panic")?;
+        let tokio = tokio.join().expect("the loop does not panic")?;
+        runtime.block_on(connection.close())?;
+        let ours = Deviation::of(&sent.lock().expect("nobody panics with it"));
+        let (bare, tokio) = (Deviation::of(&bare), Deviation::of(&tokio));
+        ours.print("armctl");
+        bare.print("bare loop: thread::sleep to a deadline, then send");
+        tokio.print("bare loop: tokio::time::sleep_until, then send");
+        ratios.push(ours.p99 / bare.p99);
+    }
+    let ratio = middle(&mut ratios);
+    let met = if ratio <= GOAL { "met" } else { "MISSED" };
+    println!(
+        "  p99 of armctl / p99 of the bare thread::sleep loop: {ratio:.2}, median of rounds; goal <= {GOAL} {met}"
+    );
+    Ok(())
+}
+
+/// How long it takes until the device's answer to a new image is there.
+fn trips(effort: &Effort) -> anyhow::Result<()> {
+    println!("from a new image until what the device makes of it is back: median");
+    for rpi in [5, 10, 20].map(Duration::from_millis) {
+        let runtime = runtime()?;
+        let server = Server::start(setup(1), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
+        let scanner = Scanner::start(Ipv4Addr::LOCALHOST, Tap::default())?;
+        let mut connection = runtime.block_on(scanner.open(server.address(), Settings { rpi, ..settings() }))?;
+        let mut times = Vec::new();
+        for trip in 1..=effort.trips {
+            let mark = u8::try_from(trip % 251)?;
+            let start = Instant::now();
+            connection.set_image(1, &[mark; SIZE as usize])?;
+            let is_back = |image: &[u8]| image.first() == Some(&mark);
+            runtime.block_on(connection.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))));
+            times.push(start.elapsed().as_secs_f64() * 1000.0);
+            // Somewhere else within the interval the next time.
+            thread::sleep(Duration::from_micros(fastrand::u64(..u64::try_from(rpi.as_micros())?)));
+        }
+        runtime.block_on(connection.close())?;
+        println!("  RPI {:>2} ms: {:>6.2} ms", rpi.as_millis(), middle(&mut times));
+    }
+    Ok(())
+}
+
+/// Fifty connections at 10 ms, with watchdogs at both ends: our adapter, and one that others wrote.
+fn many(effort: &Effort) -> anyhow::Result<()> {
+    println!("{MANY} connections at 10 ms, watchdogs of 160 ms at both ends, {} s", effort.many.as_secs_f64());
+    let server = Server::start(setup(MANY), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
+    hold("our adapter", server.address(), effort)?;
+    let ended = server.with(|adapter, _| adapter.application().timed_out);
+    println!("  our adapter: {ended} connections timed out there");
+    ensure!(ended == 0, "the adapter missed images");
+
+    let there = Ipv4Addr::new(127, 44, 18, 50);
+    if UdpSocket::bind((there, IO_PORT)).is_err() {
+        println!("  ciplink: left out, port {IO_PORT} of {there} cannot be had");
+        return Ok(());
+    }
+    let outputs = (0..MANY).map(|index| ciplink::adapter::Assembly::output(output(index), SIZE.into()));
+    let inputs = [ciplink::adapter::Assembly::input(100, SIZE.into()), ciplink::adapter::Assembly::config(1, 0)];
+    let config = ciplink::adapter::AdapterConfig {
+        assemblies: outputs.chain(inputs).collect(),
+        bind: there,
+        port: 0,
+        ..ciplink::adapter::AdapterConfig::default()
+    };
+    let adapter = ciplink::adapter::Adapter::start(config)?;
+    let std::net::SocketAddr::V4(address) = adapter.addr() else { anyhow::bail!("it has an IPv4 address") };
+    hold("ciplink", address, effort)?;
+    let mut ended = 0;
+    while let Some(event) = adapter.next_event(Some(Duration::ZERO)) {
+        ended += u32::from(matches!(event, ciplink::adapter::Event::TimedOut(_)));
+    }
+    println!("  ciplink: {ended} connections timed out there");
+    ensure!(ended == 0, "the adapter missed images");
+    Ok(())
+}
+
+/// Holds fifty connections for a while.
+fn hold(name: &str, target: SocketAddrV4, effort: &Effort) -> anyhow::Result<()> {
+    let runtime = runtime()?;
+    let scanner = Scanner::start(Ipv4Addr::LOCALHOST, Tap::default())?;
+    let mut connections: Vec<Connection> = Vec::new();
+    for index in 0..MANY {
+        let settings = Settings { output: output(index), ..settings() };
+        connections.push(runtime.block_on(scanner.open(target, settings))?);
+    }
+    thread::sleep(effort.many);
+    let (mut sent, mut received, mut lost, mut skipped) = (0, 0, 0, 0);
+    for connection in &connections {
+        let view = connection.view();
+        ensure!(view.state == State::Open && view.generation == 1, "{:?} {:?}", view.state, view.trouble);
+        let statistics = view.statistics;
+        sent += statistics.sent;
+        received += statistics.received;
+        lost += statistics.lost;
+        skipped += statistics.skipped;
+    }
+    println!("  {name}: {sent} images sent, {received} received, {lost} lost, {skipped} intervals skipped");
+    for connection in connections {
+        runtime.block_on(connection.close())?;
+    }
+    Ok(())
+}
+
+/// The least that sends an image every 10 ms.
+fn bare(time: Duration) -> anyhow::Result<Vec<Instant>> {
+    let (socket, image) = bare_image()?;
+    let start = Instant::now();
+    let mut due = start;
+    let mut sent = Vec::new();
+    while start.elapsed() < time {
+        due += RPI;
+        thread::sleep(due.saturating_duration_since(Instant::now()));
+        socket.send(&image)?;
+        sent.push(Instant::now());
+    }
+    Ok(sent)
+}
+
+/// The same with tokio's timer.
+fn runtime_loop(time: Duration) -> anyhow::Result<Vec<Instant>> {
+    let (socket, image) = bare_image()?;
+    runtime()?.block_on(async {
+        let start = Instant::now();
+        let mut due = tokio::time::Instant::now();
+        let mut sent = Vec::new();
+        while start.elapsed() < time {
+            due += RPI;
+            tokio::time::sleep_until(due).await;
+            socket.send(&image)?;
+            sent.push(Instant::now());
+        }
+        Ok(sent)
+    })
+}
+
+/// A socket to a port that nobody reads, and an image for it.
+fn bare_image() -> anyhow::Result<(UdpSocket, Vec<u8>)> {
+    let sink = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
+    socket.connect(sink.local_addr()?)?;
+    // The sink must last as long as the socket; the loop has no other use for it.
+    std::mem::forget(sink);
+    Ok((socket, Cyclic { id: 1, sequence: 1, count: 1, body: &[0; SIZE as usize] }.emit(Some(1))))
+}
+
+/// How far intervals are from 10 ms, in microseconds.
+struct Deviation {
+    p50: f64,
+    p99: f64,
+    max: f64,
+}
+
+impl Deviation {
+    fn of(times: &[Instant]) -> Self {
+        let mut all: Vec<f64> =
+            times.windows(2).map(|pair| ((pair[1] - pair[0]).as_secs_f64() - RPI.as_secs_f64()).abs() * 1e6).collect();
+        all.sort_by(f64::total_cmp);
+        let at = |percent: usize| all.get(all.len().saturating_sub(1) * percent / 100).copied().unwrap_or(f64::NAN);
+        Self { p50: at(50), p99: at(99), max: at(100) }
+    }
+
+    fn print(&self, name: &str) {
+        let Self { p50, p99, max } = self;
+        println!("  {name:<60}{p50:>9.0} {p99:>9.0} {max:>9.0} us");
+    }
+}
+
+fn middle(all: &mut [f64]) -> f64 {
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// Sends back what came last.
+#[derive(Debug, Default)]
+struct Mirror {
+    image: Vec<u8>,
+    timed_out: u32,
+}
+
+impl Application for Mirror {
+    fn image_out(&mut self, _: Now, _: u32, image: &[u8], _: bool) {
+        self.image.clear();
+        self.image.extend(image);
+    }
+
+    fn image_in(&mut self, _: Now, _: u32, image: &mut [u8]) {
+        for (byte, last) in image.iter_mut().zip(&self.image) {
+            *byte = *last;
+        }
+    }
+
+    fn event(&mut self, _: Now, event: &Event) {
+        self.timed_out += u32::from(matches!(event, Event::TimedOut(_)));
+    }
+}
+
+/// An adapter with an output assembly for each of so many owners.
+fn setup(owners: u32) -> Setup {
+    let identity = Identity {
+        address: SocketAddrV4::new(Ipv4Addr::LOCALHOST, PORT),
+        vendor: 636,
+        device_type: 43,
+        product: 5,
+        revision: Revision { major: 1, minor: 1 },
+        status: 0,
+        serial: 1,
+        name: "RCX".to_owned(),
+        state: Some(3),
+    };
+    let outputs = (1..owners).map(|index| Assembly { instance: output(index), purpose: Purpose::Output, size: SIZE });
+    let mut setup = Setup::new(identity, (100, SIZE), (output(0), SIZE), 1);
+    setup.assemblies.extend(outputs);
+    setup.most_connections = 64;
+    setup.most_sessions = 64;
+    setup
+}
+
+const fn output(index: u32) -> u32 {
+    150 + index
+}
+
+/// Watchdogs of 16 intervals, which is what is used in the field.
+fn settings() -> Settings {
+    Settings {
+        output: output(0),
+        output_size: SIZE,
+        input_size: SIZE,
+        rpi: RPI,
+        resting: vec![0; SIZE.into()],
+        ..Settings::default()
+    }
+}
+
+fn runtime() -> anyhow::Result<Runtime> {
+    Ok(Builder::new_current_thread().enable_all().build()?)
+}

@@ -1,0 +1,55 @@
+//! Groups and broadcasts, which need port 2222 of the whole machine, and so a program of their own.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+#[path = "world.rs"]
+#[expect(dead_code, reason = "of both ends in virtual time only the settings are needed here")]
+mod world;
+
+use std::net::{Ipv4Addr, SocketAddrV4};
+use std::time::Duration;
+
+use armctl::transport::eip::IO_PORT;
+use armctl::transport::eip::adapter::server::{Listen, Server};
+use armctl::transport::eip::discovery::list_identity;
+use armctl::transport::eip::scanner::Scanner;
+use armctl::transport::eip::settings::{Role, Settings};
+use armctl::transport::eip::tap::Tap;
+
+use world::{Mirror, settings, setup};
+
+#[tokio::test]
+async fn a_group_is_heard_by_all_who_asked_for_it() {
+    let scanner = Scanner::start(Ipv4Addr::UNSPECIFIED, Tap::default()).unwrap();
+    if scanner.port() != IO_PORT {
+        return println!("skipped: another program has UDP port {IO_PORT}");
+    }
+    let server = Server::start(setup(), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None).unwrap();
+    let owner = Settings { multicast: true, ..settings() };
+    let listener = Settings { role: Role::ListenOnly, output: 237, output_size: 0, resting: vec![], ..owner.clone() };
+    let mut owner = scanner.open(server.address(), owner).await.unwrap();
+    let mut listener = scanner.open(server.address(), listener).await.unwrap();
+    owner.set_image(1, &[0x5A; 48]).unwrap();
+    for connection in [&mut owner, &mut listener] {
+        let is_back = |image: &[u8]| image == [0xA5; 48];
+        let view = connection.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))).await;
+        assert_eq!(view.generation, 1, "{view:?}");
+    }
+    listener.close().await.unwrap();
+    // The group is heard as long as one connection needs it.
+    let received = owner.view().statistics.received;
+    owner.until(|view| view.statistics.received > received + 2).await;
+    owner.close().await.unwrap();
+}
+
+#[tokio::test]
+async fn a_broadcast_finds_who_is_there() {
+    let anywhere = Listen::anywhere(Ipv4Addr::UNSPECIFIED);
+    let server = Server::start(setup(), Mirror::default(), anywhere, None).unwrap();
+    let everybody = SocketAddrV4::new(Ipv4Addr::new(127, 255, 255, 255), server.address().port());
+    match list_identity(&[everybody], Duration::from_millis(500), &Tap::default()).await {
+        Ok(found) if found.is_empty() => println!("skipped: the loopback has no broadcasts here"),
+        Ok(found) => assert_eq!((found.len(), found[0].identity.name.as_str()), (1, "RCX")),
+        Err(error) => println!("skipped: the loopback has no broadcasts here: {error}"),
+    }
+}
