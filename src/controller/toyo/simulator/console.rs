@@ -1,77 +1,172 @@
 //! What somebody at the machine can do: one line, one action.
 
 use super::action::axis;
-use super::io::{Port, PortBit};
+use super::io::{Port, PortBit, Ports};
 use super::memory::TASKS;
 use super::world::{Kind, Mode, World};
 use crate::controller::toyo::field::Mask;
+use crate::controller::toyo::layout::Record;
 
 /// The lines there are, as `help` shows them.
-const USAGE: &str = "input STATION/PORT/BIT on|off | input STATION/PORT BITS | start [STEP] | stop | reset | \
-home | clear | servo on|off | pendant on|off | estop [off] | error CODE | power cycle | card in|out | \
-obstacle AXIS PLACE|off | slave on|off | battery low|ok | state | why";
+const USAGE: &str = "\
+input STATION/PORT/BIT on|off
+input STATION/PORT BITS
+input 0/SY/BIT on|off
+start [STEP]
+stop
+reset
+home
+clear
+servo on|off
+pendant on|off
+estop [off]
+error CODE
+power cycle
+card in|out
+obstacle AXIS PLACE|off
+slave on|off
+battery low|ok
+state
+why";
 
-/// Bits of SY01, rising edges of which do what the buttons do while the host is off.
-const BUTTONS: [(u8, Button); 4] =
-    [(0b0001, Button::Home), (0b0010, Button::Start), (0b0100, Button::Stop), (0b1000, Button::Reset)];
+/// A line of the console.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Line {
+    Help,
+    State,
+    /// The last refusal.
+    Why,
+    Input(Port, Mask),
+    /// Bits of SY01.
+    System(u8, bool),
+    Press(Button),
+    StartAt(usize),
+    Clear,
+    Servo(bool),
+    Pendant(bool),
+    EmergencyStop(bool),
+    Error(u8),
+    PowerCycle,
+    Card(bool),
+    Obstacle(usize, Option<f64>),
+    Slave(bool),
+    BatteryLow(bool),
+}
 
+/// What does the same as a command of the host, by whoever stands there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Button {
+pub(super) enum Button {
     Home,
     Start,
     Stop,
     Reset,
 }
 
-/// Carries out a line; the answer says what is now.
-pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
-    let words: Vec<&str> = line.split_whitespace().collect();
-    match words.as_slice() {
-        ["help"] => return Ok(USAGE.replace(" | ", "\n")),
-        ["state"] => return Ok(state(world)),
-        ["why"] => {
-            let last = world.refusal.as_ref();
-            return Ok(last.map_or("nothing was refused".into(), |(block, why)| format!("{block}: {why}")));
-        }
-        ["input", place, rest @ ..] => input(world, place, rest)?,
-        ["start"] => press(world, Button::Start)?,
-        ["start", step] => {
-            host_off(world)?;
-            world.start_sequential(number(step, 1, 5000)?)?;
-        }
-        ["stop"] => press(world, Button::Stop)?,
-        ["reset"] => press(world, Button::Reset)?,
-        ["home"] => press(world, Button::Home)?,
-        ["clear"] => world.cancel_error()?,
-        ["servo", state] => world.servo(on_off(state)?)?,
-        ["pendant", state] => world.pendant(on_off(state)?),
-        ["estop"] => world.emergency_stop(true),
-        ["estop", "off"] => world.emergency_stop(false),
-        ["error", code] => {
-            let code = u8::from_str_radix(code, 16).ok().filter(|code| *code > 0);
-            world.fail(code.ok_or("an error has a code from 01 to FF")?);
-        }
-        ["power", "cycle"] => world.power_cycle(),
-        ["card", "in"] => world.insert_card(true),
-        ["card", "out"] => world.insert_card(false),
-        ["obstacle", letter, place] => obstacle(world, letter, place)?,
-        ["slave", state] => world.switches.slaves_ready = on_off(state)?,
-        ["battery", "low"] => world.switches.battery_low = true,
-        ["battery", "ok"] => world.switches.battery_low = false,
-        _ => return Err(format!("no such line: '{}'", line.trim())),
+/// What rising edges of the bits of SY01 do.
+const BUTTONS: [(u8, Button); 4] =
+    [(0b0001, Button::Home), (0b0010, Button::Start), (0b0100, Button::Stop), (0b1000, Button::Reset)];
+
+impl Line {
+    /// Reads a line; the error says what is wrong with it.
+    pub(super) fn parse(line: &str) -> Result<Self, String> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        Ok(match words.as_slice() {
+            ["help"] => Self::Help,
+            ["state"] => Self::State,
+            ["why"] => Self::Why,
+            ["input", place, value] => input(place, value)?,
+            ["start"] => Self::Press(Button::Start),
+            ["start", step] => Self::StartAt(number(step, 1, 5000)?),
+            ["stop"] => Self::Press(Button::Stop),
+            ["reset"] => Self::Press(Button::Reset),
+            ["home"] => Self::Press(Button::Home),
+            ["clear"] => Self::Clear,
+            ["servo", state] => Self::Servo(on_off(state)?),
+            ["pendant", state] => Self::Pendant(on_off(state)?),
+            ["estop"] => Self::EmergencyStop(true),
+            ["estop", "off"] => Self::EmergencyStop(false),
+            ["error", code] => {
+                let code = u8::from_str_radix(code, 16).ok().filter(|code| *code > 0);
+                Self::Error(code.ok_or("an error has a code from 01 to FF")?)
+            }
+            ["power", "cycle"] => Self::PowerCycle,
+            ["card", "in"] => Self::Card(true),
+            ["card", "out"] => Self::Card(false),
+            ["obstacle", letter, place] => obstacle(letter, place)?,
+            ["slave", state] => Self::Slave(on_off(state)?),
+            ["battery", "low"] => Self::BatteryLow(true),
+            ["battery", "ok"] => Self::BatteryLow(false),
+            _ => return Err(format!("no such line: '{}'", line.trim())),
+        })
     }
-    world.settle();
-    Ok(summary(world))
+
+    /// Carries the line out; the answer says what is now.
+    pub(super) fn carry_out(self, world: &mut World) -> Result<String, String> {
+        match self {
+            Self::Help => return Ok(USAGE.to_owned()),
+            Self::State => return Ok(state(world)),
+            Self::Why => {
+                let last = world.refusal.as_ref();
+                return Ok(last.map_or("nothing was refused".into(), |(block, why)| format!("{block}: {why}")));
+            }
+            Self::Input(port, mask) => set_input(world, port, mask)?,
+            Self::System(mask, on) => set_system(world, mask, on),
+            Self::Press(button) => press(world, button)?,
+            Self::StartAt(step) => {
+                host_off(world)?;
+                world.start_sequential(step)?;
+            }
+            Self::Clear => world.cancel_error()?,
+            Self::Servo(on) => world.servo(on)?,
+            Self::Pendant(on) => world.pendant(on),
+            Self::EmergencyStop(pressed) => world.emergency_stop(pressed),
+            Self::Error(code) => world.fail(code),
+            Self::PowerCycle => world.power_cycle(),
+            Self::Card(inserted) => world.insert_card(inserted),
+            Self::Obstacle(axis, at) => world.arm.set_wall(axis, at, world.now),
+            Self::Slave(ready) => world.switches.slaves_ready = ready,
+            Self::BatteryLow(low) => world.switches.battery_low = low,
+        }
+        world.settle();
+        Ok(summary(world))
+    }
 }
 
-/// Whether a line is one of those there are, whatever the state is in which it will be carried out.
-pub(super) fn check(line: &str) -> Result<(), String> {
-    let words: Vec<&str> = line.split_whitespace().collect();
-    let known = USAGE.split(" | ").any(|usage| usage.split(' ').next() == words.first().copied());
-    if known { Ok(()) } else { Err(format!("no such line: '{}'", line.trim())) }
+/// `0/01/3 on`, `0/01 00000100`; `0/SY/2 on` is a bit of the system port.
+fn input(place: &str, value: &str) -> Result<Line, String> {
+    let parts: Vec<&str> = place.split('/').collect();
+    let existing = |station: &str, port: &str| {
+        let port = Port { station: number(station, 0, 4)?, port: number(port, 1, 99)? };
+        let known = Ports::default().input(port).is_some();
+        if known { Ok(port) } else { Err(format!("there is no input port {}/{:02}", port.station, port.port)) }
+    };
+    match parts.as_slice() {
+        ["0", "SY", bit] => Ok(Line::System(mask(bit)?, on_off(value)?)),
+        [station, port, bit] => {
+            let (port, care) = (existing(station, port)?, mask(bit)?);
+            Ok(Line::Input(port, Mask { care, bits: if on_off(value)? { care } else { 0 } }))
+        }
+        [station, port] => {
+            let bits = u8::from_str_radix(value, 2).ok().filter(|_| value.len() == 8);
+            let bits = bits.ok_or_else(|| expected(value, "eight of 0 and 1"))?;
+            Ok(Line::Input(existing(station, port)?, Mask::all(bits)))
+        }
+        _ => Err(expected(place, "a place like 0/01/3 or 0/01")),
+    }
 }
 
-/// What a button does: like the host's command, but by whoever stands there.
+fn obstacle(letter: &str, place: &str) -> Result<Line, String> {
+    let axis = axis(letter).ok_or_else(|| expected(letter, "X, Y, Z or R"))?;
+    let coordinate = || place.parse().ok().filter(|at: &f64| at.abs() <= 8000.0);
+    Ok(Line::Obstacle(
+        axis,
+        match place {
+            "off" => None,
+            _ => Some(coordinate().ok_or_else(|| expected(place, "a coordinate in mm, or off"))?),
+        },
+    ))
+}
+
 fn press(world: &mut World, button: Button) -> Result<(), String> {
     if button == Button::Start {
         host_off(world)?;
@@ -93,60 +188,24 @@ fn host_off(world: &World) -> Result<(), String> {
     if world.switches.host { Err("the host is on: it alone starts programs".into()) } else { Ok(()) }
 }
 
-/// `0/01/3 on`, `0/01 00000100`; `0/SY/2 on` is a bit of the system port.
-fn input(world: &mut World, place: &str, rest: &[&str]) -> Result<(), String> {
-    let parts: Vec<&str> = place.split('/').collect();
-    let servo_before = world.ports.is_on(world.settings.servo_on);
-    match (parts.as_slice(), rest) {
-        (["0", "SY", bit], [state]) => {
-            let bit = PortBit { port: Port { station: 0, port: 1 }, bit: byte(bit, 1, 8)? };
-            system(world, bit.mask(), on_off(state)?);
-            return Ok(());
-        }
-        ([station, port, bit], [state]) => {
-            let (port, bit) = (own(station, port)?, byte(bit, 1, 8)?);
-            let mask = PortBit { port, bit }.mask();
-            let bits = if on_off(state)? { mask } else { 0 };
-            set(world, place, port, Mask { care: mask, bits })?;
-        }
-        ([station, port], [bits]) => {
-            let eight = u8::from_str_radix(bits, 2).ok().filter(|_| bits.len() == 8);
-            let eight = eight.ok_or_else(|| expected(bits, "eight of 0 and 1"))?;
-            set(world, place, own(station, port)?, Mask::all(eight))?;
-        }
-        _ => return Err("input needs a place like 0/01/3 and on or off, or 0/01 and eight bits".into()),
-    }
-    // The servo input acts by its edges (M21).
+/// Sets an input port; edges of the servo input switch servo power (M21).
+fn set_input(world: &mut World, port: Port, mask: Mask) -> Result<(), String> {
+    let before = world.ports.is_on(world.settings.servo_on);
+    world.ports.set_input(port, mask);
     let servo = world.ports.is_on(world.settings.servo_on);
-    if servo != servo_before {
-        let _ = world.servo(servo);
-    }
-    Ok(())
+    if servo != before { world.servo(servo).map_err(str::to_owned) } else { Ok(()) }
 }
 
-fn set(world: &mut World, place: &str, port: Port, mask: Mask) -> Result<(), String> {
-    if world.ports.set_input(port, mask) { Ok(()) } else { Err(format!("there is no input port {place}")) }
-}
-
-fn system(world: &mut World, mask: u8, on: bool) {
+/// Sets bits of SY01. What a button cannot do now it does not do, and `why` tells.
+fn set_system(world: &mut World, mask: u8, on: bool) {
     let before = world.ports.system;
     world.ports.system = if on { before | mask } else { before & !mask };
     let risen = world.ports.system & !before;
     for (_, button) in BUTTONS.iter().filter(|(bit, _)| risen & bit != 0) {
-        // What cannot be done now is not done, as with a button.
-        let _ = press(world, *button);
+        if let Err(why) = press(world, *button) {
+            world.refusal = Some((format!("{button:?}").to_lowercase(), why));
+        }
     }
-}
-
-fn obstacle(world: &mut World, letter: &str, place: &str) -> Result<(), String> {
-    let axis = axis(letter).ok_or_else(|| expected(letter, "X, Y, Z or R"))?;
-    let coordinate = || place.parse().ok().filter(|at: &f64| at.abs() <= 8000.0);
-    let at = match place {
-        "off" => None,
-        _ => Some(coordinate().ok_or_else(|| expected(place, "a coordinate in mm, or off"))?),
-    };
-    world.arm.set_wall(axis, at, world.now);
-    Ok(())
 }
 
 /// One line about everything that decides what is refused.
@@ -169,7 +228,7 @@ fn summary(world: &World) -> String {
     let optional = [
         (!world.knows_origin(), "origin unknown"),
         (world.is_executing(), "executing"),
-        (world.is_held() && world.is_running(), "paused"),
+        (world.is_paused(), "paused"),
         (world.arm.homing.is_some(), "returning to origin"),
         (world.switches.pendant, "teach pendant on"),
         (world.switches.estop, "emergency stop"),
@@ -187,11 +246,11 @@ fn state(world: &World) -> String {
     if let Some(code) = world.errors.current() {
         lines.push(format!("error {code:02X}"));
     }
-    let place = world.arm.position(world.now);
-    lines.push(format!("X {:.2}  Y {:.2}  Z {:.2}  R {:.2} mm", place[0], place[1], place[2], place[3]));
+    let [x, y, z, r] = world.arm.position(world.now);
+    lines.push(format!("X {x:.2}  Y {y:.2}  Z {z:.2}  R {r:.2} mm"));
     for index in (0..TASKS).filter(|&index| world.memory.size(index) > 0) {
         let task = &world.tasks[index];
-        let step = world.memory.step(index, task.step).map(crate::controller::toyo::layout::Record::written);
+        let step = world.memory.step(index, task.step).map(Record::written);
         let what = match (task.running, task.stopped || world.is_held()) {
             (true, false) => "runs",
             (true, true) => "stands",
@@ -206,12 +265,10 @@ fn state(world: &World) -> String {
     lines.join("\n")
 }
 
-fn own(station: &str, port: &str) -> Result<Port, String> {
-    Ok(Port { station: number(station, 0, 4)?, port: number(port, 1, 99)? })
-}
-
-fn byte(word: &str, least: usize, most: usize) -> Result<u8, String> {
-    number(word, least, most).map(|number| u8::try_from(number).unwrap_or_default())
+/// The bit with a number, from 1.
+fn mask(bit: &str) -> Result<u8, String> {
+    let bit = u8::try_from(number(bit, 1, 8)?).unwrap_or(1);
+    Ok(PortBit { port: Port { station: 0, port: 1 }, bit }.mask())
 }
 
 fn on_off(word: &str) -> Result<bool, String> {

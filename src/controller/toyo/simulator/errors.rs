@@ -36,8 +36,11 @@ pub(super) mod code {
     pub(in super::super) const TASK: u8 = 0xBA;
     pub(in super::super) const CARD: u8 = 0xE0;
 
-    /// What is below takes servo power away, and so stops at once.
-    pub(in super::super) const FIRST_SOFT: u8 = 0x60;
+    /// Whether an error takes servo power away, and so stops everything at once: those of the machine and its axes, but for
+    /// soft limits.
+    pub(in super::super) const fn takes_power(code: u8) -> bool {
+        code < 0x20 || (code < 0x60 && !matches!(code & 0xF, 0x8 | 0x9))
+    }
 
     /// An error of an axis, by its second digit.
     fn of_axis(axis: usize, digit: u8) -> u8 {

@@ -185,12 +185,12 @@ impl Simulator {
     /// Carries out one line of the console: `input 0/01/3 on`, `start`, `state`. What to print, or what is wrong.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
         self.advance(now);
-        let is_off = line.split_whitespace().eq(["power", "cycle"]);
-        if is_off {
+        let line = console::Line::parse(line)?;
+        if line == console::Line::PowerCycle {
             self.line = Line::default();
             self.waiting.clear();
         }
-        let answer = console::execute(&mut self.world, line);
+        let answer = line.carry_out(&mut self.world);
         self.advance(now);
         answer
     }
@@ -218,7 +218,7 @@ impl Simulator {
         State {
             position: world.arm.position(world.now),
             executing: world.is_executing(),
-            paused: world.is_held() && world.is_running(),
+            paused: world.is_paused(),
             origin: world.knows_origin(),
             error: world.errors.current(),
             host: world.switches.host,

@@ -471,12 +471,14 @@ fn errors(world: &mut World, entries: &Entries, at: &Place<'_>) -> Result<(), St
 }
 
 fn events(world: &mut World, entries: &[Spanned<Event>], at: &Place<'_>) -> Result<(), String> {
-    let mut sorted: Vec<_> = entries.iter().map(Spanned::get_ref).cloned().collect();
-    sorted.sort_by_key(|event| event.at_ms);
+    let mut events = Vec::new();
     for entry in entries {
-        console::check(&entry.get_ref().line).map_err(|what| at.wrong(entry, what))?;
+        let event = entry.get_ref();
+        let line = console::Line::parse(&event.line).map_err(|what| at.wrong(entry, what))?;
+        events.push((Duration::from_millis(event.at_ms), event.line.clone(), line));
     }
-    world.events = sorted.into_iter().map(|event| (Duration::from_millis(event.at_ms), event.line)).collect();
+    events.sort_by_key(|(at, ..)| *at);
+    world.events = events.into();
     Ok(())
 }
 

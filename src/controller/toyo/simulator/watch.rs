@@ -189,11 +189,11 @@ impl World {
     fn signal(&self, signal: Signal) -> bool {
         let axes = |task: usize| self.machine.tasks[task].axes.iter().copied();
         let pressing = |task: usize| {
-            let limited = self.tasks[task].limited?;
+            let limited = self.tasks[task].limited.filter(|torque| self.arm.push(torque.axis, self.now) > 0.0)?;
             self.presses[limited.axis].map(|press| (limited, press))
         };
         match signal {
-            Signal::Paused => self.is_held() && self.is_running(),
+            Signal::Paused => self.is_paused(),
             Signal::InputWait => self.status(4) & 0b100 != 0,
             Signal::Ready => self.is_ready(),
             Signal::Battery => self.switches.battery_low,

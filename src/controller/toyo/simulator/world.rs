@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::arm::{Arm, HOST};
 use super::card::Card;
-use super::console;
+use super::console::Line;
 use super::errors::{Errors, code};
 use super::io::{Port, Ports};
 use super::memory::{Memory, TASKS};
@@ -120,7 +120,7 @@ pub(super) struct World {
     pub(super) crossing: Option<Now>,
     pub(super) watched: u64,
     /// Lines of the console with the time at which they are carried out.
-    pub(super) events: VecDeque<(Now, String)>,
+    pub(super) events: VecDeque<(Now, String, Line)>,
     pub(super) trace: Trace,
     /// The block that was refused last, and why.
     pub(super) refusal: Option<(String, String)>,
@@ -141,17 +141,17 @@ impl World {
         let tasks = if self.is_held() { None } else { self.tasks.iter().filter_map(Task::due).min() };
         let presses = self.presses.iter().flatten().filter_map(|press| press.due).min();
         let pulses = self.pulses.iter().map(|(at, ..)| *at).min();
-        let event = self.events.front().map(|(at, _)| *at);
+        let event = self.events.front().map(|(at, ..)| *at);
         [tasks, self.arm.next_end(), self.crossing, presses, pulses, event, self.card.due()].into_iter().flatten().min()
     }
 
     /// Does what is due now.
     fn happen(&mut self) {
-        while let Some((_, line)) = self.events.front().filter(|(at, _)| *at <= self.now).cloned() {
-            self.events.pop_front();
-            // That it can be carried out was tried when the start state was read; by now it may have become impossible.
-            if let Err(what) = console::execute(self, &line) {
-                self.trace.record(self.now, self.arm.position(self.now), What::Console(format!("{line}: {what}")));
+        while let Some((_, text, line)) = self.events.pop_front_if(|(at, ..)| *at <= self.now) {
+            // What is impossible by now is not done; `why` and the trace tell.
+            if let Err(why) = line.carry_out(self) {
+                self.note(What::Console(format!("{text}: {why}")));
+                self.refusal = Some((text, why));
             }
         }
         self.card_done();
@@ -165,6 +165,7 @@ impl World {
     /// Sees to what follows from a change by itself: waits that are over, outputs, places to watch.
     pub(super) fn settle(&mut self) {
         self.follow_pause();
+        self.arrivals();
         self.end_waits();
         self.refresh();
         self.watch();
@@ -229,7 +230,7 @@ impl World {
         let place = self.arm.position(self.now);
         self.errors.raise(code, self.powered());
         self.trace.record(self.now, place, What::Error(code));
-        if code < code::FIRST_SOFT {
+        if code::takes_power(code) {
             self.arm.freeze(self.now);
             self.switches.servo.fill(false);
         } else {
@@ -315,6 +316,11 @@ impl World {
         self.stopped || self.pausing
     }
 
+    /// Whether programs are under way, and held.
+    pub(super) fn is_paused(&self) -> bool {
+        self.is_held() && self.is_running()
+    }
+
     /// Whether something is executed (TO 2-2, status 0 bit 1).
     pub(super) fn is_executing(&self) -> bool {
         (self.is_running() && !self.stopped) || self.arm.is_moving(self.now) || self.arm.homing.is_some()
@@ -381,7 +387,7 @@ impl World {
             0 => [
                 self.errors.current().is_some(),
                 self.is_executing(),
-                self.is_held() && self.is_running(),
+                self.is_paused(),
                 self.arm.homing.is_some(),
                 self.knows_origin(),
                 !self.arm.is_moving(self.now),

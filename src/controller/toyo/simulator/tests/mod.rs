@@ -1,1 +1,133 @@
+//! The simulator as the host sees it, in virtual time.
 
+mod host;
+mod instructions;
+mod line;
+mod memory;
+mod motion;
+mod routines;
+mod start;
+mod tasks;
+mod transcripts;
+
+use std::time::Duration;
+
+use super::trace::What;
+use super::{Simulator, Start};
+use crate::controller::Now;
+
+/// A controller with the time.
+struct Bench {
+    sim: Simulator,
+    now: Now,
+}
+
+/// Longest run of anything here.
+const PATIENCE: Duration = Duration::from_secs(3600);
+
+impl Bench {
+    fn new(toml: &str) -> Self {
+        let start = Start::parse(toml).unwrap_or_else(|error| panic!("{error}"));
+        Self { sim: Simulator::new(start), now: Now::ZERO }
+    }
+
+    /// With host on, and the origin known.
+    fn ready(toml: &str) -> Self {
+        Self::new(&format!("host = true\norigin = true\n{toml}"))
+    }
+
+    /// With a program in task 1.
+    fn with(steps: &[&str], toml: &str) -> Self {
+        let steps: Vec<String> = steps.iter().map(|step| format!("\"{step}\"")).collect();
+        Self::ready(&format!("steps.1 = [{}]\n{toml}", steps.join(", ")))
+    }
+
+    /// Sends a block and takes the answer, both without line end.
+    fn ask(&mut self, block: &str) -> String {
+        self.sim.receive(self.now, format!("{block}\r\n").as_bytes());
+        let answer = self.sim.transmit(self.now).unwrap_or_else(|| panic!("{block}: no answer"));
+        assert_eq!(self.sim.transmit(self.now), None, "{block}: one answer");
+        let text = String::from_utf8(answer).unwrap();
+        text.strip_suffix("\r\n").unwrap().to_owned()
+    }
+
+    #[track_caller]
+    fn ok(&mut self, block: &str) {
+        let answer = self.ask(block);
+        assert_eq!(answer, "@OK", "{block}: {:?}", self.sim.console(self.now, "why"));
+    }
+
+    /// Demands a refusal, for a reason.
+    #[track_caller]
+    fn ng(&mut self, block: &str, why: &str) {
+        assert_eq!(self.ask(block), "@NG", "{block}");
+        let told = self.sim.console(self.now, "why").unwrap();
+        assert!(told.contains(why), "{block}: {told}");
+    }
+
+    #[track_caller]
+    fn console(&mut self, line: &str) -> String {
+        self.sim.console(self.now, line).unwrap_or_else(|error| panic!("{line}: {error}"))
+    }
+
+    fn pass(&mut self, ms: u64) {
+        self.now += Duration::from_millis(ms);
+        self.sim.advance(self.now);
+    }
+
+    /// Lets time pass until nothing is executed any more, or nothing will change by itself.
+    fn rest(&mut self) {
+        let end = self.now + PATIENCE;
+        while self.sim.state().executing {
+            let Some(wake) = self.sim.wake().filter(|wake| *wake <= end) else { break };
+            self.now = self.now.max(wake);
+            self.sim.advance(self.now);
+        }
+    }
+
+    /// Starts the program at its first step and lets it run.
+    fn run(&mut self) {
+        self.ok("@SPST 0001");
+        self.rest();
+    }
+
+    fn error(&self) -> Option<u8> {
+        self.sim.state().error
+    }
+
+    fn page(&mut self, page: u8) -> u8 {
+        let answer = self.ask(&format!("@STAS SNO={page}"));
+        let hex = answer.split("ST1=").nth(1).unwrap().split(' ').next().unwrap();
+        u8::from_str_radix(hex, 16).unwrap()
+    }
+
+    #[track_caller]
+    fn at(&self, place: [f64; 4]) {
+        let position = self.sim.state().position;
+        let near = position.iter().zip(place).all(|(a, b)| (a - b).abs() < 1e-3);
+        assert!(near, "it is at {position:?}, not {place:?}");
+    }
+
+    fn counter(&self, number: usize) -> u16 {
+        self.sim.counter(number).unwrap()
+    }
+
+    fn port(&self, port: usize) -> u8 {
+        self.sim.output(0, port).unwrap()
+    }
+}
+
+/// Runs a program from its start, and returns the controller after it.
+fn ran(steps: &[&str]) -> Bench {
+    let mut bench = Bench::with(steps, "");
+    bench.run();
+    bench
+}
+
+/// The error that a program ends with.
+#[track_caller]
+fn fails(steps: &[&str], code: u8) -> Bench {
+    let bench = ran(steps);
+    assert_eq!(bench.error(), Some(code), "{steps:?}");
+    bench
+}

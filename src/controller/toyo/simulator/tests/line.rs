@@ -1,0 +1,96 @@
+//! Blocks on the line: pieces, noise, length, form.
+
+use std::time::Duration;
+
+use super::Bench;
+
+fn sent(bench: &mut Bench, bytes: &[u8]) -> Vec<u8> {
+    bench.sim.receive(bench.now, bytes);
+    let mut all = Vec::new();
+    while let Some(answer) = bench.sim.transmit(bench.now) {
+        all.extend(answer);
+    }
+    all
+}
+
+#[test]
+fn a_block_ends_with_cr_and_may_have_lf() {
+    let mut bench = Bench::new("");
+    assert_eq!(sent(&mut bench, b"@HSON\r"), b"@OK\r\n");
+    assert_eq!(sent(&mut bench, b"\n@HSOF\r\n"), b"@OK\r\n");
+    assert_eq!(sent(&mut bench, b"@MT"), b"");
+    assert_eq!(sent(&mut bench, b"SK"), b"");
+    assert_eq!(sent(&mut bench, b"\r\n@MTSK\r\n"), b"@MTSK TASK=01\r\n@MTSK TASK=01\r\n");
+    assert_eq!(sent(&mut bench, b"\r\n\r\n"), b"");
+}
+
+#[test]
+fn noise_before_a_block_does_not_matter() {
+    let mut bench = Bench::new("");
+    assert_eq!(sent(&mut bench, b"\x00\xFFxx@MTSK\r\n"), b"@MTSK TASK=01\r\n");
+    assert_eq!(sent(&mut bench, b"@MT@MTSK\r\n"), b"@MTSK TASK=01\r\n", "a block that was cut off");
+}
+
+#[test]
+fn what_the_line_damaged_has_no_answer() {
+    let mut bench = Bench::new("");
+    assert_eq!(sent(&mut bench, b"@MT\xC1K\r\n"), b"");
+    sent(&mut bench, b"@HS");
+    bench.sim.damaged(bench.now);
+    assert_eq!(sent(&mut bench, b"ON\r\n"), b"");
+    assert!(!bench.sim.state().host, "nothing was done");
+    assert_eq!(sent(&mut bench, b"no block\r\n"), b"");
+    assert_eq!(sent(&mut bench, b"@HSON\r\n"), b"@OK\r\n");
+}
+
+#[test]
+fn what_is_no_command_is_refused() {
+    let mut bench = Bench::ready("");
+    bench.ng("@XXXX", "no command");
+    bench.ng("@stas SNO=0", "no command");
+    bench.ng("@STAS SNO=5", "out of range");
+    bench.ng("@STAS  SNO=0", "not in form");
+    bench.ng("@WSTX 0001 SPD V=5", "not in form");
+    bench.ng("@WPAR M01 0/1/1", "not in form");
+    bench.ng("@MINT PR=5", "PR=");
+    bench.ng("@WSTX 0001 JUMP TAG=001", "no instruction");
+    assert_eq!(bench.ask("@HTSK TASK=02"), "@OK", "as the list of commands has it");
+    let long = [b"@WSTX 0001 NOP".as_slice(), &[b' '; 200], b"\r"].concat();
+    assert_eq!(sent(&mut bench, &long), b"@NG\r\n");
+    assert_eq!(sent(&mut bench, b"@MTSK\r"), b"@MTSK TASK=02\r\n");
+}
+
+#[test]
+fn answers_can_take_their_time() {
+    let mut bench = Bench::new("answer_delay_ms = 15");
+    bench.sim.receive(bench.now, b"@MTSK\r");
+    assert_eq!(bench.sim.transmit(bench.now), None);
+    assert_eq!(bench.sim.wake(), Some(Duration::from_millis(15)));
+    bench.pass(15);
+    assert_eq!(bench.sim.transmit(bench.now).unwrap(), b"@MTSK TASK=01\r\n");
+}
+
+#[test]
+fn a_share_is_refused_as_busy_and_always_the_same() {
+    let count = |seed: u64| -> Vec<bool> {
+        let mut bench = Bench::new(&format!("busy = 0.3\nseed = {seed}"));
+        (0..200).map(|_| bench.ask("@MTSK") == "@NG").collect()
+    };
+    let refused = count(7).iter().filter(|refused| **refused).count();
+    assert!((40..80).contains(&refused), "{refused}");
+    assert_eq!(count(7), count(7));
+    assert_ne!(count(7), count(8));
+}
+
+#[test]
+fn no_bytes_upset_it() {
+    let mut bench = Bench::ready("");
+    let mut random = fastrand::Rng::with_seed(3);
+    let words = ["@", "WPAR ", "T1 PT=", "999", "JGST X=", "\r", "\n", "é", "=", "000000000000", "@WSTX 0001 ", "MVM "];
+    for _ in 0..5000 {
+        let text: String = (0..random.usize(1..8)).map(|_| words[random.usize(..words.len())]).collect();
+        sent(&mut bench, text.as_bytes());
+    }
+    sent(&mut bench, b"\r");
+    assert_eq!(bench.ask("@CVER NO=0"), "@CVER NO=0 VER=04.00");
+}

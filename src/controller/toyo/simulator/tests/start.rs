@@ -1,0 +1,109 @@
+//! The start state, and the console.
+
+use std::time::Duration;
+
+use super::super::{EXAMPLE, Start};
+use super::Bench;
+use crate::controller::toyo::request::instruction;
+
+#[test]
+fn the_example_is_a_start_state() {
+    let mut bench = Bench::new(EXAMPLE);
+    assert_eq!((bench.page(1), bench.counter(1), bench.port(2)), (0x13, 7, 0x80));
+    assert_eq!(bench.ask("@RPAR T2 V05"), "@RPAR T2 V05=0200.0");
+    assert_eq!(bench.ask("@RSTX 0003"), "@RSTX 0003 OUT STN=0 PN01=.......1");
+    assert_eq!(bench.sim.wear().total(), 0);
+    bench.pass(2000);
+    assert!(bench.ask("@MINP SNO=0 GN=1").contains("PN01=00000101"));
+}
+
+#[test]
+fn every_key_of_the_example_is_explained_by_its_mistake() {
+    for (toml, what) in [
+        ("modell = 1", "line 1: unknown field"),
+        ("axes = 5", "line 1: a controller has 1 to 4 axes"),
+        ("\nmodel = \"X\"", "line 2: a model is one of"),
+        ("version = \"x\"", "line 1: a version"),
+        ("busy = 2.0", "line 1: busy"),
+        ("instruction_us = 0", "line 1: an instruction"),
+        ("steps.1 = [\n\"NOP\",\n\"JUMP\"]", "line 3: there is no instruction 'JUMP'"),
+        ("steps.1 = [\n\"SPD V=11\"]", "line 2: speed: 11 is out of range"),
+        ("steps.5 = [\"NOP\"]", "line 1: '5' is not a number from 1 to 4"),
+        ("points.1.1000 = [0.0, 0.0, 0.0, 0.0]", "line 1: '1000' is not a number from 1 to 999"),
+        ("points.1.1 = [9000.0, 0.0, 0.0, 0.0]", "line 1: x: 9000.00 is out of range"),
+        ("speeds = { 1 = 0.0 }", "line 1: speed: 0.0 is out of range"),
+        ("counters = { 1 = 10000 }", "line 1: counters"),
+        ("inputs = { \"0/24\" = \"00000000\" }", "line 1: there is no input port 0/24"),
+        ("inputs = { \"1\" = \"00000000\" }", "line 1: '1' is not a port"),
+        ("outputs = { \"0/01\" = \"2\" }", "line 1: a port has eight"),
+        ("write = [\"SPST 0001\"]", "line 1: only WPAR"),
+        ("error = \"00\"", "line 1: an error has a code"),
+        ("history = [{ }]", "line 1: an entry has a code"),
+        ("robot_types = []", "line 1: robot types"),
+        ("position = [9000.0, 0.0, 0.0, 0.0]", "line 1: coordinates"),
+        ("[[event]]\nat_ms = 1\ndo = \"dance\"", "line 1: no such line: 'dance'"),
+        ("[[event]]\nat_ms = 1\ndo = \"input 0/24/1 on\"", "line 1: there is no input port 0/24"),
+    ] {
+        let error = Start::parse(toml).map(|_| ()).unwrap_err();
+        assert!(error.starts_with(what), "{toml}: {error}");
+    }
+}
+
+#[test]
+fn programs_and_writes_can_be_added() {
+    let steps = |count: usize| vec![instruction("CNT+ CN01=0001").unwrap(); count];
+    let start = Start::default().with_program(2, steps(10)).unwrap().with_program(1, steps(2)).unwrap();
+    let start = start.with_written("WPAR M09 J").unwrap().with_seed(1).with_busy(0.0);
+    let sim = super::Simulator::new(start.clone());
+    assert!(sim.step(2, 10).is_some() && sim.step(2, 11).is_none() && sim.step(1, 1990).is_some());
+    assert!(start.clone().with_program(3, steps(5001)).unwrap_err().contains("5000 steps"));
+    assert!(start.with_written("WPAR M09 X").is_err());
+    let full = Start::default().with_program(1, steps(5000)).unwrap();
+    assert!(super::Simulator::new(full).step(1, 5000).is_some());
+}
+
+#[test]
+fn events_happen_in_their_time() {
+    let mut bench = Bench::new(
+        "[[event]]\nat_ms = 2000\ndo = \"input 0/01/1 off\"\n[[event]]\nat_ms = 1000\ndo = \"input 0/01/1 on\"",
+    );
+    assert_eq!(bench.sim.wake(), Some(Duration::from_secs(1)));
+    bench.pass(1500);
+    assert!(bench.ask("@MINP SNO=0 GN=1").contains("PN01=00000001"));
+    bench.pass(1000);
+    assert!(bench.ask("@MINP SNO=0 GN=1").contains("PN01=00000000"));
+    assert_eq!(bench.sim.wake(), None);
+    // What has become impossible by then is told.
+    let mut bench = Bench::new("[[event]]\nat_ms = 1000\ndo = \"servo on\"\n[[event]]\nat_ms = 500\ndo = \"estop\"");
+    bench.pass(2000);
+    assert_eq!(bench.console("why"), "servo on: there is an error: cancel it first");
+}
+
+#[test]
+fn the_console_tells_how_it_is() {
+    let mut bench = Bench::with(&["OUT STN=0 PN01=.......1", "END"], "");
+    bench.run();
+    assert_eq!(
+        bench.console("state"),
+        "sequential, automatic mode, host on, servo on\nX 0.00  Y 0.00  Z 0.00  R 0.00 mm\n\
+         task 1 is idle, step 0001 OUT STN=0 PN01=.......1\noutput 0/01 00000001\n0 EEPROM writes"
+    );
+    assert!(bench.console("help").lines().count() > 10);
+    bench.ng("@JGST X=+L Y=SP Z=SP R=SP", "not reset");
+    assert_eq!(bench.console("why"), "@JGST X=+L Y=SP Z=SP R=SP: JOG was not reset (RS)");
+    for (line, what) in [
+        ("dance", "no such line: 'dance'"),
+        ("input 0/24/1 on", "there is no input port 0/24"),
+        ("input 0/01/9 on", "'9' is not a number from 1 to 8"),
+        ("input 0/01/1 up", "'up' is not on or off"),
+        ("error XX", "an error has a code from 01 to FF"),
+        ("obstacle Q 1", "'Q' is not X, Y, Z or R"),
+        ("obstacle X nan", "'nan' is not a coordinate in mm, or off"),
+        ("start 1", "the host is on: it alone starts programs"),
+    ] {
+        assert_eq!(bench.sim.console(bench.now, line).unwrap_err(), what);
+    }
+    for line in ["battery low", "slave off", "estop", "estop off", "clear", "servo on", "reset", "home", "stop"] {
+        bench.console(line);
+    }
+}
