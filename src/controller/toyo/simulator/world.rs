@@ -147,7 +147,8 @@ impl World {
 
     /// Does what is due now.
     fn happen(&mut self) {
-        while let Some((_, text, line)) = self.events.pop_front_if(|(at, ..)| *at <= self.now) {
+        while self.events.front().is_some_and(|(at, ..)| *at <= self.now) {
+            let Some((_, text, line)) = self.events.pop_front() else { break };
             // What is impossible by now is not done; `why` and the trace tell.
             if let Err(why) = line.carry_out(self) {
                 self.note(What::Console(format!("{text}: {why}")));
