@@ -139,6 +139,7 @@ pub(super) enum Choice {
 
 /// A move to one place.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a field of the instruction, or its kind")]
 pub(super) struct Move {
     pub(super) to: Target,
     pub(super) incremental: bool,

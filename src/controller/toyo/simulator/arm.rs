@@ -145,10 +145,10 @@ impl Arm {
     }
 
     /// Adds a move, which begins where the owner's last one ends.
-    pub(super) fn begin(&mut self, segment: Segment) {
+    pub(super) fn begin(&mut self, segment: &Segment) {
         self.touch();
         self.goal = plus(&self.goal, &segment.way());
-        self.segments.push(segment);
+        self.segments.push(*segment);
     }
 
     /// Forgets moves that are over.
@@ -200,7 +200,7 @@ impl Arm {
         let fits = |axis: usize| (self.goal[axis] + left(axis) - held.aim[axis]).abs() < SAME;
         if (0..AXES).all(|axis| !self.belongs(axis, owner) || fits(axis)) {
             for rest in held.rests {
-                self.begin(Segment::new(owner, rest.path, rest.done, rest.drive, now));
+                self.begin(&Segment::new(owner, rest.path, rest.done, rest.drive, now));
             }
             return;
         }
@@ -210,7 +210,7 @@ impl Arm {
             to[axis] = held.aim[axis];
         }
         let length = minus(&to, &self.goal).into_iter().map(f64::abs).fold(0.0, f64::max);
-        self.begin(Segment::new(owner, Path::line(self.goal, to, length), 0.0, last.drive, now));
+        self.begin(&Segment::new(owner, Path::line(self.goal, to, length), 0.0, last.drive, now));
     }
 
     /// When an axis first is on the other side of what `test` tells apart than it is now.
@@ -221,11 +221,11 @@ impl Arm {
         bends.sort_unstable();
         let mut from = now;
         for to in bends {
-            let piece = (to - from) / PIECES;
+            let piece = to.saturating_sub(from) / PIECES;
             for part in 1..=PIECES {
-                let at = if part == PIECES { to } else { from + piece * part };
-                if is(at) != before {
-                    return Some(narrow(at - piece, at, |at| is(at) != before));
+                let (begin, end) = (from + piece * (part - 1), if part == PIECES { to } else { from + piece * part });
+                if is(end) != before {
+                    return Some(narrow(begin, end, |at| is(at) != before));
                 }
             }
             from = to;
@@ -284,7 +284,7 @@ impl Wall {
 /// The moment between two at which something becomes so; it is so at the moment returned.
 fn narrow(mut before: Now, mut after: Now, so: impl Fn(Now) -> bool) -> Now {
     for _ in 0..HALVINGS {
-        let middle = before + (after - before) / 2;
+        let middle = before + after.saturating_sub(before) / 2;
         if middle == before {
             break;
         }
@@ -308,7 +308,7 @@ mod tests {
     fn to(arm: &mut Arm, place: Place, at: Now) {
         let from = arm.goal();
         let length = minus(&place, &from).into_iter().map(f64::abs).fold(0.0, f64::max);
-        arm.begin(Segment::new(0, Path::line(from, place, length), 0.0, DRIVE, at));
+        arm.begin(&Segment::new(0, Path::line(from, place, length), 0.0, DRIVE, at));
     }
 
     fn near(a: Place, b: Place) -> bool {
@@ -345,7 +345,7 @@ mod tests {
         arm.freeze(ms(500));
         assert!(near(arm.goal(), [45.0, 0.0, 0.0, 0.0]));
         arm.settle(ms(500));
-        arm.begin(Segment::new(HOST, Path::line(arm.goal(), [0.0, 7.0, 0.0, 0.0], 45.0), 0.0, DRIVE, ms(600)));
+        arm.begin(&Segment::new(HOST, Path::line(arm.goal(), [0.0, 7.0, 0.0, 0.0], 45.0), 0.0, DRIVE, ms(600)));
         arm.resume(0, ms(5000));
         assert!(near(arm.goal(), [100.0, 0.0, 0.0, 0.0]));
     }

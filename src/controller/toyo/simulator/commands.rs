@@ -145,12 +145,11 @@ fn direct(world: &mut World, request: &Request) -> Result<(), Refusal> {
         return Err("parameter 2 was changed: power must be cycled first");
     }
     let fields = Fields(request.record());
-    let (port, mask) = match request.record().mask("data") {
-        Some(mask) => (fields.port(), mask),
-        None => {
-            let bit = world.settings.direct[fields.index("direct") - 1].ok_or("no bit is assigned to it (M12)")?;
-            (bit.port, Mask { care: bit.mask(), bits: bit.mask() })
-        }
+    let (port, mask) = if let Some(mask) = request.record().mask("data") {
+        (fields.port(), mask)
+    } else {
+        let bit = world.settings.direct[fields.index("direct") - 1].ok_or("no bit is assigned to it (M12)")?;
+        (bit.port, Mask { care: bit.mask(), bits: bit.mask() })
     };
     if world.ports.set_output(port, mask) { Ok(()) } else { Err("there is no such port") }
 }

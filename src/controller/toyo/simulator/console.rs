@@ -193,7 +193,7 @@ fn set_input(world: &mut World, port: Port, mask: Mask) -> Result<(), String> {
     let before = world.ports.is_on(world.settings.servo_on);
     world.ports.set_input(port, mask);
     let servo = world.ports.is_on(world.settings.servo_on);
-    if servo != before { world.servo(servo).map_err(str::to_owned) } else { Ok(()) }
+    if servo == before { Ok(()) } else { world.servo(servo).map_err(str::to_owned) }
 }
 
 /// Sets bits of SY01. What a button cannot do now it does not do, and `why` tells.

@@ -70,9 +70,9 @@ fn write_parameter(world: &mut World, request: &Request) -> Result<(), String> {
 
 /// Writes a step of the current task.
 pub(super) fn write_step(world: &mut World, step: usize, record: Record) -> Result<(), String> {
-    let word = record.layout().text.split(' ').next().unwrap_or_default();
-    if !Instruction::named(word).is_some_and(|row| world.has(row.only_on)) {
-        return Err(format!("a {} does not have {word}", world.model));
+    let name = record.layout().text.split(' ').next().unwrap_or_default();
+    if !Instruction::named(name).is_some_and(|row| world.has(row.only_on)) {
+        return Err(format!("a {} does not have {name}", world.model));
     }
     let task = world.current;
     let size = world.memory.size(task);

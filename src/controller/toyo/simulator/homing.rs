@@ -54,7 +54,7 @@ impl World {
                 let drive = Drive { speed: speed.min(self.machine.top[axis]), up: ramp, down: ramp };
                 let segment = Segment::new(owner, Path::line(from, to, length), 0.0, drive, at);
                 at = segment.ends();
-                self.arm.begin(segment);
+                self.arm.begin(&segment);
             }
             from = to;
         }
@@ -107,7 +107,7 @@ impl World {
         }
         let ramp = self.ramp(1);
         let speed = if word.ends_with('H') { high } else { low }.min(self.machine.top[axis]);
-        self.arm.begin(Segment::new(HOST, path, 0.0, Drive { speed, up: ramp, down: ramp }, self.now));
+        self.arm.begin(&Segment::new(HOST, path, 0.0, Drive { speed, up: ramp, down: ramp }, self.now));
         self.jog = Some(Jog { axis, word, limit });
         Ok(())
     }

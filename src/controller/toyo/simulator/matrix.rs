@@ -2,7 +2,7 @@
 
 use super::errors::code;
 use super::memory::index;
-use super::motion::Place;
+use super::motion::{Place, minus};
 use super::world::World;
 use crate::controller::toyo::field::Value;
 
@@ -31,9 +31,8 @@ impl Matrix {
                 return Err(code::CALCULATION);
             }
             let share = f64::from(piece - 1) / f64::from(pieces - 1);
-            for axis in 0..SPACE {
-                place[axis] += (self.corners[direction][axis] - self.origin[axis]) * share;
-            }
+            let way = minus(&self.corners[direction], &self.origin);
+            place.iter_mut().zip(way).take(SPACE).for_each(|(coordinate, way)| *coordinate += way * share);
         }
         Ok(place)
     }
@@ -75,14 +74,14 @@ impl World {
     }
 
     /// Counts on in a group; whether there was another place. After the last one it is the first one's turn.
-    pub(super) fn next_of_group(&mut self, group: i32) -> Result<bool, u8> {
+    pub(super) fn next_of_group(&mut self, group: i32) -> bool {
         let counters = self.counters_of(group);
         let matrix = Matrix { origin: Place::default(), corners: [Place::default(); 3], pieces: self.pieces_of(group) };
         let next = matrix.next(counters.map(|counter| self.counters[counter]));
         for (counter, piece) in counters.into_iter().zip(next.unwrap_or([1; 3])) {
             self.counters[counter] = piece;
         }
-        Ok(next.is_some())
+        next.is_some()
     }
 
     /// A group; its corners are rows of the task's coordinate table.

@@ -67,8 +67,14 @@ pub struct Wear {
 }
 
 impl Wear {
+    /// Cells as new, that take so many writes.
     pub(super) fn new(limit: Option<u64>) -> Self {
         Self { limit, ..Self::default() }
+    }
+
+    /// Takes all cells for new.
+    pub(super) fn forget(&mut self) {
+        *self = Self::new(self.limit);
     }
 
     /// Writes of all cells.

@@ -116,15 +116,13 @@ fn step(world: &World, step: usize) -> Result<Vec<Value>, String> {
 fn palletizing(world: &World) -> Result<Vec<Value>, String> {
     let task = &world.tasks[0];
     let fresh;
-    let (run, executed) = match &task.routine {
-        Some(Routine::Palletizing(run)) => (run.as_ref(), if task.called { number(task.step) } else { 0 }),
-        _ => {
-            fresh = world.palletizing(world.pallet).ok_or("there is no such program")?;
-            (&fresh, 0)
-        }
+    let (run, executed, done) = if let Some(Routine::Palletizing(run)) = &task.routine {
+        let executed = if task.called { number(task.step) } else { 0 };
+        (run.as_ref(), executed, run.side().piece.map(i32::from))
+    } else {
+        fresh = world.palletizing(world.pallet).ok_or("there is no such program")?;
+        (&fresh, 0, [0; 3])
     };
-    let is_running = matches!(task.routine, Some(Routine::Palletizing(_)));
-    let done = run.side().piece.map(|piece| if is_running { i32::from(piece) } else { 0 });
     let mut values = vec![Value::Word(run.mode), Value::Word(run.state()), Value::Number(number(run.program))];
     for (done, pieces) in done.into_iter().zip(run.side().pieces()) {
         values.extend([Value::Number(done), Value::Number(pieces.into())]);

@@ -146,7 +146,7 @@ impl World {
         let drive = self.drive(index, order.speed, &path);
         let segment = Segment::new(index, path, 0.0, drive, self.now);
         let wait = if order.pass { Wait::Pass(segment.hands_over(share)) } else { Wait::Motion };
-        self.arm.begin(segment);
+        self.arm.begin(&segment);
         Flow::Wait(wait, next)
     }
 

@@ -191,8 +191,8 @@ impl World {
     pub(super) fn reset(&mut self) -> Result<(), Refusal> {
         self.idle()?;
         self.reset_program();
-        self.pulses.clear();
         if self.settings.clear_on_reset {
+            self.pulses.clear();
             self.ports.clear_outputs();
         }
         Ok(())

@@ -200,7 +200,7 @@ impl World {
             Action::Move(order) => return self.move_then(index, order, step + 1),
             Action::Arc(order) => return self.arc_then(index, step, order),
             Action::Loop { group, more, done } => {
-                let tag = if self.next_of_group(group)? { more } else { done };
+                let tag = if self.next_of_group(group) { more } else { done };
                 return self.find(index, tag).map(Flow::To);
             }
             Action::Task { task, order } => return self.order_task(index, task, order),
@@ -332,6 +332,8 @@ impl World {
         }
         if let Some(time) = time {
             let back = Mask { care: mask.care, bits: !mask.bits & mask.care };
+            // The same pulse once more begins anew.
+            self.pulses.retain(|(_, other, mask)| (*other, mask.care) != (port, back.care));
             self.pulses.push((self.now.saturating_add(time), port, back));
         }
         Ok(())
@@ -339,7 +341,7 @@ impl World {
 
     fn switch_servo(&mut self, index: usize, axis: Option<usize>, on: bool) -> Result<(), u8> {
         let own = &self.machine.tasks[index].axes;
-        let axes = match axis {
+        let chosen = match axis {
             Some(axis) if own.contains(&axis) => vec![axis],
             None if !own.is_empty() => own.clone(),
             _ => return Err(code::COMMAND),
@@ -351,7 +353,7 @@ impl World {
             self.arm.freeze_one(index, self.now);
             self.arm.drop_held(index);
         }
-        for axis in axes {
+        for axis in chosen {
             self.switches.servo[axis] = on;
         }
         Ok(())

@@ -106,14 +106,21 @@ impl Start {
     /// With a program in a task, 1 to 4. The task gets as many steps as that needs (E22).
     pub fn with_program(mut self, task: usize, steps: Vec<Record>) -> Result<Self, String> {
         program(&mut self.world, task, steps)?;
-        self.world.memory_changed();
-        Ok(self)
+        Ok(self.stored())
     }
 
     /// With what a command of the host writes: `WPAR T2 V05=0200.0`, `WPLT …`, `WESY …`, `WSTX …`.
     pub fn with_written(mut self, command: &str) -> Result<Self, String> {
         write(&mut self.world, command)?;
-        Ok(self)
+        Ok(self.stored())
+    }
+
+    /// As if everything had been stored before power came on.
+    fn stored(mut self) -> Self {
+        self.world.memory.wear.forget();
+        self.world.load();
+        self.world.settle();
+        self
     }
 }
 

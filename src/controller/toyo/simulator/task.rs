@@ -25,6 +25,7 @@ pub(super) enum Wait {
 
 /// One of four.
 #[derive(Debug, Clone)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub(super) struct Task {
     /// Whether it was started and has not ended.
     pub(super) running: bool,

@@ -18,7 +18,7 @@ pub(super) const NEAR: f64 = 1e-6;
 const OVERLOAD_AFTER: Duration = Duration::from_secs(1);
 
 /// An output that waits for an axis (OUTS).
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct OutputAt {
     pub(super) task: usize,
     pub(super) axis: usize,
@@ -48,6 +48,8 @@ impl World {
     /// Sets outputs when an axis passes a place, or at once if it is there.
     pub(super) fn output_at(&mut self, output: OutputAt) -> Result<(), u8> {
         self.ports.output(output.port).ok_or(code::PORT)?;
+        // A loop that asks for the same again asks for it once.
+        self.outputs_at.retain(|other| *other != output);
         self.outputs_at.push(output);
         self.follow_outputs();
         self.arm.touch();
@@ -132,7 +134,10 @@ impl World {
         }
         let owner = self.arm.owners[axis];
         let limited = self.tasks[owner].limited.filter(|torque| torque.axis == axis);
-        let Some(torque) = limited else { return self.fail(code::overload(axis)) };
+        let Some(torque) = limited else {
+            self.presses[axis] = None;
+            return self.fail(code::overload(axis));
+        };
         self.presses[axis] = Some(Press { due: None, locked: true });
         if torque.torque_end || torque.lock_end {
             self.arm.freeze_one(owner, self.now);
@@ -187,7 +192,7 @@ impl World {
     }
 
     fn signal(&self, signal: Signal) -> bool {
-        let axes = |task: usize| self.machine.tasks[task].axes.iter().copied();
+        let own = |task: usize| self.machine.tasks[task].axes.iter().copied();
         let pressing = |task: usize| {
             let limited = self.tasks[task].limited.filter(|torque| self.arm.push(torque.axis, self.now) > 0.0)?;
             self.presses[limited.axis].map(|press| (limited, press))
@@ -197,8 +202,8 @@ impl World {
             Signal::InputWait => self.status(4) & 0b100 != 0,
             Signal::Ready => self.is_ready(),
             Signal::Battery => self.switches.battery_low,
-            Signal::Positioned(task) => axes(task).len() > 0 && !self.arm.is_busy(task, self.now),
-            Signal::Origin(task) => axes(task).len() > 0 && axes(task).all(|axis| self.arm.known[axis]),
+            Signal::Positioned(task) => own(task).len() > 0 && !self.arm.is_busy(task, self.now),
+            Signal::Origin(task) => own(task).len() > 0 && own(task).all(|axis| self.arm.known[axis]),
             Signal::Load(task) => pressing(task).is_some_and(|(torque, _)| {
                 let [limit, load] = self.memory.content.numbers("T5", torque.table);
                 limit >= load

@@ -71,6 +71,7 @@ pub(super) struct Jog {
 
 /// A controller with all that is in it.
 #[derive(Debug, Clone)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub(super) struct World {
     pub(super) now: Now,
     pub(super) model: String,
@@ -198,24 +199,30 @@ impl World {
         self.settle();
     }
 
-    /// What happens when power comes on.
-    pub(super) fn power_up(&mut self) {
+    /// Goes by the parameters that are stored, those of the machine included.
+    pub(super) fn load(&mut self) {
         self.machine = Machine::of(&self.memory.content);
         self.settings = Settings::of(&self.memory.content);
         for (task, axes) in self.machine.tasks.iter().enumerate() {
             axes.axes.iter().for_each(|axis| self.arm.owners[*axis] = task);
         }
+        self.switches.machine_changed = false;
+    }
+
+    /// What happens when power comes on.
+    pub(super) fn power_up(&mut self) {
+        self.load();
         self.synchronized = false;
         self.switches = Switches {
             host: false,
             servo: std::array::from_fn(|axis| axis < self.axes && !self.switches.estop),
             mode: Mode::Automatic,
             palletizing: false,
-            machine_changed: false,
             ..self.switches
         };
         self.reset_program();
         self.jog_ready = false;
+        (self.current, self.pallet, self.easy) = (0, 1, 1);
         if axes_of(&self.machine) > self.axes {
             self.fail(code::PARAMETER);
         } else if self.machine.bad_roles {

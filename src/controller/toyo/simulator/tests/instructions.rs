@@ -267,3 +267,30 @@ fn a_controller_without_an_instruction_refuses_it() {
     bench.ng("@EHTR NO=01", "does not have this command");
     bench.ok("@WSTX 0001 ACC A=01");
 }
+
+#[test]
+fn a_loop_asks_for_the_same_pulse_once() {
+    let steps = [
+        "TAG TAG=001",
+        "OUTP STN=0 PN01=.......1 TM=00.5",
+        "OUTS TA=0 STN=0 PN02=.......1 X>=+0900.00",
+        "CNT+ CN01=0001",
+        "JMPC TAG=001 CN01< 1000",
+        "END",
+    ];
+    let mut bench = Bench::with(&steps, "write = [\"WPAR M11 I\"]");
+    bench.ok("@SPST 0001");
+    bench.pass(3900);
+    assert_eq!(bench.port(1), 1, "every time it begins anew");
+    bench.pass(600);
+    bench.rest();
+    bench.ok("@REST");
+    bench.pass(600);
+    assert_eq!(bench.port(1), 0);
+}
+
+#[test]
+fn more_axes_than_there_are_is_an_error() {
+    let mut bench = Bench::new("axes = 2\nwrite = [\"WPAR E19 4000\"]");
+    assert_eq!(bench.page(1), 0xA8);
+}

@@ -50,8 +50,8 @@ fn what_is_no_command_is_refused() {
     bench.ng("@stas SNO=0", "no command");
     bench.ng("@STAS SNO=5", "out of range");
     bench.ng("@STAS  SNO=0", "not in form");
-    bench.ng("@WSTX 0001 SPD V=5", "not in form");
-    bench.ng("@WPAR M01 0/1/1", "not in form");
+    bench.ng("@WSTX 0001 SPD V=5", "is not a number");
+    bench.ng("@WPAR M01 0/1/1", "is not a number");
     bench.ng("@MINT PR=5", "PR=");
     bench.ng("@WSTX 0001 JUMP TAG=001", "no instruction");
     assert_eq!(bench.ask("@HTSK TASK=02"), "@OK", "as the list of commands has it");

@@ -95,7 +95,9 @@ fn writes_are_counted_by_cell() {
 
 #[test]
 fn a_worn_cell_keeps_nothing_but_says_ok() {
-    let mut bench = Bench::ready("eeprom_limit = 2");
+    let mut bench =
+        Bench::ready("eeprom_limit = 2\nsteps = { 1 = [\"NOP\"], 2 = [\"NOP\"], 3 = [\"NOP\"], 4 = [\"END\"] }");
+    assert!(bench.sim.step(4, 1).is_some(), "what was there at the start wore nothing");
     for language in ["J", "E", "J", "J"] {
         bench.ok(&format!("@WPAR M09 {language}"));
     }

@@ -7,6 +7,7 @@ mod memory;
 mod motion;
 mod routines;
 mod start;
+mod survival;
 mod tasks;
 mod transcripts;
 

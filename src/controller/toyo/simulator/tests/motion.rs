@@ -142,7 +142,7 @@ fn arcs_go_through_their_points() {
     bench.ok("@SPST 0001");
     bench.pass(600);
     // Half a circle of 314.16 mm: 0.1 s, 294.16 mm at 200 mm/s, 0.1 s. In the middle it is at the top.
-    let half = (0.2 + (std::f64::consts::PI * 100.0 - 20.0) / 200.0) / 2.0;
+    let half = f64::midpoint(0.2, (std::f64::consts::PI * 100.0 - 20.0) / 200.0);
     bench.now = Duration::from_secs_f64(0.6 + half);
     bench.sim.advance(bench.now);
     let [x, y, _, r] = bench.sim.state().position;
@@ -363,9 +363,9 @@ fn jog_stops_when_the_host_goes() {
         bench.ok("@JGST X=+L Y=SP Z=SP R=SP");
         bench.pass(1000);
         if gone.starts_with('@') {
-            bench.ok(gone)
+            bench.ok(gone);
         } else {
-            drop(bench.console(gone))
+            bench.console(gone);
         }
         bench.pass(5000);
         bench.at([10.0, 0.0, 0.0, 0.0]);
