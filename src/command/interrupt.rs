@@ -58,17 +58,43 @@ async fn wait(asked: &mut Asked) -> &'static str {
     }
 }
 
+/// Ends at the keys that suspend a process or kill it outright, Ctrl-Z and Ctrl-\, which do neither any more from this
+/// call on: for what must not be left alone.
+#[cfg(unix)]
+pub fn abandoned() -> impl Future<Output = &'static str> {
+    use tokio::signal::unix::{SignalKind, signal};
+
+    /// SIGTSTP.
+    const SUSPEND: i32 = if cfg!(target_os = "linux") { 20 } else { 18 };
+
+    let suspend = signal(SignalKind::from_raw(SUSPEND)).ok();
+    let quit = signal(SignalKind::quit()).ok();
+    async {
+        tokio::select! {
+            () = heard(suspend) => "Ctrl-Z",
+            () = heard(quit) => "Ctrl-\\",
+        }
+    }
+}
+
+/// There are no such keys.
+#[cfg(not(unix))]
+pub fn abandoned() -> impl Future<Output = &'static str> {
+    std::future::pending()
+}
+
+#[cfg(unix)]
+async fn heard(signal: Option<tokio::signal::unix::Signal>) {
+    match signal {
+        Some(mut signal) => _ = signal.recv().await,
+        None => std::future::pending().await,
+    }
+}
+
 /// Ends at the first request to end; those that come from this call on count, also before it is polled.
 #[cfg(unix)]
 fn interrupt() -> impl Future<Output = &'static str> {
-    use tokio::signal::unix::{Signal, SignalKind, signal};
-
-    async fn heard(signal: Option<Signal>) {
-        match signal {
-            Some(mut signal) => _ = signal.recv().await,
-            None => std::future::pending().await,
-        }
-    }
+    use tokio::signal::unix::{SignalKind, signal};
 
     let keys = signal(SignalKind::interrupt()).ok();
     let terminate = signal(SignalKind::terminate()).ok();

@@ -77,6 +77,11 @@ pub trait Family: Sized + 'static {
     /// Stops what this link set in motion, and says what was done: "the robot was stopped: HOLD is on".
     async fn halt(link: &mut Self::Link) -> Result<String, Failure>;
 
+    /// Whether what this link set in motion is stopped even if `--on-interrupt` says to leave it.
+    fn must_halt(_link: &Self::Link) -> bool {
+        false
+    }
+
     /// What a dry run would have sent, in the order of sending.
     fn rehearsed(link: &mut Self::Link) -> Vec<Value>;
 

@@ -373,7 +373,10 @@ impl Run {
         let context = Context { robot, link: &mut *link, screen: &self.screen, several };
         match interruptible(command.run(context)).await {
             Ok(outcome) => outcome,
-            Err(_) if command.risk() == Risk::Motion && self.gate.on_interrupt == OnInterrupt::Stop => {
+            Err(_)
+                if command.risk() == Risk::Motion
+                    && (self.gate.on_interrupt == OnInterrupt::Stop || F::must_halt(link)) =>
+            {
                 Err(match F::halt(link).await {
                     Ok(done) => Failure::new(Kind::Interrupted, done),
                     Err(failure) => Failure::new(Kind::Interrupted, format!("the robot may still move: {failure}"))

@@ -2,6 +2,7 @@
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::fmt;
 use std::time::Duration;
 
 use tokio::time::Instant;
@@ -10,7 +11,7 @@ use super::fault::Faults;
 
 /// Something that takes and gives datagrams, or pieces of a byte stream, such as a simulated controller. A byte stream
 /// has but channel 0.
-pub trait Peer {
+pub trait Peer: fmt::Debug {
     /// Takes a datagram or piece that arrived at `now` on a channel.
     fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]);
     /// Is told that a character of a serial line arrived at `now` with the wrong parity, which [`Peer::receive`] does
@@ -20,6 +21,24 @@ pub trait Peer {
     fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)>;
     /// When something may be due.
     fn wake(&self) -> Option<Duration>;
+}
+
+impl<P: Peer + ?Sized> Peer for Box<P> {
+    fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
+        (**self).receive(now, channel, bytes);
+    }
+
+    fn damaged(&mut self, now: Duration, channel: usize) {
+        (**self).damaged(now, channel);
+    }
+
+    fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)> {
+        (**self).transmit(now)
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        (**self).wake()
+    }
 }
 
 /// A peer behind a line that may be faulty, on tokio's clock (which tests can halt and turn).

@@ -1,5 +1,7 @@
 //! The connection to a controller: the one driver that moves characters between the session and a line.
 
+mod stop;
+
 use std::convert::Infallible;
 use std::io;
 use std::net::SocketAddr;
@@ -9,9 +11,9 @@ use serde_json::json;
 use tokio::time::Instant;
 
 use super::cells::Wear;
+use super::position::Place;
 use super::reach;
 use super::refusal;
-use super::simulated::Simulated;
 use super::trace::Trace;
 use crate::command::{Access, Family};
 use crate::controller::toyo::field::Value;
@@ -25,6 +27,9 @@ use crate::failure::{Failure, Kind, plain};
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target;
+#[cfg(test)]
+use crate::transport::line::{InProcessLine, Pace};
+use crate::transport::sim::Peer;
 use crate::transport::stream::Stream;
 use crate::transport::tap::Direction;
 
@@ -37,11 +42,14 @@ pub struct Toyo;
 pub struct Link {
     transport: Transport,
     line: Line,
+    /// As flags and settings want it, and as it is now.
+    usual: Policy,
     policy: Policy,
     screen: Screen,
     granted: Risk,
     label: String,
-    motion: Motion,
+    /// What this link set in motion.
+    moving: Option<Moving>,
     host: Host,
     started: Instant,
     trace: Trace,
@@ -55,7 +63,7 @@ pub struct Link {
 /// How the characters travel.
 #[derive(Debug)]
 enum Transport {
-    Stream(Box<Stream<Simulated>>),
+    Stream(Box<Stream<Box<dyn Peer>>>),
     /// A dry run: what would be sent is noted.
     Notes(Vec<serde_json::Value>),
 }
@@ -73,10 +81,9 @@ impl Transport {
     }
 }
 
-/// What this link set in motion.
+/// What moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Motion {
-    None,
+pub enum Moving {
     /// An axis, until it is told to stop.
     Jog,
     /// A program, a return to origin, servo power.
@@ -100,11 +107,8 @@ pub struct Refusal(pub Command);
 
 /// Room for what arrives in one piece.
 const BUFFER: usize = 1024;
-/// How long a stop is tried, the silence after which it is sent again, and the pause between two looks.
-const STOP_WITHIN: Duration = Duration::from_secs(5);
-const REPEAT_STOP: Duration = Duration::from_millis(300);
-const STOPS: u32 = 8;
-const LOOK_EVERY: Duration = Duration::from_millis(50);
+/// The longest silence while something moves that must be stopped.
+const SILENCE: Duration = Duration::from_millis(300);
 /// A session that waits for nothing is asked again after this.
 const LONG: Duration = Duration::from_secs(3600);
 
@@ -119,35 +123,22 @@ impl Family for Toyo {
         } else {
             Transport::Stream(Box::new(way.open(robot).await?))
         };
-        let trace = Trace::open(&access, screen, transport.ends())?;
-        let policy = Policy { timeout: robot.timeout.value, retries: robot.retries.value, character: way.character() };
-        Ok(Link {
-            transport,
-            line: Line::new(policy),
-            policy,
-            screen: *screen,
-            granted: access.granted,
-            label: robot.label(),
-            motion: Motion::None,
-            host: Host::Unknown,
-            started: Instant::now(),
-            trace,
-            waited: Duration::ZERO,
-            is_gone: false,
-            wear: Wear::new(),
-        })
+        Link::new(robot, &access, screen, transport, way.character())
     }
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
-        let stop = match link.motion {
-            Motion::None => return Ok("nothing was sent that moves the robot".to_owned()),
-            Motion::Jog => jog_stop(),
-            Motion::Program => Request::bare(Command::Stop),
-        };
-        link.screen.note(&format!("stopping the robot: {}", stop.text()));
+        let Some(moving) = link.moving else { return Ok("nothing was sent that moves the robot".to_owned()) };
         link.granted = link.granted.max(Risk::Write);
-        link.stop(&stop).await?;
-        Ok(format!("the robot was stopped ({})", stop.text()))
+        let stop = moving.stop();
+        // Before anything is written: a terminal that is held must not hold the stop.
+        link.rush(&stop).await;
+        link.screen.note(&format!("stopping the robot: {}", stop.text()));
+        let place = Place::of(&link.stop(moving).await?);
+        Ok(format!("the robot was stopped ({}); it stands at {}", stop.text(), place.in_a_line()))
+    }
+
+    fn must_halt(link: &Link) -> bool {
+        link.moving == Some(Moving::Jog)
     }
 
     fn rehearsed(link: &mut Link) -> Vec<serde_json::Value> {
@@ -173,6 +164,47 @@ impl Family for Toyo {
 }
 
 impl Link {
+    fn new(
+        robot: &Robot,
+        access: &Access,
+        screen: &Screen,
+        transport: Transport,
+        character: Duration,
+    ) -> Result<Self, Failure> {
+        let policy = Policy { timeout: robot.timeout.value, retries: robot.retries.value, character };
+        let trace = Trace::open(access, screen, transport.ends())?;
+        Ok(Self {
+            transport,
+            line: Line::new(policy),
+            usual: policy,
+            policy,
+            screen: *screen,
+            granted: access.granted,
+            label: robot.label(),
+            moving: None,
+            host: Host::Unknown,
+            started: Instant::now(),
+            trace,
+            waited: Duration::ZERO,
+            is_gone: false,
+            wear: Wear::new(),
+        })
+    }
+
+    /// A link to a peer of a test's own.
+    #[cfg(test)]
+    pub(super) fn to(
+        peer: Box<dyn Peer>,
+        robot: &Robot,
+        access: &Access,
+        screen: &Screen,
+        pace: Pace,
+    ) -> Result<Self, Failure> {
+        let line = InProcessLine::new(peer, Some(pace), None);
+        let transport = Transport::Stream(Box::new(Stream::InProcess(Box::new(line))));
+        Self::new(robot, access, screen, transport, pace.time(1))
+    }
+
     /// Asks for data; a refusal is a failure.
     pub async fn read(&mut self, request: &Request) -> Result<Record, Failure> {
         match self.try_read(request).await? {
@@ -274,7 +306,7 @@ impl Link {
             notes.push(json!({ "text": block }));
             std::future::pending::<Infallible>().await;
         }
-        self.motion = Motion::Program;
+        self.moving = Some(Moving::Program);
         self.line.begin_raw(block);
         match self.drive(Risk::Motion).await? {
             Ended::Answered(answer) => Ok(answer),
@@ -295,7 +327,7 @@ impl Link {
         }
         request.check().map_err(|error| misuse(&error))?;
         if risk == Risk::Motion {
-            self.motion = if request.command() == Command::Jgst { Motion::Jog } else { Motion::Program };
+            self.moving = Some(if request.command() == Command::Jgst { Moving::Jog } else { Moving::Program });
         }
         self.line.begin(request, is_repeatable);
         match self.drive(risk).await? {
@@ -397,38 +429,11 @@ impl Link {
         }
     }
 
-    /// Stops what moves, and sees to it that it stands. The order is repeated after silence, whatever the options say:
-    /// a stop twice is a stop once, and a lost one lets the robot move on.
-    pub async fn stop(&mut self, stop: &Request) -> Result<(), Failure> {
-        let usual = self.policy;
-        self.set_policy(Policy { timeout: REPEAT_STOP, retries: STOPS, ..usual });
-        let stopped = self.stop_until_it_stands(stop).await;
-        self.set_policy(usual);
-        if stopped.is_ok() {
-            self.motion = Motion::None;
-        }
-        stopped
-    }
-
-    async fn stop_until_it_stands(&mut self, stop: &Request) -> Result<(), Failure> {
-        let until = Instant::now() + STOP_WITHIN;
-        let mut place = None;
-        loop {
-            // An `@OK` may be that of the order before: only the robot itself tells that it stands.
-            let answer = self.converse(stop, true).await?;
-            let state = self.status_of(&[0]).await?;
-            let now = self.read(&Request::bare(Command::Mpst)).await?;
-            if !state.executing() && !state.homing() && place.as_ref() == Some(&now) {
-                return Ok(());
-            }
-            place = Some(now);
-            if Instant::now() >= until {
-                let how =
-                    if answer == Answer::Refused { "refuses to stop (@NG)" } else { "moves on although it said @OK" };
-                return Err(Failure::new(Kind::ConditionNotMet, format!("the controller {how}")));
-            }
-            tokio::time::sleep(LOOK_EVERY).await;
-        }
+    /// Notices a silence at once, asks nothing twice, and keeps text about the traffic until [`Link::stop`]: an axis will
+    /// move until it is told to stop, and neither patience nor a terminal that is held must be in the way of that.
+    pub fn watch_closely(&mut self) {
+        self.set_policy(Policy { timeout: SILENCE, retries: 0, ..self.usual });
+        self.trace.hold();
     }
 
     fn set_policy(&mut self, policy: Policy) {
@@ -438,7 +443,7 @@ impl Link {
 
     /// Nothing that this link set in motion moves any more.
     pub fn has_ended(&mut self) {
-        self.motion = Motion::None;
+        self.moving = None;
     }
 
     /// Whether nothing is sent, only noted.
@@ -522,11 +527,6 @@ fn wants_host(request: &Request) -> bool {
 
 fn status_page(page: u8) -> Request {
     Request::of(Command::Stas, [Value::Number(page.into())])
-}
-
-/// The order that stops a JOG.
-pub fn jog_stop() -> Request {
-    jog("SP", None)
 }
 
 /// JOG: one word for all axes, or one for an axis (0 to 3) while the others stop.

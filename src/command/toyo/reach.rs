@@ -11,6 +11,7 @@ use crate::settings::target::{self, Place};
 use crate::transport::fault::LineFaultSpec;
 use crate::transport::line::{InProcessLine, Pace};
 use crate::transport::serial::{Line, OpenError, Serial};
+use crate::transport::sim::Peer;
 use crate::transport::stream::Stream;
 use crate::transport::tcp::{ConnectError, Tcp};
 
@@ -58,7 +59,7 @@ impl Way<'_> {
     }
 
     /// Opens it.
-    pub async fn open(&self, robot: &Robot) -> Result<Stream<Simulated>, Failure> {
+    pub async fn open(&self, robot: &Robot) -> Result<Stream<Box<dyn Peer>>, Failure> {
         match self {
             Self::Serial(line) => match Serial::open(line) {
                 Ok(serial) => Ok(Stream::Serial(serial)),
@@ -77,7 +78,7 @@ impl Way<'_> {
                 })?;
                 let pace = sim.baud.map(|baud| Pace::new(baud, BITS));
                 let controller = simulated::start(sim.state.as_deref(), sim.axes, faults.as_ref())?;
-                let line = InProcessLine::new(Simulated::new(controller), pace, faults);
+                let line = InProcessLine::new(Box::new(Simulated::new(controller)) as Box<dyn Peer>, pace, faults);
                 Ok(Stream::InProcess(Box::new(line)))
             }
         }

@@ -20,6 +20,8 @@ pub struct Trace {
     coming: Vec<u8>,
     /// The last request: `@OK` and `@NG` do not say what they answer.
     asked: Option<Request>,
+    /// Lines that wait to be written.
+    held: Option<Vec<String>>,
 }
 
 /// Longest piece that is kept for a line of text.
@@ -32,7 +34,7 @@ impl Trace {
             Some(_) => trace::Trace::of_network(access, screen)?,
             None => trace::Trace::of_lines(access, screen)?,
         };
-        Ok(Self { record, ends, coming: Vec::new(), asked: None })
+        Ok(Self { record, ends, coming: Vec::new(), asked: None, held: None })
     }
 
     /// Records characters.
@@ -51,6 +53,18 @@ impl Trace {
                 Direction::Sent => self.sent(bytes),
                 Direction::Received => self.received(bytes),
             }
+        }
+    }
+
+    /// Writes nothing until [`Trace::release`]: stderr can block for as long as nobody reads it.
+    pub fn hold(&mut self) {
+        self.held.get_or_insert_default();
+    }
+
+    /// Writes what was held.
+    pub fn release(&mut self) {
+        for line in self.held.take().unwrap_or_default() {
+            self.record.line(&line);
         }
     }
 
@@ -85,11 +99,15 @@ impl Trace {
         }
     }
 
-    fn line(&self, sender: Sender, bytes: &[u8]) {
+    fn line(&mut self, sender: Sender, bytes: &[u8]) {
         let arrow = if sender == Sender::Host { "->" } else { "<-" };
         let text = text(bytes);
         let line = format!("{arrow} {text}  # {}", summary(&text, sender, self.asked.as_ref()));
-        self.record.line(&if self.record.level() > 1 { format!("{line}\n   {}", hex(bytes)) } else { line });
+        let line = if self.record.level() > 1 { format!("{line}\n   {}", hex(bytes)) } else { line };
+        match &mut self.held {
+            Some(held) => held.push(line),
+            None => self.record.line(&line),
+        }
     }
 }
 

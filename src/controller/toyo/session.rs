@@ -134,6 +134,21 @@ impl Line {
         self.state = State::Settling(Exchange { text, request, repetitions, unfitting: None, copy: None, not_before });
     }
 
+    /// A block that cannot wait until the line has settled, such as a stop: the bytes to send at once, if anything is
+    /// owed, and nothing otherwise. Its answer is let pass, so that the next exchange is answered by its own.
+    pub fn urgent(&mut self, now: Now, request: &Request) -> Option<Vec<u8>> {
+        let waits = matches!(self.state, State::Waiting(..));
+        if !waits && (self.owed == 0 || now >= self.owed_until) {
+            return None;
+        }
+        let bytes = format!("{}\r\n", request.text()).into_bytes();
+        self.state = State::Ended(None);
+        self.owed += if waits { 2 } else { 1 };
+        self.owed_until = self.deadline(now, &bytes);
+        self.counters.sent += 1;
+        Some(bytes)
+    }
+
     /// What the line was like so far.
     pub fn counters(&self) -> Counters {
         self.counters
@@ -180,12 +195,17 @@ impl Line {
             return Step::Wait(Now::MAX);
         };
         let bytes = format!("{}\r\n", exchange.text).into_bytes();
-        let length = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         self.counters.sent += 1;
         self.framer.clear();
-        let deadline = now + self.policy.character.saturating_mul(length) + self.policy.timeout;
+        let deadline = self.deadline(now, &bytes);
         self.state = State::Waiting(exchange, deadline);
         Step::Send(bytes)
+    }
+
+    /// Until when the answer to a block may come that is sent now.
+    fn deadline(&self, now: Now, bytes: &[u8]) -> Now {
+        let length = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
+        now + self.policy.character.saturating_mul(length) + self.policy.timeout
     }
 
     /// What a block means to an exchange that waits.

@@ -84,6 +84,30 @@ fn an_exchange_that_is_given_up_is_still_owed_its_answer() {
 }
 
 #[test]
+fn a_stop_does_not_wait_for_what_is_owed() {
+    let mut line = sent("@SPST 0001", false);
+    // The answer to the start is still on its way, or lost: the stop goes out, and both answers are let pass.
+    assert_eq!(line.urgent(ms(5), &request("@STOP")), Some(b"@STOP\r\n".to_vec()));
+    line.begin(&request("@STOP"), true);
+    assert!(matches!(line.poll(ms(5)), Step::Wait(_)), "the line settles first");
+    line.handle(ms(30), b"@OK\r\n");
+    assert!(matches!(line.poll(ms(30)), Step::Wait(_)), "that was the start");
+    line.handle(ms(40), b"@OK\r\n");
+    assert_eq!(line.poll(ms(40)), Step::Send(b"@STOP\r\n".to_vec()));
+    line.handle(ms(60), b"@NG\r\n");
+    assert_eq!(line.poll(ms(60)), answered("@NG"));
+}
+
+#[test]
+fn a_line_in_peace_needs_no_urgency() {
+    let mut line = Line::new(POLICY);
+    assert_eq!(line.urgent(Now::ZERO, &request("@STOP")), None);
+    let mut line = sent("@SPST 0001", false);
+    line.handle(ms(9), b"@OK\r\n");
+    assert_eq!(line.urgent(ms(10), &request("@STOP")), None, "nothing is owed");
+}
+
+#[test]
 fn an_answer_to_something_else_is_passed_over() {
     let mut line = sent("@STAS SNO=1", true);
     line.handle(ms(10), b"@OK\r\n@STAS SNO=0 ST1=22 ST2=00\r\n@STAS SNO=1 ST1=00 ST2=00\r\n");

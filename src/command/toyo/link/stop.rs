@@ -1,0 +1,121 @@
+//! How what moves is stopped, and how it is known to stand.
+
+use std::time::Duration;
+
+use tokio::time::Instant;
+
+use super::{Link, Moving, SILENCE, jog, status_page};
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::request::{Answer, Request};
+use crate::controller::toyo::session::Policy;
+use crate::controller::toyo::table::commands::Command;
+use crate::failure::{Failure, Kind};
+
+/// How long a stop is tried, how often it is sent again after silence, and the pause between two looks.
+const WITHIN: Duration = Duration::from_secs(5);
+const REPETITIONS: u32 = 3;
+const LOOK_EVERY: Duration = Duration::from_millis(50);
+
+impl Moving {
+    /// The order that stops it.
+    pub fn stop(self) -> Request {
+        match self {
+            Self::Jog => jog("SP", None),
+            Self::Program => Request::bare(Command::Stop),
+        }
+    }
+}
+
+/// What came of one attempt.
+struct Attempt {
+    is_refused: bool,
+    is_busy: bool,
+    place: Record,
+}
+
+impl Link {
+    /// Stops what moves, and returns where it has come to stand. The order is repeated until then, whatever the options
+    /// say: a stop twice is a stop once, and a lost one lets the robot move on.
+    ///
+    /// # Errors
+    /// [`Kind::OutcomeUnknown`] if nothing tells that it stands, [`Kind::ConditionNotMet`] if it moves on.
+    pub async fn stop(&mut self, moving: Moving) -> Result<Record, Failure> {
+        if self.is_dry() {
+            self.foresee(&moving.stop(), "repeated until it stands");
+            self.foresee(&status_page(0), "whether it stands");
+            self.foresee(&Request::bare(Command::Mpst), "where it stands");
+            if moving == Moving::Program {
+                self.foresee(&Moving::Jog.stop(), "if an axis moves although nothing is executed");
+            }
+            return std::future::pending().await;
+        }
+        self.set_policy(Policy { timeout: SILENCE, retries: REPETITIONS, ..self.usual });
+        let stopped = self.stop_until_it_stands(moving).await;
+        self.set_policy(self.usual);
+        self.trace.release();
+        match &stopped {
+            Ok(_) => self.moving = None,
+            // The next stop shall find the host as it is.
+            Err(_) => self.keep_host(),
+        }
+        stopped
+    }
+
+    /// Sends a stop at once if the line owes an answer, which [`Link::stop`] would wait for first.
+    pub(super) async fn rush(&mut self, stop: &Request) {
+        if let Some(bytes) = self.line.urgent(self.started.elapsed(), stop) {
+            // A line that is broken fails again in the stop that follows.
+            self.send(&bytes).await.unwrap_or_default();
+        }
+    }
+
+    async fn stop_until_it_stands(&mut self, moving: Moving) -> Result<Record, Failure> {
+        let until = Instant::now() + WITHIN;
+        let stop = moving.stop();
+        let mut last = None;
+        loop {
+            let attempt = self.try_stop(&stop).await;
+            let is_late = Instant::now() >= until;
+            match attempt {
+                Ok(Attempt { is_busy: false, place, .. }) if last.as_ref() == Some(&place) => return Ok(place),
+                Ok(Attempt { is_refused, .. }) if is_late => {
+                    let how = if is_refused { "refuses to stop (@NG)" } else { "moves on although it said @OK" };
+                    return Err(unstopped(Kind::ConditionNotMet, format!("the controller {how}")));
+                }
+                Err(failure) if is_late || self.is_gone => {
+                    let message = format!("nothing tells that it stands: {}", failure.message);
+                    return Err(unstopped(Kind::OutcomeUnknown, message));
+                }
+                Ok(Attempt { is_refused: true, place, .. }) if moving == Moving::Jog => {
+                    // To stop a JOG takes the host, too. If it cannot be had, the next attempt tells.
+                    self.take_host().await.unwrap_or_default();
+                    last = Some(place);
+                }
+                Ok(Attempt { is_busy: false, place, .. }) if moving == Moving::Program && last.is_some() => {
+                    // Nothing is executed, and yet it moves: somebody left an axis jogging.
+                    self.converse(&Moving::Jog.stop(), true).await.map(|_| ()).unwrap_or_default();
+                    last = Some(place);
+                }
+                Ok(Attempt { place, .. }) => last = Some(place),
+                Err(_) => last = None,
+            }
+            tokio::time::sleep(LOOK_EVERY).await;
+        }
+    }
+
+    /// Orders the stop, then looks. That it was answered says little: only the robot itself tells that it stands.
+    async fn try_stop(&mut self, stop: &Request) -> Result<Attempt, Failure> {
+        self.rush(stop).await;
+        let answer = self.converse(stop, true).await?;
+        let state = self.status_of(&[0]).await?;
+        let place = self.read(&Request::bare(Command::Mpst)).await?;
+        Ok(Attempt { is_refused: answer == Answer::Refused, is_busy: state.executing() || state.homing(), place })
+    }
+}
+
+fn unstopped(kind: Kind, message: String) -> Failure {
+    Failure::new(kind, message).hint(
+        "press the emergency stop if anything moves; once the controller answers again, `toyo stop` stops a program, \
+         `toyo stop --jog` an axis that was jogged",
+    )
+}
