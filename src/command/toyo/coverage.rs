@@ -9,9 +9,28 @@ use crate::controller::toyo::table::commands::ROWS;
 #[rustfmt::skip]
 const LINES: &[(&str, &[&str])] = &[
     ("status", &["STAS"]),
+    ("home", &["HOME"]),
+    ("home --sync 1", &["SORG"]),
     ("position", &["MPST"]),
     ("host on", &["HSON"]),
     ("host off", &["HSOF"]),
+    ("mode program", &["MPRO"]),
+    ("mode step", &["MSTP"]),
+    ("mode auto", &["MAUT"]),
+    ("mode sequential", &["MSEQ"]),
+    ("mode palletizing", &["MPLE"]),
+    ("servo on", &["SVON"]),
+    ("servo off", &["SVOF"]),
+    ("stop", &["STOP"]),
+    ("reset", &["REST"]),
+    ("error history", &["EHTR"]),
+    ("error cancel", &["CERR"]),
+    ("error point", &["MERP"]),
+    ("run sequential", &["SPST"]),
+    ("run palletizing --program 1", &["SPLN", "PPST"]),
+    ("run easy --program 1", &["SESN", "SESY"]),
+    ("run point 1", &["EXTP"]),
+    ("jog X + inch", &["JGST"]),
     ("io in", &["MINP"]),
     ("io out", &["MOUT"]),
     ("io internal", &["MNIN"]),
@@ -25,6 +44,9 @@ const LINES: &[(&str, &[&str])] = &[
     ("task get", &["MTSK"]),
     ("task set 1", &["CTSK"]),
     ("offset", &["MOFF"]),
+    ("coordinate set 0 0 0 0", &["MRSS"]),
+    ("card read", &["RMCA"]),
+    ("card write", &["WMCA"]),
     ("bus", &["MBUS"]),
     ("init points", &["MINT"]),
     ("robot-type 1 0", &["TYPE"]),
@@ -34,9 +56,8 @@ const LINES: &[(&str, &[&str])] = &[
 /// Commands that have no line above yet.
 #[rustfmt::skip]
 const TO_COME: &[&str] = &[
-    "CERR", "CESY", "CPPL", "CPSS", "DSTL", "DSTX", "EHTR", "EXTP", "HOME", "ISTX", "JGST", "MAUT", "MERP", "MPLE",
-    "MPRO", "MRSS", "MSEQ", "MSTP", "PPST", "REST", "RESD", "RESY", "RMCA", "RPAR", "RPLD", "RPLT", "RSTX", "SESN",
-    "SESY", "SORG", "SPLN", "SPST", "SSTG", "STOP", "SVOF", "SVON", "WESY", "WMCA", "WPAR", "WPLT", "WSTX",
+    "CESY", "CPPL", "CPSS", "DSTL", "DSTX", "ISTX", "RESD", "RESY", "RPAR", "RPLD", "RPLT", "RSTX", "SSTG", "WESY",
+    "WPAR", "WPLT", "WSTX",
 ];
 
 #[test]

@@ -1,17 +1,23 @@
 //! `toyo`: Toyo controllers over RS-232C host communication.
 
 mod bus;
+mod card;
 mod cells;
+mod coordinate;
 mod counter;
 #[cfg(test)]
 mod coverage;
+mod error;
+mod home;
 mod host;
 mod info;
 mod init;
 mod io;
+mod jog;
 pub mod link;
 mod numbers;
 mod offset;
+mod orders;
 mod overrides;
 mod overview;
 mod ports;
@@ -20,6 +26,7 @@ mod raw;
 mod reach;
 mod refusal;
 mod robot_type;
+mod run;
 pub mod simulated;
 mod status;
 mod task;
@@ -27,6 +34,7 @@ mod task;
 mod testing;
 mod timer;
 mod trace;
+mod waiting;
 
 pub use link::Toyo as Family;
 pub use overview::overview;
@@ -38,10 +46,26 @@ commands! {
     pub enum Toyo of Family {
         /// All five status pages in words
         Status(status::Status),
+        /// Return to the origin
+        Home(home::Home),
         /// Where the axes are
         Position(position::Position),
         /// Take or give back the command of the controller
         Host(host::Host),
+        /// Choose how programs run, or which kind of them
+        Mode(orders::Mode),
+        /// Switch servo power
+        Servo(orders::Servo),
+        /// Stop what runs, or what is jogged
+        Stop(orders::Stop),
+        /// Put programs back to their beginning
+        Reset(orders::Reset),
+        /// Errors
+        Error(Verbs<error::Error>),
+        /// Run programs, and move to a point
+        Run(Verbs<run::Run>),
+        /// Move one axis, for a time or by small steps
+        Jog(jog::Jog),
         /// Input, output and internal ports
         Io(Verbs<io::Io>),
         /// Counters
@@ -54,8 +78,12 @@ commands! {
         Task(Verbs<task::Task>),
         /// How far coordinates are shifted at present
         Offset(offset::Offset),
+        /// Supply coordinates to a program
+        Coordinate(Verbs<coordinate::Coordinate>),
         /// Settings and errors of CC-Link
         Bus(bus::Bus),
+        /// The memory card
+        Card(Verbs<card::Card>),
         /// Clear memory
         Init(init::Init),
         /// Set the robot type of an axis

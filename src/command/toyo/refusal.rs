@@ -3,7 +3,7 @@
 use super::link::Link;
 use crate::controller::Risk;
 use crate::controller::toyo::errors;
-use crate::controller::toyo::status::{RunMode, Status};
+use crate::controller::toyo::status::{ProgramKind, RunMode, Status};
 use crate::controller::toyo::table::commands::{Command, Row};
 use crate::failure::{Failure, Kind};
 
@@ -53,7 +53,8 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     }
     if status.has_error() {
         let error = errors::explain(status.error);
-        return Some((format!("error {}", error.in_a_line()), format!("{}; then `toyo error cancel`", error.remedy)));
+        let then = if row.command == Command::Cerr { "" } else { "; then `toyo error cancel`" };
+        return Some((format!("error {}", error.in_a_line()), format!("{}{then}", error.remedy)));
     }
     if row.needs_host && !status.host_on() {
         return told("the host is OFF", "`toyo host on`");
@@ -61,7 +62,7 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     if status.card_reading() || status.card_writing() {
         return told(
             "the memory card is being used",
-            "wait until it is done: `toyo status --until '.data.card | not'`",
+            "wait until it is done: `toyo status --until '.data.card | (.reading or .writing) | not'`",
         );
     }
     if status.homing() {
@@ -70,20 +71,47 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     if status.executing() {
         return told("a program or command is being executed", "wait for the end, or `toyo stop`");
     }
-    if moves && !status.servo_on() && row.command != Command::Svon {
+    if moves && !status.servo_on() && !matches!(row.command, Command::Svon | Command::Svof) {
         return told("servo power is off", "`toyo servo on`");
     }
-    if moves && !status.homed() && !matches!(row.command, Command::Home | Command::Svon | Command::Svof | Command::Jgst)
-    {
-        return told("the axes have not returned to the origin", "`toyo home`");
+    if let Some((kind, how)) = kind_of(row.command) {
+        if status.run_mode() == Some(RunMode::Program) {
+            return told("the controller is in program mode", "`toyo mode auto`");
+        }
+        if status.program_kind() != kind {
+            let mode = status.program_kind().name().replace('_', " ");
+            return Some((format!("the controller is in {mode} mode"), how.to_owned()));
+        }
+        if !status.homed() {
+            return told("the axes have not returned to the origin", "`toyo home`");
+        }
     }
-    if moves && status.run_mode() == Some(RunMode::Program) {
-        return told("the controller is in program mode", "`toyo mode automatic`");
+    match row.command {
+        Command::Wmca | Command::Rmca if !status.card_inserted() => told("there is no memory card", "insert one"),
+        Command::Rmca => told("the status does not tell why", "there may be nothing on the card that can be read"),
+        Command::Mrss => told("the status does not tell why", "coordinates sent before may still wait for their RSMV"),
+        _ if row.writes_eeprom && status.run_mode() != Some(RunMode::Program) => {
+            told("the controller is not in program mode", "`toyo mode program`, if the controller asks for it")
+        }
+        _ => None,
     }
-    if row.writes_eeprom && status.run_mode() != Some(RunMode::Program) {
-        return told("the controller is not in program mode", "`toyo mode program`, if the controller asks for it");
-    }
-    None
+}
+
+/// What a start runs, and how that mode is chosen.
+fn kind_of(start: Command) -> Option<(ProgramKind, &'static str)> {
+    Some(match start {
+        Command::Spst => (
+            ProgramKind::Sequential,
+            "`toyo mode sequential`; easy and external point mode end with `toyo param set M10 I`",
+        ),
+        Command::Ppst => (
+            ProgramKind::Palletizing,
+            "`toyo mode palletizing`; easy and external point mode end with `toyo param set M10 I`",
+        ),
+        Command::Sesy => (ProgramKind::Easy, "`toyo param set M10 E` chooses easy mode"),
+        Command::Extp => (ProgramKind::ExternalPoint, "`toyo param set M10 P` chooses external point mode"),
+        _ => return None,
+    })
 }
 
 fn unexplained(row: &Row) -> String {
@@ -138,5 +166,9 @@ mod tests {
         assert_eq!(why(fine.with(0, 0x20), Command::Spst).unwrap(), "the axes have not returned to the origin");
         assert!(why(fine.with(0, 0x31).with(1, 0x28), Command::Spst).unwrap().starts_with("error 28: axis 1"));
         assert!(why(fine.with(0, 0xB0), Command::Cerr).unwrap().starts_with("parameter 2 was changed"));
+        assert_eq!(why(fine.with(2, 0x83), Command::Spst).unwrap(), "the controller is in easy mode");
+        assert_eq!(why(fine.with(2, 0x80), Command::Extp).unwrap(), "the controller is in sequential mode");
+        assert_eq!(why(fine.with(2, 0x88), Command::Ppst).unwrap(), "the controller is in program mode");
+        assert_eq!(why(fine, Command::Wmca).unwrap(), "there is no memory card");
     }
 }

@@ -1,18 +1,28 @@
 //! For tests: what a command line would send, and what becomes of it on a simulator in virtual time.
 
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::fmt;
+use std::rc::Rc;
+use std::time::Duration;
+
 use clap::Parser as _;
 use futures_util::FutureExt as _;
 use serde_json::Value;
 
 use super::Family;
 use super::link::Link;
+use super::simulated::Simulated;
 use crate::cli::{Cli, Top};
 use crate::command::{Access, AnyCommand, Context, Family as _, Noun as _};
 use crate::controller::Risk;
+use crate::controller::toyo::simulator::Start;
 use crate::failure::Failure;
 use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::target::Family as Name;
 use crate::settings::{Robot, Selection, Sources};
+use crate::transport::line::Pace;
+use crate::transport::sim::Peer;
 
 /// What the parser of the command line objects to.
 pub(super) fn objection(words: &[&str]) -> String {
@@ -50,11 +60,124 @@ pub(super) struct Bench {
     link: Link,
 }
 
+/// What becomes of a block and its answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Fate {
+    /// Both arrive.
+    Pass,
+    /// The block never arrives.
+    Lost,
+    /// The block arrives, its answer does not.
+    Unanswered,
+    /// The answer comes later.
+    Late(Duration),
+    /// This is answered, and nothing done.
+    Answered(&'static str),
+}
+
+/// Blocks that arrived at the end of the line, or were lost before it, in their order.
+pub(super) type Heard = Rc<RefCell<Vec<String>>>;
+
+/// A simulated controller behind a line that loses what a test wants to be lost.
+struct Spoilt<F> {
+    controller: Simulated,
+    coming: Vec<u8>,
+    answers: VecDeque<(Duration, Vec<u8>)>,
+    heard: Heard,
+    /// The fate of a block, and of how many of its kind it is, from 1.
+    fate: F,
+}
+
+impl<F> fmt::Debug for Spoilt<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Spoilt").finish_non_exhaustive()
+    }
+}
+
+impl<F: FnMut(&str, usize) -> Fate> Peer for Spoilt<F> {
+    fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
+        for byte in bytes {
+            self.coming.push(*byte);
+            if *byte != b'\n' {
+                continue;
+            }
+            let coming = std::mem::take(&mut self.coming);
+            let block = String::from_utf8_lossy(&coming).trim_end().to_owned();
+            self.heard.borrow_mut().push(block.clone());
+            let count = self.heard.borrow().iter().filter(|heard| **heard == block).count();
+            let fate = (self.fate)(&block, count);
+            match fate {
+                Fate::Lost => continue,
+                Fate::Answered(answer) => self.answers.push_back((now, format!("{answer}\r\n").into_bytes())),
+                _ => self.controller.receive(now, channel, &coming),
+            }
+            while let Some((_, answer)) = self.controller.transmit(now) {
+                match fate {
+                    Fate::Unanswered => {}
+                    Fate::Late(by) => self.answers.push_back((now + by, answer)),
+                    _ => self.answers.push_back((now, answer)),
+                }
+            }
+        }
+    }
+
+    fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)> {
+        let due = self.answers.iter().position(|(at, _)| *at <= now)?;
+        self.answers.remove(due).map(|(_, answer)| (0, answer))
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        self.answers.iter().map(|(at, _)| *at).min()
+    }
+}
+
 impl Bench {
+    /// A simulator in a start state (TOML), whose blocks have a fate; and what it hears.
+    pub(super) fn spoilt(state: &str, fate: impl FnMut(&str, usize) -> Fate + 'static) -> (Self, Heard) {
+        let controller = Simulated::new(Start::parse(state).expect("a start state"));
+        let heard = Heard::default();
+        let (coming, answers) = (Vec::new(), VecDeque::new());
+        let peer = Box::new(Spoilt { controller, coming, answers, heard: heard.clone(), fate });
+        let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
+        let runtime = runtime();
+        let link = runtime
+            .block_on(async { Link::to(peer, &robot, &EVERYTHING, &quiet(), Pace::new(9600, 11)) })
+            .expect("a link");
+        (Self { runtime, robot, link }, heard)
+    }
+
+    /// Runs `armctl toyo WORDS…` until Ctrl-C comes after a while; what is said then.
+    pub(super) fn interrupted(&mut self, words: &[&str], after: Duration) -> Result<String, Failure> {
+        self.left(words, after);
+        self.runtime.block_on(Family::halt(&mut self.link))
+    }
+
+    /// Runs `armctl toyo WORDS…` for a while and leaves it there; whether that must not be.
+    pub(super) fn left(&mut self, words: &[&str], after: Duration) -> bool {
+        let (_, command) = resolved("sim:", words).expect("a command");
+        let Self { runtime, robot, link } = self;
+        runtime.block_on(async {
+            let context = Context { robot, link: &mut *link, screen: &quiet(), several: false };
+            if let Ok(done) = tokio::time::timeout(after, command.run(context)).await {
+                panic!("{words:?} has ended before: {:?}", done.map(|report| report.data()));
+            }
+        });
+        Family::must_halt(&self.link)
+    }
+
+    /// Lets time pass.
+    pub(super) fn wait(&self, time: Duration) {
+        self.runtime.block_on(async { tokio::time::sleep(time).await });
+    }
+
+    /// Closes the link.
+    pub(super) fn close(self) -> Result<(), Failure> {
+        self.runtime.block_on(Family::close(self.link, &quiet()))
+    }
+
     /// A simulator by its URL.
     pub(super) fn new(target: &str) -> Self {
-        let runtime =
-            tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
+        let runtime = runtime();
         let (robot, _) = resolved(target, &["status"]).expect("a robot");
         let link = runtime.block_on(Family::connect(&robot, EVERYTHING, &quiet())).expect("a link");
         Self { runtime, robot, link }
@@ -76,6 +199,10 @@ impl Bench {
             other => panic!("{words:?}: {other:?}"),
         }
     }
+}
+
+fn runtime() -> tokio::runtime::Runtime {
+    tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime")
 }
 
 /// A link that may do anything.

@@ -1,0 +1,90 @@
+//! `toyo coordinate set`: coordinates for a program that waits for them.
+
+use clap::Args;
+
+use super::Family;
+use super::link::wrong;
+use crate::command::orders::Done;
+use crate::command::{Command, Context, commands};
+use crate::controller::Risk;
+use crate::controller::toyo::field::{Field, Value};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+
+commands! {
+    /// Coordinates that the host supplies.
+    pub enum Coordinate of Family {
+        /// Supply coordinates to an RSMV, which moves there
+        Set(Set),
+    }
+}
+
+/// Supplies coordinates to a task: the RSMV that waits for them, or comes next, moves there (TO 2-8, MRSS).
+#[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub struct Set {
+    /// X coordinate in mm, -8000.00 to 8000.00
+    #[arg(value_parser = |text: &str| read("x", text))]
+    x: Value,
+    /// Y coordinate in mm
+    #[arg(value_parser = |text: &str| read("y", text))]
+    y: Value,
+    /// Z coordinate in mm; 0 without such an axis
+    #[arg(value_parser = |text: &str| read("z", text))]
+    z: Value,
+    /// R coordinate; 0 without such an axis
+    #[arg(value_parser = |text: &str| read("r", text))]
+    r: Value,
+    /// Which task
+    #[arg(long, value_name = "N", default_value = "1", value_parser = |text: &str| read("task", text))]
+    task: Value,
+    /// Row of the speed table, 1 to 10; 0 for the speed that the step names
+    #[arg(long, value_name = "ROW", default_value = "0", value_parser = |text: &str| read("speed", text))]
+    speed: Value,
+}
+
+/// A value of a field of MRSS, in its range.
+fn read(name: &str, text: &str) -> Result<Value, String> {
+    field(name).read(text).map_err(|error| error.to_string())
+}
+
+fn field(name: &str) -> &'static Field {
+    let fields = table::Command::Mrss.row().requests[0].fields;
+    fields.iter().find(|field| field.name == name).expect("MRSS has these fields")
+}
+
+impl Set {
+    /// Where to, in words.
+    fn aim(&self) -> String {
+        let axes = [("x", &self.x), ("y", &self.y), ("z", &self.z), ("r", &self.r)];
+        let axes = axes.map(|(name, value)| format!("{} {}", name.to_uppercase(), field(name).meaning(value)));
+        let row = match self.speed {
+            Value::Number(0) => "the speed of its step".to_owned(),
+            _ => format!("the speed of row {}", field("speed").meaning(&self.speed)),
+        };
+        format!("{} at {row}", axes.join(", "))
+    }
+}
+
+impl Command for Set {
+    type Family = Family;
+    type Report = Done;
+    const ID: &'static str = "toyo.coordinate.set";
+
+    fn risk(&self) -> Risk {
+        Risk::Motion
+    }
+
+    fn intent(&self) -> String {
+        format!("have the next RSMV of task {} move to {}", field("task").meaning(&self.task), self.aim())
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+        let Self { x, y, z, r, task, speed } = self;
+        let values = [task, x, y, z, r, speed].map(Clone::clone).into();
+        let request = Request::new(table::Command::Mrss, values).map_err(|error| wrong(&error))?;
+        context.link.order(&request).await?;
+        Ok(Done::new(format!("task {} has {}", field("task").meaning(task), self.aim())))
+    }
+}

@@ -1,0 +1,292 @@
+//! `toyo error show|history|cancel|point`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use tokio::time::{Instant, sleep};
+
+use super::Family;
+use super::link::Link;
+use super::status::ErrorCode;
+use super::waiting::{LOOK_EVERY, status_page};
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::Risk;
+use crate::controller::toyo::errors;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Table, Tone, View};
+
+commands! {
+    /// Errors.
+    pub enum Error of Family {
+        /// The error that is present, with cause and remedy
+        Show(Show),
+        /// The errors of the past, the latest first
+        History(History),
+        /// Cancel the error
+        Cancel(Cancel),
+        /// The point at which the error came up
+        Point(Point),
+    }
+}
+
+/// The error that is present (TO 2-2, 4-1).
+#[derive(Debug, Args)]
+pub struct Show {}
+
+impl Command for Show {
+    type Family = Family;
+    type Report = Present;
+    const ID: &'static str = "toyo.error.show";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Present, Failure> {
+        let link = context.link;
+        if link.is_dry() {
+            foresee(link);
+            return std::future::pending().await;
+        }
+        Ok(Present { error: present(link).await?.map(Explained::of) })
+    }
+}
+
+/// The code of the error that is present. One that has none is code 00.
+async fn present(link: &mut Link) -> Result<Option<u8>, Failure> {
+    let status = link.status_of(&[0, 1]).await?;
+    Ok((status.has_error() || status.error != errors::NONE).then_some(status.error))
+}
+
+fn foresee(link: &mut Link) {
+    link.foresee(&status_page(0), "whether there is an error");
+    link.foresee(&status_page(1), "which");
+}
+
+/// The error that is present.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Present {
+    /// Null if there is none.
+    error: Option<Explained>,
+}
+
+/// An error with what may be behind it.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Explained {
+    #[serde(flatten)]
+    code: ErrorCode,
+    /// What may have happened.
+    cause: &'static str,
+    /// What to do.
+    remedy: &'static str,
+}
+
+impl Explained {
+    fn of(code: u8) -> Self {
+        let explanation = errors::explain(code);
+        Self { code: ErrorCode::of(code), cause: explanation.cause, remedy: explanation.remedy }
+    }
+}
+
+impl Report for Present {
+    fn view(&self) -> View {
+        let Some(Explained { code: ErrorCode { code, meaning, .. }, cause, remedy }) = &self.error else {
+            return View::text("no error");
+        };
+        View::fields([
+            ("error", Cell::from(format!("{code}: {meaning}")).tone(Tone::Bad)),
+            ("cause", (*cause).into()),
+            ("remedy", (*remedy).into()),
+        ])
+    }
+}
+
+/// The errors of the past (TO 2-8, EHTR; KCA-20 and KCA-25).
+#[derive(Debug, Args)]
+pub struct History {
+    /// At most so many entries
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(i32).range(1..=99))]
+    limit: i32,
+}
+
+impl Command for History {
+    type Family = Family;
+    type Report = Past;
+    const ID: &'static str = "toyo.error.history";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Past, Failure> {
+        let link = context.link;
+        let question = |number| Request::of(table::Command::Ehtr, [Value::Number(number)]);
+        if link.is_dry() {
+            for number in 1..=self.limit {
+                link.foresee(
+                    &question(number),
+                    if number == 1 { "the latest" } else { "unless the one before is empty" },
+                );
+            }
+            return std::future::pending().await;
+        }
+        let progress = context.screen.spinner("error history");
+        let mut entries = Vec::new();
+        for number in 1..=self.limit {
+            progress.say(&format!("error history {number} of {} at most", self.limit));
+            let record = match link.try_read(&question(number)).await? {
+                Ok(record) => record,
+                // A controller without history refuses the first entry; one with a short history, one beyond its end.
+                Err(_) if number > 1 => break,
+                Err(_) => link.read(&question(number)).await?,
+            };
+            match Entry::of(number, &record) {
+                Some(entry) => entries.push(entry),
+                None => break,
+            }
+        }
+        Ok(Past { entries })
+    }
+}
+
+/// The errors of the past, the latest first.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Past {
+    entries: Vec<Entry>,
+}
+
+/// An entry of the history.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Entry {
+    /// 1 is the latest.
+    number: i32,
+    /// Power went off here: there is no error and no time.
+    power_off: bool,
+    /// Null where power went off.
+    error: Option<ErrorCode>,
+    /// As it came; normally 00.
+    alarm: Option<String>,
+    /// The controller's own time of the error.
+    hours: Option<i32>,
+    minutes: Option<i32>,
+    seconds: Option<i32>,
+}
+
+impl Entry {
+    /// An entry as it came; `None` if it is empty.
+    fn of(number: i32, record: &Record) -> Option<Self> {
+        if record.byte("error") == Some(errors::NONE) {
+            return None;
+        }
+        let error = record.byte("error").map(ErrorCode::of);
+        Some(Self {
+            number,
+            power_off: error.is_none(),
+            error,
+            alarm: record.byte("alarm").map(|alarm| format!("{alarm:02X}")),
+            hours: record.number("hours"),
+            minutes: record.number("minutes"),
+            seconds: record.number("seconds"),
+        })
+    }
+
+    fn time(&self) -> Option<String> {
+        Some(format!("{}:{:02}:{:02}", self.hours?, self.minutes?, self.seconds?))
+    }
+}
+
+impl Report for Past {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["#", "code", "error", "time (h:m:s)"], "no error in the history");
+        for entry in &self.entries {
+            let (code, meaning) = match &entry.error {
+                Some(error) => (Cell::from(error.code.as_str()).tone(Tone::Bad), error.meaning.as_str().into()),
+                None => ("-".into(), "power was switched off".into()),
+            };
+            table.row([entry.number.into(), code, meaning, Cell::maybe(entry.time()).whole()]);
+        }
+        View::table(table)
+    }
+}
+
+/// Cancels the error, and looks whether it is gone (TO 2-7).
+#[derive(Debug, Args)]
+pub struct Cancel {}
+
+/// How long a controller gets to let go of an error.
+const CANCEL_WITHIN: std::time::Duration = std::time::Duration::from_secs(1);
+
+impl Command for Cancel {
+    type Family = Family;
+    type Report = Cancelled;
+    const ID: &'static str = "toyo.error.cancel";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Cancelled, Failure> {
+        let link = context.link;
+        link.order(&Request::bare(table::Command::Cerr)).await?;
+        if link.is_dry() {
+            foresee(link);
+            return std::future::pending().await;
+        }
+        let until = Instant::now() + CANCEL_WITHIN;
+        loop {
+            let left = present(link).await?;
+            if left.is_none() || Instant::now() >= until {
+                return Ok(Cancelled { left: left.map(Explained::of) });
+            }
+            sleep(LOOK_EVERY).await;
+        }
+    }
+}
+
+/// What is left after an error was cancelled.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Cancelled {
+    /// An error that is still present; null if there is none.
+    #[serde(rename = "error")]
+    left: Option<Explained>,
+}
+
+impl Report for Cancelled {
+    fn view(&self) -> View {
+        match &self.left {
+            None => View::text("no error any more"),
+            Some(Explained { code, .. }) => View::text(format!("still there: {}: {}", code.code, code.meaning)),
+        }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let Explained { code, remedy, .. } = self.left.as_ref()?;
+        let message = format!("the controller accepted it, but error {}: {} is present", code.code, code.meaning);
+        Some(Failure::new(Kind::ConditionNotMet, message).hint(*remedy).code(code.code.clone()))
+    }
+}
+
+/// The point at which the error came up (TO 2-8, MERP). The manual does not tell the form of the answer.
+#[derive(Debug, Args)]
+pub struct Point {}
+
+impl Command for Point {
+    type Family = Family;
+    type Report = PointReport;
+    const ID: &'static str = "toyo.error.point";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<PointReport, Failure> {
+        let record = context.link.read(&Request::bare(table::Command::Merp)).await?;
+        let point = record.text("point").map(str::trim).filter(|point| !point.is_empty());
+        Ok(PointReport { point: point.map(ToOwned::to_owned) })
+    }
+}
+
+/// The point at which the error came up.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct PointReport {
+    /// As the controller writes it; null if there is none.
+    point: Option<String>,
+}
+
+impl Report for PointReport {
+    fn view(&self) -> View {
+        View::text(self.point.as_deref().map_or("no point", |point| point).to_owned())
+    }
+}

@@ -1,0 +1,95 @@
+//! `toyo home`: the return to the origin.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::position::Place;
+use super::waiting::{Accepted, Work};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+use crate::output::view::{Cell, Tone, View};
+
+/// Returns all axes to their origin, and waits until they are there (TO 2-7).
+#[derive(Debug, Args)]
+pub struct Home {
+    /// Return as soon as the controller has accepted it
+    #[arg(long)]
+    no_wait: bool,
+    /// Search the origin of synchronized axes instead, with this drive axis, 1 to 3 (KCA-20-M00 and -M01)
+    #[arg(long, value_name = "AXIS", value_parser = clap::value_parser!(i32).range(1..=3))]
+    sync: Option<i32>,
+}
+
+impl Home {
+    fn order(&self) -> (Request, Accepted) {
+        let (work, doing) = (Work::Home, "the axes return to the origin");
+        let done = "the return to the origin was accepted";
+        match self.sync {
+            None => {
+                let order = table::Command::Home;
+                (Request::bare(order), Accepted { work, order, done, doing })
+            }
+            Some(axis) => {
+                let (order, work, doing) = (table::Command::Sorg, Work::Search, "the axes search their origin");
+                let done = "the search for the origin was accepted";
+                (Request::of(order, [Value::Number(axis)]), Accepted { work, order, done, doing })
+            }
+        }
+    }
+}
+
+impl Command for Home {
+    type Family = Family;
+    type Report = Homed;
+    const ID: &'static str = "toyo.home";
+
+    fn risk(&self) -> Risk {
+        Risk::Motion
+    }
+
+    fn intent(&self) -> String {
+        match self.sync {
+            None => "move all axes to their origin".to_owned(),
+            Some(axis) => format!("move drive axis {axis} and the axis coupled to it to their origin"),
+        }
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Homed, Failure> {
+        let link = context.link;
+        let (order, accepted) = self.order();
+        link.order(&order).await?;
+        if self.no_wait {
+            return Ok(Homed { accepted: true, position: None, elapsed_ms: None });
+        }
+        let end = accepted.wait(link, context.screen).await?;
+        Ok(Homed { accepted: true, position: end.place, elapsed_ms: Some(end.elapsed_ms) })
+    }
+}
+
+/// What became of a return to the origin.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Homed {
+    /// The controller took the order.
+    accepted: bool,
+    /// Where the axes stand; null if nobody waited.
+    position: Option<Place>,
+    /// From the acceptance to the end; null if nobody waited.
+    elapsed_ms: Option<u64>,
+}
+
+impl Report for Homed {
+    fn view(&self) -> View {
+        let Some(place) = self.position else { return View::fields([("return to origin", "accepted".into())]) };
+        View::fields([
+            ("return to origin", Cell::from("done").tone(Tone::Good)),
+            ("position (mm)", place.in_a_line().into()),
+            ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
+        ])
+    }
+}

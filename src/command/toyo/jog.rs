@@ -1,0 +1,403 @@
+//! `toyo jog`: one axis, for a time or by small steps. Whatever happens, the stop goes out in the end.
+
+use std::convert::Infallible;
+use std::sync::mpsc::{self, Sender};
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+use schemars::JsonSchema;
+use serde::Serialize;
+use tokio::time::{Instant, sleep, timeout_at};
+
+use super::Family;
+use super::link::{Link, Moving, jog};
+use super::position::Place;
+use super::refusal;
+use super::waiting::{LOOK_EVERY, position, present_error, status_page};
+use crate::command::interrupt::abandoned;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::output::view::{Cell, View};
+use crate::settings::duration;
+
+/// Moves one axis, and stops it (TO 2-7, 3-2).
+///
+/// The controller has no dead man's switch. This command stops the axis after its time, after an error, after an answer
+/// that is lost, when it is told to end, and at Ctrl-Z. It cannot when it is killed (SIGKILL), when the computer dies or
+/// sleeps, or when the cable is pulled: keep the emergency stop at hand. After such an end: `toyo stop --jog`.
+#[derive(Debug, Args)]
+pub struct Jog {
+    /// The axis, by letter or number
+    #[arg(ignore_case = true)]
+    axis: Axis,
+    /// Which way
+    direction: Direction,
+    /// How: fast, slowly, or by the small step of parameter P12
+    speed: Speed,
+    /// How long it moves, 100ms to 60s (low and high)
+    #[arg(long = "for", value_name = "TIME", value_parser = hold, required_if_eq_any([("speed", "low"), ("speed", "high")]))]
+    within: Option<Duration>,
+    /// How many small steps, one after the other (inch)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=100), conflicts_with = "within")]
+    steps: Option<u8>,
+}
+
+/// An axis by its place, whatever letter the pendant shows for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Axis {
+    /// Axis 1
+    #[value(name = "X", alias = "1")]
+    X,
+    /// Axis 2
+    #[value(name = "Y", alias = "2")]
+    Y,
+    /// Axis 3
+    #[value(name = "Z", alias = "3")]
+    Z,
+    /// Axis 4
+    #[value(name = "R", alias = "4")]
+    R,
+}
+
+impl Axis {
+    const fn index(self) -> usize {
+        self as usize
+    }
+
+    const fn letter(self) -> &'static str {
+        ["X", "Y", "Z", "R"][self.index()]
+    }
+
+    fn of(self, place: &Place) -> f64 {
+        [place.x_mm, place.y_mm, place.z_mm, place.r_mm][self.index()]
+    }
+}
+
+/// Which way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Direction {
+    /// Plus
+    #[value(name = "+", alias = "plus")]
+    Plus,
+    /// Minus
+    #[value(name = "-", alias = "minus")]
+    Minus,
+}
+
+/// How an axis is jogged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Speed {
+    /// At the high speed of parameters P08 to P11
+    High,
+    /// At the low speed of parameters P08 to P11
+    Low,
+    /// By small steps (parameter P12)
+    Inch,
+}
+
+/// A jog is at least as long as an answer takes, and no longer than somebody keeps an eye on it.
+const SHORTEST: Duration = Duration::from_millis(100);
+const LONGEST: Duration = Duration::from_secs(60);
+
+fn hold(text: &str) -> Result<Duration, String> {
+    let time = duration::parse(text)?;
+    if (SHORTEST..=LONGEST).contains(&time) {
+        return Ok(time);
+    }
+    Err(format!("a jog takes {} to {}", duration::display(SHORTEST), duration::display(LONGEST)))
+}
+
+/// How long a step may take to begin.
+const BEGIN_WITHIN: Duration = Duration::from_secs(1);
+/// From one look at a step to the next.
+const STEP_LOOK_EVERY: Duration = Duration::from_millis(20);
+/// Looks that a busy controller may refuse in a row while an axis moves.
+const MOST_REFUSED: u32 = 3;
+
+/// What ends a motion before its time.
+#[derive(Debug)]
+enum Cut {
+    /// The order was refused.
+    Refused,
+    /// An error came up.
+    Error,
+    /// Anything else.
+    Failed(Failure),
+}
+
+impl From<Failure> for Cut {
+    fn from(failure: Failure) -> Self {
+        Self::Failed(failure)
+    }
+}
+
+impl Jog {
+    /// What the axis does, as on the line.
+    const fn word(&self) -> &'static str {
+        match (self.direction, self.speed) {
+            (Direction::Plus, Speed::High) => "+H",
+            (Direction::Plus, Speed::Low) => "+L",
+            (Direction::Plus, Speed::Inch) => "+C",
+            (Direction::Minus, Speed::High) => "-H",
+            (Direction::Minus, Speed::Low) => "-L",
+            (Direction::Minus, Speed::Inch) => "-C",
+        }
+    }
+
+    fn order(&self) -> Request {
+        jog(self.word(), Some(self.axis.index()))
+    }
+
+    fn foresee(&self, link: &mut Link) {
+        link.foresee(&position(), "where it stands");
+        let steps = self.steps.unwrap_or(1);
+        match self.within {
+            Some(time) => link.foresee(&self.order(), &format!("then {} pass", duration::display(time))),
+            None if steps > 1 => link.foresee(&self.order(), &format!("{steps} times, when the axis stands again")),
+            None => link.foresee(&self.order(), "once"),
+        }
+        link.foresee(&status_page(0), "while it moves: whether there is an error");
+        link.foresee(&position(), "while it moves: where it is");
+    }
+
+    /// Moves until the time is over, or by all steps. Returns how many steps were done.
+    async fn go(&self, link: &mut Link, live: &Live, start: Place) -> Result<u8, Cut> {
+        let Some(time) = self.within else { return self.step(link, live, start).await };
+        link.watch_closely();
+        let until = Instant::now() + time;
+        let mut is_accepted = false;
+        match timeout_at(until, self.hold(link, live, until, &mut is_accepted)).await {
+            Ok(Err(cut)) => Err(cut),
+            Err(_) if is_accepted => Ok(0),
+            Err(_) => Err(Cut::Failed(Failure::new(Kind::OutcomeUnknown, "the order was not answered in its time"))),
+        }
+    }
+
+    /// Moves for ever, and keeps an eye on it.
+    async fn hold(
+        &self,
+        link: &mut Link,
+        live: &Live,
+        until: Instant,
+        is_accepted: &mut bool,
+    ) -> Result<Infallible, Cut> {
+        link.try_order(&self.order()).await?.map_err(|_| Cut::Refused)?;
+        *is_accepted = true;
+        let (mut refused, mut longest) = (0, Duration::ZERO);
+        loop {
+            let began = Instant::now();
+            match look(link).await {
+                Ok((_, place)) => {
+                    refused = 0;
+                    live.say(format!("jogging {}", place.in_a_line()));
+                }
+                Err(Cut::Failed(failure)) if failure.kind == Kind::Refused && refused < MOST_REFUSED => refused += 1,
+                Err(cut) => return Err(cut),
+            }
+            longest = longest.max(began.elapsed());
+            // The stop shall find the line at peace.
+            let next = began + LOOK_EVERY.max(longest);
+            tokio::time::sleep_until(if next + longest > until { until } else { next }).await;
+        }
+    }
+
+    /// Moves by small steps, each when the axis stands again.
+    async fn step(&self, link: &mut Link, live: &Live, start: Place) -> Result<u8, Cut> {
+        let steps = self.steps.unwrap_or(1);
+        let mut last = start;
+        for step in 1..=steps {
+            link.try_order(&self.order()).await?.map_err(|_| Cut::Refused)?;
+            let (before, began) = (last, Instant::now());
+            loop {
+                let (is_busy, here) = look(link).await?;
+                let stands = !is_busy && here == last;
+                last = here;
+                if stands && here != before {
+                    break;
+                }
+                if stands && began.elapsed() >= BEGIN_WITHIN {
+                    let message = format!("step {step} of {steps} was accepted, but the axis has not moved");
+                    return Err(Cut::Failed(
+                        Failure::new(Kind::ConditionNotMet, message)
+                            .hint("`toyo param get P12` shows how far a step goes, `toyo status` what is in the way"),
+                    ));
+                }
+                sleep(STEP_LOOK_EVERY).await;
+            }
+            live.say(format!("step {step} of {steps} {}", last.in_a_line()));
+        }
+        Ok(steps)
+    }
+}
+
+/// Whether something is executed, and where the axes are.
+async fn look(link: &mut Link) -> Result<(bool, Place), Cut> {
+    let status = link.status_of(&[0]).await?;
+    if status.has_error() {
+        return Err(Cut::Error);
+    }
+    Ok((status.executing(), Place::of(&link.read(&position()).await?)))
+}
+
+impl Command for Jog {
+    type Family = Family;
+    type Report = Jogged;
+    const ID: &'static str = "toyo.jog";
+
+    fn risk(&self) -> Risk {
+        Risk::Motion
+    }
+
+    fn intent(&self) -> String {
+        let axis = self.axis.letter();
+        let way = if self.direction == Direction::Plus { "plus" } else { "minus" };
+        match (self.speed, self.within) {
+            (Speed::High, Some(time)) => {
+                format!("move axis {axis} fast in {way} direction for {}", duration::display(time))
+            }
+            (_, Some(time)) => format!("move axis {axis} slowly in {way} direction for {}", duration::display(time)),
+            (_, None) => format!("move axis {axis} by {} small step(s) in {way} direction", self.steps.unwrap_or(1)),
+        }
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Jogged, Failure> {
+        if self.within.is_some() && self.speed == Speed::Inch {
+            return Err(Failure::usage("an inching step takes no time").hint("leave --for out; --steps makes several"));
+        }
+        if self.steps.is_some() && self.speed != Speed::Inch {
+            return Err(Failure::usage("only inching goes by steps").hint("give the time with --for"));
+        }
+        let link = context.link;
+        link.order(&jog("RS", None)).await?;
+        if link.is_dry() {
+            self.foresee(link);
+            link.stop(Moving::Jog).await?;
+        }
+        let start = Place::of(&link.read(&position()).await?);
+        let live = Live::new(context.screen);
+        let began = Instant::now();
+        let gone = tokio::select! {
+            biased;
+            key = abandoned() => Err(Cut::Failed(Failure::new(Kind::Interrupted, key))),
+            gone = self.go(link, &live, start) => gone,
+        };
+        // Whatever has happened.
+        let elapsed = began.elapsed();
+        let end =
+            Place::of(&link.stop(Moving::Jog).await.map_err(|failure| still_moving(gone.as_ref().err(), failure))?);
+        live.end();
+        match gone {
+            Ok(steps) => Ok(Jogged::of(self, start, end, elapsed, steps)),
+            Err(cut) => Err(cut_short(link, cut, &end).await),
+        }
+    }
+}
+
+/// Why the motion was cut short, now that the axis stands.
+async fn cut_short(link: &mut Link, cut: Cut, place: &Place) -> Failure {
+    let stopped = format!("the axis was stopped and stands at {}", place.in_a_line());
+    match cut {
+        Cut::Refused => refusal::explained(link, table::Command::Jgst).await,
+        Cut::Error => {
+            let tell = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{what}; {stopped}"));
+            present_error(link, &tell).await
+        }
+        Cut::Failed(failure) => Failure { message: format!("{}; {stopped}", failure.message), ..failure },
+    }
+}
+
+/// The stop was not confirmed.
+fn still_moving(cut: Option<&Cut>, failure: Failure) -> Failure {
+    let why = match cut {
+        Some(Cut::Failed(cut)) => format!("{}; ", cut.message),
+        _ => String::new(),
+    };
+    Failure { message: format!("{why}the axis may still move: {}", failure.message), ..failure }
+        .hint("press the emergency stop; once the controller answers again, `toyo stop --jog` before anything else")
+}
+
+/// Shows where the axis is, from a thread of its own: a terminal that is held must not hold the stop.
+struct Live {
+    texts: Sender<String>,
+    thread: std::thread::JoinHandle<()>,
+}
+
+impl Live {
+    fn new(screen: &Screen) -> Self {
+        let (texts, said) = mpsc::channel::<String>();
+        let screen = *screen;
+        let thread = std::thread::spawn(move || {
+            let progress = screen.spinner("jogging");
+            for text in said {
+                progress.say(&text);
+            }
+        });
+        Self { texts, thread }
+    }
+
+    fn say(&self, text: String) {
+        // A thread that has ended shows nothing any more, which is all there is to lose.
+        self.texts.send(text).unwrap_or_default();
+    }
+
+    /// Clears what it shows, once nothing moves any more.
+    fn end(self) {
+        drop(self.texts);
+        self.thread.join().unwrap_or_default();
+    }
+}
+
+/// What became of a jog.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Jogged {
+    /// `X`, `Y`, `Z` or `R`.
+    axis: &'static str,
+    /// As on the line: `+L`.
+    word: &'static str,
+    /// Inching steps that were done; null for low and high.
+    steps: Option<u8>,
+    /// From the start to the stop.
+    elapsed_ms: u64,
+    /// How far the axis moved; negative in minus direction.
+    moved_mm: f64,
+    /// Where the axes stood.
+    start: Place,
+    /// Where they stand.
+    end: Place,
+}
+
+impl Jogged {
+    fn of(jog: &Jog, start: Place, end: Place, elapsed: Duration, steps: u8) -> Self {
+        let moved = jog.axis.of(&end) - jog.axis.of(&start);
+        Self {
+            axis: jog.axis.letter(),
+            word: jog.word(),
+            steps: (jog.speed == Speed::Inch).then_some(steps),
+            elapsed_ms: u64::try_from(elapsed.as_millis()).unwrap_or(u64::MAX),
+            moved_mm: (moved * 100.0).round() / 100.0,
+            start,
+            end,
+        }
+    }
+}
+
+impl Report for Jogged {
+    fn view(&self) -> View {
+        let steps = self.steps.map_or_else(|| "-".into(), Cell::from);
+        View::fields([
+            ("axis", self.axis.into()),
+            ("moved (mm)", Cell::number(format!("{:.2}", self.moved_mm))),
+            ("steps", steps),
+            ("elapsed (ms)", self.elapsed_ms.into()),
+            ("from (mm)", self.start.in_a_line().into()),
+            ("to (mm)", self.end.in_a_line().into()),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests;

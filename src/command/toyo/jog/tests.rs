@@ -1,0 +1,212 @@
+use std::cell::Cell as Flag;
+use std::rc::Rc;
+
+use super::*;
+use crate::command::toyo::testing::{Bench, Fate, Heard, all_blocks, blocks, intent, objection};
+
+const LOW: [&str; 6] = ["jog", "X", "+", "low", "--for", "500ms"];
+const STOP: &str = "@JGST X=SP Y=SP Z=SP R=SP";
+const GO: &str = "@JGST X=+L Y=SP Z=SP R=SP";
+const READY: &str = "origin = true\n";
+
+fn count(heard: &Heard, block: &str) -> usize {
+    heard.borrow().iter().filter(|heard| *heard == block).count()
+}
+
+/// The stop must come after the last block that moves.
+#[track_caller]
+fn ends_with_a_stop(heard: &Heard) {
+    let heard = heard.borrow();
+    let moved = heard.iter().rposition(|block| block.contains("=+") || block.contains("=-"));
+    let stopped = heard.iter().rposition(|block| block == STOP);
+    assert!(moved.is_some() && moved < stopped, "{heard:#?}");
+}
+
+#[test]
+fn a_dry_run_shows_the_whole_sequence() {
+    assert_eq!(
+        all_blocks(&LOW).unwrap(),
+        [
+            "@STAS SNO=2",
+            "@HSON",
+            "@JGST X=RS Y=RS Z=RS R=RS",
+            "@MPST",
+            GO,
+            "@STAS SNO=0",
+            "@MPST",
+            STOP,
+            "@STAS SNO=0",
+            "@MPST",
+            "@HSOF"
+        ]
+    );
+    for (words, block) in [
+        (["jog", "2", "-", "high", "--for", "1s"], "@JGST X=SP Y=-H Z=SP R=SP"),
+        (["jog", "z", "minus", "inch", "--steps", "3"], "@JGST X=SP Y=SP Z=-C R=SP"),
+        (["jog", "R", "plus", "low", "--for", "60"], "@JGST X=SP Y=SP Z=SP R=+L"),
+    ] {
+        assert_eq!(blocks(&words).unwrap()[2], block);
+    }
+}
+
+#[test]
+fn a_jog_without_end_is_refused_before_anything_is_sent() {
+    assert!(objection(&["jog", "X", "+", "low"]).contains("--for"));
+    assert!(objection(&["jog", "X", "+", "high", "--for", "61s"]).contains("100ms to 1m"));
+    assert!(objection(&["jog", "X", "+", "high", "--for", "50ms"]).contains("100ms to 1m"));
+    assert!(objection(&["jog", "A", "+", "inch"]).contains("X, Y, Z, R"));
+    assert!(objection(&["jog", "X", "+", "inch", "--steps", "101"]).contains("1..=100"));
+    for words in [["jog", "X", "+", "inch", "--for", "1s"], ["jog", "X", "+", "low", "--steps", "2"]] {
+        assert_eq!(blocks(&words).unwrap_err().kind, Kind::Usage, "{words:?}");
+    }
+    assert_eq!(intent(&LOW), "move axis X slowly in plus direction for 500ms");
+}
+
+#[test]
+fn an_axis_moves_for_its_time() {
+    let (mut bench, heard) = Bench::spoilt(READY, |_, _| Fate::Pass);
+    let data = bench.data(&LOW);
+    // 10 mm/s for half a second, with a ramp of 0.1 s at either end.
+    let moved = data["moved_mm"].as_f64().unwrap();
+    assert!((4.9..5.2).contains(&moved), "{data}");
+    assert_eq!(data["end"]["x_mm"], data["moved_mm"]);
+    assert_eq!(count(&heard, GO), 1);
+    ends_with_a_stop(&heard);
+}
+
+#[test]
+fn small_steps_are_done_one_by_one() {
+    let (mut bench, heard) = Bench::spoilt(READY, |_, _| Fate::Pass);
+    let data = bench.data(&["jog", "y", "-", "inch", "--steps", "3"]);
+    assert_eq!((&data["moved_mm"], &data["steps"]), (&(-0.03).into(), &3.into()));
+    assert_eq!(count(&heard, "@JGST X=SP Y=-C Z=SP R=SP"), 3);
+    ends_with_a_stop(&heard);
+
+    let (mut bench, heard) =
+        Bench::spoilt("origin = true\nwrite = [\"WPAR P12 AX1=00.00 AX2=00.01 AX3=00.01 AX4=00.01\"]\n", |_, _| {
+            Fate::Pass
+        });
+    let failure = bench.run(&["jog", "x", "+", "inch", "--steps", "3"]).unwrap_err();
+    assert!(failure.message.starts_with("step 1 of 3 was accepted, but the axis has not moved; the axis was stopped"));
+    assert_eq!(count(&heard, "@JGST X=+C Y=SP Z=SP R=SP"), 1);
+    ends_with_a_stop(&heard);
+}
+
+/// What becomes of `LOW` if blocks have this fate; the stop comes, and the axis stands.
+#[track_caller]
+fn spoilt(fate: impl FnMut(&str, usize) -> Fate + 'static) -> (Result<serde_json::Value, Failure>, Heard, f64) {
+    let (mut bench, heard) = Bench::spoilt(READY, fate);
+    let outcome = bench.run(&LOW).map(|(data, _)| data);
+    ends_with_a_stop(&heard);
+    assert_eq!(count(&heard, GO), 1, "what moves is sent once");
+    let place = |bench: &mut Bench| bench.data(&["position"])["x_mm"].as_f64().unwrap();
+    let here = place(&mut bench);
+    bench.wait(Duration::from_secs(60));
+    assert!((place(&mut bench) - here).abs() < 1e-9, "it stands");
+    (outcome, heard, here)
+}
+
+#[test]
+fn an_order_whose_answer_is_lost_is_sent_once_and_stopped() {
+    let (outcome, _, moved) = spoilt(|block, _| if block == GO { Fate::Unanswered } else { Fate::Pass });
+    let failure = outcome.unwrap_err();
+    assert_eq!(failure.kind, Kind::OutcomeUnknown);
+    assert!(failure.hint.unwrap().contains("toyo stop --jog"));
+    assert!(failure.message.contains("the axis was stopped and stands at X "), "{}", failure.message);
+    assert!((2.0..4.0).contains(&moved), "a silence of 300 ms ends it: {moved} mm");
+
+    let (outcome, _, moved) = spoilt(|block, _| if block == GO { Fate::Lost } else { Fate::Pass });
+    assert_eq!((outcome.unwrap_err().kind, moved), (Kind::OutcomeUnknown, 0.0));
+}
+
+#[test]
+fn a_silence_while_an_axis_moves_ends_it() {
+    for lost in ["@STAS SNO=0", "@MPST"] {
+        for fate in [Fate::Lost, Fate::Unanswered, Fate::Late(Duration::from_millis(700))] {
+            let (outcome, _, moved) =
+                spoilt(move |block, count| if block == lost && count == 2 { fate } else { Fate::Pass });
+            let failure = outcome.unwrap_err();
+            assert_eq!(failure.kind, Kind::NoAnswer, "{lost} {fate:?}");
+            assert!((2.0..5.0).contains(&moved), "{lost} {fate:?}: {moved} mm");
+        }
+    }
+}
+
+#[test]
+fn a_stop_that_is_lost_is_repeated() {
+    let late = Fate::Late(Duration::from_millis(450));
+    for (fate, least) in [(Fate::Lost, 4), (Fate::Unanswered, 4), (Fate::Answered("@NG"), 4), (late, 2)] {
+        let (outcome, heard, moved) =
+            spoilt(move |block, count| if block == STOP && count <= 3 { fate } else { Fate::Pass });
+        assert!(outcome.is_ok(), "{fate:?}: {outcome:?}");
+        assert!(count(&heard, STOP) >= least, "{fate:?}: {heard:#?}");
+        assert!(moved < 20.0, "{fate:?}: {moved} mm");
+    }
+}
+
+#[test]
+fn a_dead_line_says_what_to_do() {
+    let dead = Rc::new(Flag::new(false));
+    let is_dead = dead.clone();
+    let (mut bench, heard) = Bench::spoilt(READY, move |block, _| {
+        let fate = if is_dead.get() { Fate::Lost } else { Fate::Pass };
+        is_dead.set(is_dead.get() || block == GO);
+        fate
+    });
+    let failure = bench.run(&LOW).unwrap_err();
+    assert_eq!(failure.kind, Kind::OutcomeUnknown);
+    assert!(failure.message.contains("the axis may still move: nothing tells that it stands"), "{}", failure.message);
+    let hint = failure.hint.unwrap();
+    assert!(hint.starts_with("press the emergency stop") && hint.contains("`toyo stop --jog`"), "{hint}");
+    assert!(count(&heard, STOP) > 10);
+    ends_with_a_stop(&heard);
+    // Once the line is back.
+    dead.set(false);
+    assert!(bench.data(&["stop", "--jog"])["position"]["x_mm"].as_f64().unwrap() > 40.0);
+    assert_eq!(bench.data(&["status"])["executing"], false);
+}
+
+#[test]
+fn a_controller_that_does_not_stop_is_told() {
+    let (mut bench, heard) =
+        Bench::spoilt(READY, |block, _| if block == STOP { Fate::Answered("@OK") } else { Fate::Pass });
+    let failure = bench.run(&LOW).unwrap_err();
+    assert_eq!(failure.kind, Kind::ConditionNotMet);
+    assert!(failure.message.contains("may still move: the controller moves on although it said @OK"));
+    assert!(failure.hint.unwrap().starts_with("press the emergency stop"));
+    ends_with_a_stop(&heard);
+}
+
+#[test]
+fn a_refusal_is_explained_and_stopped_all_the_same() {
+    let (mut bench, heard) = Bench::spoilt("servo = false\n", |_, _| Fate::Pass);
+    let failure = bench.run(&LOW).unwrap_err();
+    assert_eq!(failure.message, "the controller refused JGST (@NG): servo power is off");
+    ends_with_a_stop(&heard);
+}
+
+#[test]
+fn an_error_ends_a_jog() {
+    let state = "origin = true\nposition = [998.0, 0.0, 0.0, 0.0]\n";
+    let (mut bench, heard) = Bench::spoilt(state, |_, _| Fate::Pass);
+    let failure = bench.run(&LOW).unwrap_err();
+    assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("28")));
+    assert!(failure.message.starts_with("error 28: axis 1: beyond the plus soft limit while moving came up; the axis"));
+    ends_with_a_stop(&heard);
+}
+
+#[test]
+fn ctrl_c_at_any_moment_stops_the_axis() {
+    for ms in (0..600).step_by(19) {
+        let (mut bench, heard) = Bench::spoilt(READY, |_, _| Fate::Pass);
+        let said = bench.interrupted(&LOW, Duration::from_millis(ms)).unwrap();
+        let has_moved = count(&heard, GO) > 0 || said.starts_with("the robot was stopped");
+        if has_moved {
+            ends_with_a_stop(&heard);
+            assert!(said.contains("it stands at X "), "{ms}: {said}");
+        }
+        let here = bench.data(&["position"]);
+        bench.wait(Duration::from_secs(10));
+        assert_eq!(bench.data(&["position"]), here, "{ms}");
+    }
+}

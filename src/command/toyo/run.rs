@@ -1,0 +1,459 @@
+//! `toyo run`: programs, and moves to a point.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::link::Link;
+use super::position::Place;
+use super::waiting::{Accepted, End, Work, step};
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::Risk;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::status::RunMode;
+use crate::controller::toyo::table;
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::output::view::{Cell, Tone, View};
+
+commands! {
+    /// Programs, and moves to a point.
+    pub enum Run of Family {
+        /// Start the sequential program
+        Sequential(Sequential),
+        /// Start palletizing
+        Palletizing(Palletizing),
+        /// Start the easy program
+        Easy(Easy),
+        /// Move to a row of the coordinate table
+        Point(Point),
+    }
+}
+
+/// Starts the sequential program, and waits for its end (TO 2-7).
+#[derive(Debug, Args)]
+#[command(after_help = "Without STEP the program goes on at the current step: where a stop left it, \
+    or at its beginning after `toyo reset`. `toyo status` shows whether mode, servo and origin are as a program needs \
+    them; nothing of that is changed here.")]
+pub struct Sequential {
+    /// The step to start at; without it, the current one
+    #[arg(value_name = "STEP", value_parser = clap::value_parser!(i32).range(1..=5000))]
+    step: Option<i32>,
+    /// Return as soon as the controller has accepted the start
+    #[arg(long)]
+    no_wait: bool,
+}
+
+impl Command for Sequential {
+    type Family = Family;
+    type Report = Ran;
+    const ID: &'static str = "toyo.run.sequential";
+
+    fn risk(&self) -> Risk {
+        Risk::Motion
+    }
+
+    fn intent(&self) -> String {
+        match self.step {
+            Some(step) => format!("run the sequential program from step {step} on"),
+            None => "run the sequential program from its current step on".to_owned(),
+        }
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Ran, Failure> {
+        let start = Request::of(table::Command::Spst, [Value::Number(self.step.unwrap_or(0))]);
+        go(context, &start, self.no_wait).await
+    }
+}
+
+/// Starts palletizing, or lets it go on after a stop, and waits for its end (TO 2-7).
+#[derive(Debug, Args)]
+pub struct Palletizing {
+    /// Choose this program first; without it, the one chosen before
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(i32).range(1..=16))]
+    program: Option<i32>,
+    /// Return as soon as the controller has accepted the start
+    #[arg(long)]
+    no_wait: bool,
+}
+
+impl Command for Palletizing {
+    type Family = Family;
+    type Report = Ran;
+    const ID: &'static str = "toyo.run.palletizing";
+
+    fn risk(&self) -> Risk {
+        Risk::Motion
+    }
+
+    fn intent(&self) -> String {
+        format!("run {}", chosen("palletizing", self.program))
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Ran, Failure> {
+        choose(context.link, table::Command::Spln, self.program).await?;
+        go(context, &Request::bare(table::Command::Ppst), self.no_wait).await
+    }
+}
+
+/// Starts the easy program, or lets it go on after a stop, and waits for its end (TO 2-7).
+#[derive(Debug, Args)]
+#[command(after_help = "Parameter M10 chooses easy mode: `toyo param set M10 E`.")]
+pub struct Easy {
+    /// Choose this program first; without it, the one chosen before
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(i32).range(1..=8))]
+    program: Option<i32>,
+    /// Return as soon as the controller has accepted the start
+    #[arg(long)]
+    no_wait: bool,
+}
+
+impl Command for Easy {
+    type Family = Family;
+    type Report = Ran;
+    const ID: &'static str = "toyo.run.easy";
+
+    fn risk(&self) -> Risk {
+        Risk::Motion
+    }
+
+    fn intent(&self) -> String {
+        format!("run {}", chosen("easy", self.program))
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Ran, Failure> {
+        choose(context.link, table::Command::Sesn, self.program).await?;
+        go(context, &Request::bare(table::Command::Sesy), self.no_wait).await
+    }
+}
+
+/// Moves to a row of the coordinate table, and waits until the axes are there (TO 2-7).
+#[derive(Debug, Args)]
+#[command(after_help = "Parameter M10 chooses external point mode: `toyo param set M10 P`.")]
+pub struct Point {
+    /// Row of the coordinate table
+    #[arg(value_name = "N", value_parser = clap::value_parser!(i32).range(1..=999))]
+    point: i32,
+    /// Return as soon as the controller has accepted the start
+    #[arg(long)]
+    no_wait: bool,
+}
+
+impl Command for Point {
+    type Family = Family;
+    type Report = Ran;
+    const ID: &'static str = "toyo.run.point";
+
+    fn risk(&self) -> Risk {
+        Risk::Motion
+    }
+
+    fn intent(&self) -> String {
+        format!("move the axes to point {} of the coordinate table", self.point)
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Ran, Failure> {
+        go(context, &Request::of(table::Command::Extp, [Value::Number(self.point)]), self.no_wait).await
+    }
+}
+
+fn chosen(kind: &str, program: Option<i32>) -> String {
+    match program {
+        Some(number) => format!("{kind} program {number}"),
+        None => format!("the {kind} program that was chosen last"),
+    }
+}
+
+async fn choose(link: &mut Link, command: table::Command, program: Option<i32>) -> Result<(), Failure> {
+    match program {
+        Some(number) => link.order(&Request::of(command, [Value::Number(number)])).await,
+        None => Ok(()),
+    }
+}
+
+/// Starts, and unless told otherwise waits for the end.
+async fn go(context: Context<'_, Family>, start: &Request, no_wait: bool) -> Result<Ran, Failure> {
+    let link = context.link;
+    link.order(start).await?;
+    if no_wait {
+        return Ok(Ran {
+            accepted: true,
+            stopped: None,
+            step: None,
+            instruction: None,
+            position: None,
+            elapsed_ms: None,
+        });
+    }
+    wait(link, context.screen, start.command()).await
+}
+
+async fn wait(link: &mut Link, screen: &Screen, order: table::Command) -> Result<Ran, Failure> {
+    let work = Accepted { work: Work::Program, order, done: DONE, doing: "running" };
+    let End { place, elapsed_ms, is_paused } = work.wait(link, screen).await?;
+    let last = step(link).await.map_err(|failure| after(&failure))?;
+    if is_paused && !is_at_a_stop(link, last.as_ref()).await.map_err(|failure| after(&failure))? {
+        return Err(stopped(last.as_ref(), place));
+    }
+    let (step, instruction) = last.unzip();
+    Ok(Ran {
+        accepted: true,
+        stopped: Some(is_paused),
+        step,
+        instruction,
+        position: place,
+        elapsed_ms: Some(elapsed_ms),
+    })
+}
+
+const DONE: &str = "the start was accepted";
+
+/// Whether a program that stands was to stop there: a STOP is before its step, or steps are done one by one.
+async fn is_at_a_stop(link: &mut Link, last: Option<&(i32, String)>) -> Result<bool, Failure> {
+    if link.status_of(&[2]).await?.run_mode() == Some(RunMode::Step) {
+        return Ok(true);
+    }
+    let Some((step, _)) = last.filter(|(step, _)| *step > 1) else { return Ok(false) };
+    let read = Request::of(table::Command::Rstx, [Value::Number(step - 1)]);
+    let Ok(record) = link.try_read(&read).await? else { return Ok(false) };
+    Ok(record.text("text") == Some("STOP"))
+}
+
+fn stopped(last: Option<&(i32, String)>, place: Option<Place>) -> Failure {
+    let step = last.map(|(step, text)| format!(" at step {step} ({text})")).unwrap_or_default();
+    let place = place.map(|place| format!("; it stands at {}", place.in_a_line())).unwrap_or_default();
+    Failure::new(Kind::ConditionNotMet, format!("{DONE}, but somebody stopped it{step}{place}"))
+        .hint("once it is clear why: start it without a step or program to go on there, `toyo reset` to begin anew")
+}
+
+/// It has ended, and only that is known.
+fn after(failure: &Failure) -> Failure {
+    let message = format!("the run has ended, but not how: {}", failure.message);
+    Failure { message, ..failure.clone() }.hint("`toyo status` and `toyo position` tell how it stands")
+}
+
+/// What became of a start.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Ran {
+    /// The controller took the order.
+    accepted: bool,
+    /// Whether it stands at a STOP, or after a step in step mode, and can go on; null if nobody waited.
+    stopped: Option<bool>,
+    /// The current step at the end; null if nobody waited, or if the controller does not tell.
+    step: Option<i32>,
+    /// The instruction of that step.
+    instruction: Option<String>,
+    /// Where the axes stand; null if nobody waited.
+    position: Option<Place>,
+    /// From the acceptance to the end; null if nobody waited.
+    elapsed_ms: Option<u64>,
+}
+
+impl Report for Ran {
+    fn view(&self) -> View {
+        let (Some(stopped), Some(place)) = (self.stopped, self.position) else {
+            return View::fields([("run", Cell::from("started").tone(Tone::Good))]);
+        };
+        let run = if stopped {
+            Cell::from("stands at a stop").tone(Tone::Warning)
+        } else {
+            Cell::from("ended").tone(Tone::Good)
+        };
+        let step = self.step.zip(self.instruction.as_ref()).map(|(step, text)| format!("{step}: {text}"));
+        View::fields([
+            ("run", run),
+            ("step", Cell::maybe(step)),
+            ("position (mm)", place.in_a_line().into()),
+            ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, intent, objection};
+
+    /// Half a second, then 100 mm at 100 mm/s.
+    const PROGRAM: &str = "origin = true\nspeeds = { 1 = 100.0 }\npoints = { 1 = { 1 = [100.0, 0.0, 0.0, 0.0] } }\n\
+        steps = { 1 = [\"TIM TM=000.5\", \"MOVP a PT=001 CN=00 S V=01 POST\", \"OUT STN=0 PN01=.......1\", \"END\"] }\n";
+
+    #[test]
+    fn dry_runs_show_the_start_and_what_is_asked_meanwhile() {
+        assert_eq!(
+            all_blocks(&["run", "sequential", "12"]).unwrap(),
+            [
+                "@STAS SNO=2",
+                "@HSON",
+                "@SPST 0012",
+                "@STAS SNO=0",
+                "@MPST",
+                "@STAS SNO=4",
+                "@RSTX 0000",
+                "@STAS SNO=1",
+                "@HSOF"
+            ]
+        );
+        assert_eq!(blocks(&["run", "sequential", "--no-wait"]).unwrap(), ["@SPST 0000"]);
+        assert_eq!(blocks(&["run", "palletizing", "--program", "3", "--no-wait"]).unwrap(), ["@SPLN PR=03", "@PPST"]);
+        assert_eq!(blocks(&["run", "palletizing", "--no-wait"]).unwrap(), ["@PPST"]);
+        assert_eq!(blocks(&["run", "easy", "--program", "8", "--no-wait"]).unwrap(), ["@SESN PR=08", "@SESY"]);
+        assert_eq!(blocks(&["run", "point", "7", "--no-wait"]).unwrap(), ["@EXTP PT=007"]);
+        assert_eq!(intent(&["run", "easy", "--program", "8"]), "run easy program 8");
+        assert!(objection(&["run", "sequential", "5001"]).contains("1..=5000"));
+        assert!(objection(&["run", "point", "0"]).contains("1..=999"));
+    }
+
+    #[test]
+    fn a_program_is_waited_for() {
+        let (mut bench, heard) = Bench::spoilt(PROGRAM, |_, _| Fate::Pass);
+        let data = bench.data(&["run", "sequential", "1"]);
+        assert_eq!((&data["stopped"], &data["position"]["x_mm"]), (&false.into(), &100.0.into()));
+        let elapsed = data["elapsed_ms"].as_u64().unwrap();
+        assert!((1600..2000).contains(&elapsed), "{elapsed}");
+        assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@SPST")).count(), 1);
+    }
+
+    #[test]
+    fn a_program_that_is_over_at_once_has_ended() {
+        let state = "origin = true\nsteps = { 1 = [\"OUT STN=0 PN01=.......1\", \"END\"] }\n";
+        let data = Bench::spoilt(state, |_, _| Fate::Pass).0.data(&["run", "sequential"]);
+        assert_eq!(data["stopped"], false);
+    }
+
+    #[test]
+    fn a_stop_of_the_program_is_an_end_and_one_of_somebody_is_not() {
+        let state = "origin = true\nsteps = { 1 = [\"NOP\", \"STOP\", \"NOP\", \"TIM TM=010.0\", \"END\"] }\n\
+            [[event]]\nat_ms = 3000\ndo = \"stop\"\n";
+        let (mut bench, _) = Bench::spoilt(state, |_, _| Fate::Pass);
+        let data = bench.data(&["run", "sequential", "1"]);
+        assert_eq!((&data["stopped"], &data["step"]), (&true.into(), &3.into()));
+        let failure = bench.run(&["run", "sequential"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::ConditionNotMet);
+        assert!(failure.message.contains("somebody stopped it at step 4 (TIM TM=010.0)"), "{}", failure.message);
+    }
+
+    #[test]
+    fn in_step_mode_every_step_is_an_end() {
+        let (mut bench, _) = Bench::spoilt(PROGRAM, |_, _| Fate::Pass);
+        bench.data(&["mode", "step"]);
+        assert_eq!(bench.data(&["run", "sequential", "1"])["stopped"], true);
+    }
+
+    #[test]
+    fn an_error_that_comes_up_is_a_failure() {
+        let state = format!("{PROGRAM}[[event]]\nat_ms = 1000\ndo = \"estop\"\n");
+        let failure = Bench::spoilt(&state, |_, _| Fate::Pass).0.run(&["run", "sequential", "1"]).unwrap_err();
+        assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("13")));
+        assert!(
+            failure
+                .message
+                .starts_with("the start was accepted, but error 13: emergency stop came up; it stands at X "),
+            "{}",
+            failure.message
+        );
+        assert!(failure.hint.unwrap().contains("toyo error cancel"));
+    }
+
+    #[test]
+    fn what_a_run_needs_is_told_and_not_changed() {
+        let refused = |state: &str| {
+            let (mut bench, heard) = Bench::spoilt(state, |_, _| Fate::Pass);
+            let failure = bench.run(&["run", "sequential", "1"]).unwrap_err();
+            assert_eq!(failure.kind, Kind::Refused);
+            let changes = ["@MAUT", "@SVON", "@HOME", "@CERR", "@MSEQ"];
+            assert!(!heard.borrow().iter().any(|block| changes.contains(&block.as_str())), "{heard:?}");
+            failure.message
+        };
+        assert!(refused(&format!("mode = \"program\"\n{PROGRAM}")).ends_with("the controller is in program mode"));
+        assert!(refused(&format!("palletizing = true\n{PROGRAM}")).ends_with("the controller is in palletizing mode"));
+        assert!(refused(&format!("error = \"A1\"\n{PROGRAM}")).ends_with("error A1: tag undefined"));
+        assert!(refused(&format!("pendant = true\n{PROGRAM}")).contains("the teach pendant is ON"));
+    }
+
+    #[test]
+    fn a_start_whose_answer_is_lost_is_sent_once() {
+        for fate in [Fate::Lost, Fate::Unanswered, Fate::Answered("@O")] {
+            let (mut bench, heard) =
+                Bench::spoilt(PROGRAM, move |block, _| if block.starts_with("@SPST") { fate } else { Fate::Pass });
+            let failure = bench.run(&["run", "sequential", "1"]).unwrap_err();
+            assert_eq!(failure.kind, Kind::OutcomeUnknown, "{fate:?}");
+            assert!(failure.hint.unwrap().contains("`toyo status`"));
+            assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@SPST")).count(), 1);
+        }
+    }
+
+    #[test]
+    fn a_lost_contact_leaves_the_outcome_open() {
+        let lost = |block: &str, count| if block == "@STAS SNO=0" && count > 2 { Fate::Lost } else { Fate::Pass };
+        let failure = Bench::spoilt(PROGRAM, lost).0.run(&["run", "sequential", "1"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::OutcomeUnknown);
+        assert!(
+            failure.message.starts_with("the start was accepted, but its end was not seen: "),
+            "{}",
+            failure.message
+        );
+        assert!(failure.hint.unwrap().starts_with("do not send it again: keep clear; `toyo status`"));
+    }
+
+    #[test]
+    fn a_busy_controller_is_asked_again() {
+        let busy = |block: &str, count| {
+            if block == "@STAS SNO=0" && count % 2 == 0 { Fate::Answered("@NG") } else { Fate::Pass }
+        };
+        assert_eq!(Bench::spoilt(PROGRAM, busy).0.data(&["run", "sequential", "1"])["position"]["x_mm"], 100.0);
+    }
+
+    #[test]
+    fn ctrl_c_stops_what_runs() {
+        for (words, state) in
+            [(&["run", "sequential", "1"][..], PROGRAM), (&["home"], "position = [300.0, 0.0, 0.0, 0.0]\n")]
+        {
+            for ms in (200..1400).step_by(170) {
+                let (mut bench, heard) = Bench::spoilt(state, |_, _| Fate::Pass);
+                let said = bench.interrupted(words, Duration::from_millis(ms)).unwrap();
+                assert!(said.starts_with("the robot was stopped (@STOP); it stands at X "), "{words:?} {ms}: {said}");
+                assert!(heard.borrow().iter().any(|block| block == "@STOP"));
+                let here = bench.data(&["position"]);
+                bench.wait(Duration::from_secs(10));
+                assert_eq!(bench.data(&["position"]), here, "{words:?} {ms}");
+                assert_eq!(bench.data(&["status"])["executing"], false);
+            }
+        }
+    }
+
+    #[test]
+    fn a_late_ok_to_the_start_is_not_that_to_the_stop() {
+        // The start is answered after 400 ms; Ctrl-C comes before that, and the first stop is lost.
+        let (mut bench, heard) = Bench::spoilt(PROGRAM, |block, count| match block {
+            "@SPST 0001" => Fate::Late(Duration::from_millis(400)),
+            "@STOP" if count == 1 => Fate::Lost,
+            _ => Fate::Pass,
+        });
+        bench.interrupted(&["run", "sequential", "1"], Duration::from_millis(250)).unwrap();
+        assert!(heard.borrow().iter().filter(|block| *block == "@STOP").count() >= 2);
+        assert_eq!(bench.data(&["status"])["executing"], false);
+    }
+
+    #[test]
+    fn only_a_jog_is_stopped_although_it_was_to_be_left() {
+        let must_halt = |words: &[&str]| {
+            let (mut bench, _) = Bench::spoilt(PROGRAM, |_, _| Fate::Pass);
+            bench.left(words, Duration::from_millis(300))
+        };
+        assert!(!must_halt(&["run", "sequential", "1"]));
+        assert!(must_halt(&["jog", "X", "+", "low", "--for", "5s"]));
+    }
+
+    #[test]
+    fn the_host_is_given_back_while_a_program_runs() {
+        let (mut bench, heard) = Bench::spoilt(PROGRAM, |_, _| Fate::Pass);
+        assert_eq!(bench.data(&["run", "sequential", "1", "--no-wait"])["stopped"], serde_json::Value::Null);
+        bench.close().unwrap();
+        assert_eq!(heard.borrow().last().unwrap(), "@HSOF");
+    }
+}
