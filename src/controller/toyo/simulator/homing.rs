@@ -3,6 +3,7 @@
 use super::arm::{HOST, Homing};
 use super::errors::code;
 use super::motion::{AXES, Drive, Path, Place, Segment};
+use super::task::Wait;
 use super::trace::What;
 use super::watch::NEAR;
 use super::world::{Jog, World};
@@ -77,9 +78,14 @@ impl World {
         self.note(What::Origin);
     }
 
-    /// Leaves a task's return to origin off.
-    pub(super) fn forget_homing(&mut self, owner: usize) {
-        self.arm.homing.take_if(|homing| homing.owner == owner);
+    /// Leaves a return to origin off: it is done whole, or not at all. A task that goes on does it anew.
+    pub(super) fn leave_homing(&mut self, owner: usize) {
+        if self.arm.homing.take_if(|homing| homing.owner == owner).is_some() {
+            self.arm.drop_held(owner);
+            if let Some(task) = self.tasks.get_mut(owner) {
+                task.wait = Wait::Ready(self.now);
+            }
+        }
     }
 
     /// Begins a JOG of one axis: `+C`, `-L` and so on.

@@ -42,6 +42,8 @@
 //! - Palletizing goes above the place, down, runs the hand program, and up; source, then destination. An easy program
 //!   calls its START tag LOOP times, at least once, then its END tag.
 //! - After a return to origin the coordinate is that of P06. HOME puts programs back to their beginning.
+//! - JOG takes the first row of T3, and no override. M20, M22, M23, P03 to P05, P17, P18, E02, E04 and what is about cables
+//!   and fieldbuses is stored, and changes nothing.
 //! - Writing any of parameter 2 counts as a change; E22 changes the memory at once.
 //! - SY01 of the inputs: origin, start, stop, reset; of the outputs: error, positioned, origin, ready.
 //! - Power off clears outputs, counters, timers, and with incremental encoders the origin.

@@ -372,7 +372,7 @@ impl World {
                 self.tasks[other].stopped = self.tasks[other].running;
                 if other != index {
                     self.arm.brake_one(other, self.now);
-                    self.forget_homing(other);
+                    self.leave_homing(other);
                 }
             }
             TaskOrder::GoOn => {
@@ -383,7 +383,7 @@ impl World {
             TaskOrder::Cancel => {
                 self.arm.brake_one(other, self.now);
                 self.arm.drop_held(other);
-                self.forget_homing(other);
+                self.leave_homing(other);
                 if self.tasks[other].running && other != index {
                     self.note(What::Ended(other + 1));
                 }

@@ -235,9 +235,8 @@ impl World {
 
     /// Stops everything for an error.
     pub(super) fn fail(&mut self, code: u8) {
-        let place = self.arm.position(self.now);
         self.errors.raise(code, self.powered());
-        self.trace.record(self.now, place, What::Error(code));
+        self.note(What::Error(code));
         if code::takes_power(code) {
             self.arm.freeze(self.now);
             self.switches.servo.fill(false);
@@ -268,7 +267,7 @@ impl World {
         self.end_host_motion();
         if self.is_running() && !self.stopped {
             self.stopped = true;
-            self.trace.record(self.now, self.arm.position(self.now), What::Stopped);
+            self.note(What::Stopped);
         }
     }
 
@@ -294,12 +293,8 @@ impl World {
     pub(super) fn end_host_motion(&mut self) {
         self.arm.drop_held(HOST);
         self.jog = None;
-        if let Some(homing) = self.arm.homing.take() {
-            // A return to origin is done whole or not at all.
-            self.arm.drop_held(homing.owner);
-            if let Some(task) = self.tasks.get_mut(homing.owner) {
-                task.wait = Wait::Ready(self.now);
-            }
+        if let Some(homing) = self.arm.homing {
+            self.leave_homing(homing.owner);
         }
     }
 

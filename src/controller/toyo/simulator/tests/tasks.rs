@@ -85,6 +85,19 @@ fn a_move_of_another_task_goes_on_after_a_stop() {
 }
 
 #[test]
+fn a_return_to_origin_of_another_task_is_done_anew() {
+    let toml = "write = [\"WPAR E19 1100\"]\naxes = 2\nposition = [0.0, 50.0, 0.0, 0.0]\nsteps.2 = [\"HOME\", \"CNT CN02=0001\", \"END\"]";
+    let steps = ["TSTR TASK=02", "TIM TM=000.3", "TSTO TASK=02", "TIM TM=001.0", "TRSA TASK=02", "END"];
+    let mut bench = Bench::with(&steps, toml);
+    bench.ok("@SPST 0001");
+    bench.pass(1000);
+    assert_eq!(bench.page(0) & 0b11000, 0, "it was left off");
+    bench.rest();
+    assert_eq!((bench.error(), bench.counter(2), bench.page(0)), (None, 1, 0b0011_0000));
+    bench.at([0.0; 4]);
+}
+
+#[test]
 fn step_mode_does_one_step_at_a_time() {
     let mut bench = Bench::with(&["CNT CN01=0001", "CNT CN01=0002", "END"], "mode = \"step\"");
     bench.run();
