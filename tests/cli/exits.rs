@@ -157,7 +157,7 @@ fn interrupted_during_a_watch() {
 #[test]
 fn interrupted_during_a_move() {
     let desk = Desk::new();
-    let simulator = Simulator::start(None);
+    let simulator = Simulator::start("yerc", None);
     let status = |filter: &str| {
         let output =
             desk.armctl(&["-t", &simulator.target, "yerc", "status", "--jq", filter]).output().expect("it runs");
@@ -188,7 +188,7 @@ interrupted: the robot was stopped: HOLD is on; `yerc hold off` releases it
 #[test]
 fn interrupted_during_a_move_that_is_left_alone() {
     let desk = Desk::new();
-    let simulator = Simulator::start(None);
+    let simulator = Simulator::start("yerc", None);
     let line = [
         "-t",
         &simulator.target,

@@ -41,6 +41,9 @@ transcripts! {
     signals
     simulator
     status
+    toyo_io
+    toyo_registers
+    toyo_system
     usage
     variables
 }

@@ -8,9 +8,9 @@
 //! | `## TEXT` | a comment |
 //!
 //! JSON stands indented; that it came as a single line, in the envelope and as the schema says, is checked here. What
-//! differs from run to run stands as `[…]`. `udp://127.0.0.1:10040` is a simulator of the transcript's own, elsewhere
-//! in truth; its start state is `NAME.toml` beside `NAME.console`, if there is one. What is in `files/` lies in the
-//! folder.
+//! differs from run to run stands as `[…]`. `udp://127.0.0.1:10040` is a yerc simulator of the transcript's own, and
+//! `tcp://127.0.0.1:4001` a toyo one, elsewhere in truth; its start state is `NAME.toml` beside `NAME.console`, if there
+//! is one. What is in `files/` lies in the folder.
 
 use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
@@ -20,17 +20,18 @@ use tempfile::TempDir;
 
 use crate::json;
 
-/// Where transcripts find the simulator.
-const DOCUMENTED: &str = "127.0.0.1:10040";
+/// Families, and where transcripts find the simulator of each.
+const DOCUMENTED: [(&str, &str); 2] = [("yerc", "udp://127.0.0.1:10040"), ("toyo", "tcp://127.0.0.1:4001")];
 
 /// Runs the transcript of this name and compares; `SNAPSHOTS=overwrite` writes what was printed instead.
 pub fn check(name: &str) {
     let path = folder().join(format!("{name}.console"));
     let text = std::fs::read_to_string(&path).expect("the transcript is there");
     let desk = Desk::new();
-    let simulator = text.contains(DOCUMENTED).then(|| {
+    let family = DOCUMENTED.iter().find(|(_, target)| text.contains(target)).map(|(family, _)| *family);
+    let simulator = family.map(|family| {
         let state = folder().join(format!("{name}.toml"));
-        Simulator::start(state.exists().then_some(state.as_path()))
+        Simulator::start(family, state.exists().then_some(state.as_path()))
     });
     let mut printed = String::new();
     for line in text.lines() {
@@ -137,18 +138,20 @@ impl Desk {
     }
 }
 
-/// `armctl sim yerc` on ports of its own; it ends with the test.
+/// `armctl sim FAMILY` on ports of its own; it ends with the test.
 pub struct Simulator {
     process: Child,
     /// The URL to reach it by.
     pub target: String,
+    /// The one that transcripts show.
+    documented: &'static str,
 }
 
 impl Simulator {
     /// Starts one and waits until it listens.
-    pub fn start(state: Option<&Path>) -> Self {
+    pub fn start(family: &str, state: Option<&Path>) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
-        command.args(["sim", "yerc", "--bind", "127.0.0.1:0", "--jq", ".data.target"]);
+        command.args(["sim", family, "--bind", "127.0.0.1:0", "--jq", ".data.target"]);
         if let Some(state) = state {
             command.arg("--state").arg(state);
         }
@@ -157,22 +160,20 @@ impl Simulator {
         let mut target = String::new();
         let stdout = process.stdout.take().expect("stdout is a pipe");
         BufReader::new(stdout).read_line(&mut target).expect("the simulator says where it is");
-        assert!(target.starts_with("udp://"), "the simulator did not start");
-        Self { process, target: target.trim_end().to_owned() }
-    }
-
-    fn address(&self) -> &str {
-        let address = self.target.strip_prefix("udp://").unwrap_or_default();
-        address.split('?').next().unwrap_or_default()
+        let found = DOCUMENTED.iter().find(|(other, _)| *other == family);
+        let (_, documented) = found.expect("transcripts know the family");
+        assert!(target.starts_with(&documented[..6]), "the simulator did not start");
+        Self { process, target: target.trim_end().to_owned(), documented }
     }
 
     fn reached(&self, command: &str) -> String {
-        command.replace(&format!("udp://{DOCUMENTED}"), &format!("'{}'", self.target))
+        command.replace(self.documented, &format!("'{}'", self.target))
     }
 
     fn documented(&self, output: &str) -> String {
-        let output = output.replace(&self.target, &format!("udp://{DOCUMENTED}"));
-        output.replace(self.address(), DOCUMENTED)
+        let address = |url: &str| url[6..].split('?').next().unwrap_or_default().to_owned();
+        let output = output.replace(&self.target, self.documented);
+        output.replace(&address(&self.target), &address(self.documented))
     }
 }
 

@@ -1,18 +1,23 @@
 //! `toyo init`: clears memory.
 
+use std::time::Duration;
+
 use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
+use super::link::Link;
 use super::task;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
+use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::gate::Demand;
+use crate::output::Screen;
 use crate::output::view::View;
 
 /// Clears memory. There is no way back but a backup.
@@ -31,6 +36,7 @@ pub struct Init {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum What {
     /// The whole memory
+    #[value(alias = "all")]
     Everything,
     /// The sequential program of the current task
     Sequential,
@@ -81,7 +87,7 @@ impl Command for Init {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Cleared, Failure> {
-        let link = context.link;
+        let Context { link, screen, .. } = context;
         let (name, number, words) = self.what.row();
         let clear = Request::of(table::Command::Mint, [Value::Word(number)]);
         // A question would end a dry run.
@@ -92,8 +98,30 @@ impl Command for Init {
             Some(task::current(link).await?)
         };
         link.order(&clear).await?;
-        Ok(Cleared { cleared: name, about: words, task })
+        let status = settled(link, screen).await.map_err(accepted)?;
+        Ok(Cleared { cleared: name, about: words, task, needs_power_cycle: status.needs_power_cycle() })
     }
+}
+
+/// Pause between two looks.
+const LOOK_EVERY: Duration = Duration::from_millis(200);
+
+/// Waits until the controller is done with what it accepted (ambiguity A3).
+async fn settled(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
+    let _progress = screen.spinner("clearing");
+    loop {
+        let status = link.status_of(&[0]).await?;
+        if !status.executing() {
+            return Ok(status);
+        }
+        tokio::time::sleep(LOOK_EVERY).await;
+    }
+}
+
+/// A failure to see the end.
+fn accepted(failure: Failure) -> Failure {
+    let message = format!("the controller accepted it, but whether it is done is unknown: {}", failure.message);
+    Failure { kind: Kind::OutcomeUnknown, message, ..failure }
 }
 
 /// What was cleared.
@@ -105,12 +133,15 @@ pub struct Cleared {
     about: &'static str,
     /// The current task.
     task: Option<u8>,
+    /// Nothing is executed until the power was off.
+    needs_power_cycle: bool,
 }
 
 impl Report for Cleared {
     fn view(&self) -> View {
         let task = self.task.map(|task| format!(" (task {task})")).unwrap_or_default();
-        View::text(format!("cleared: {}{task}", self.about))
+        let then = if self.needs_power_cycle { "; switch the controller's power off and on" } else { "" };
+        View::text(format!("cleared: {}{task}{then}", self.about))
     }
 }
 
@@ -128,7 +159,11 @@ mod tests {
             CLEARS.iter().map(|word| word.text).collect::<Vec<_>>()
         );
         for (word, number) in typed {
-            assert_eq!(blocks(&["init", word]).unwrap(), ["@MTSK".to_owned(), format!("@MINT PR={number}")], "{word}");
+            assert_eq!(
+                blocks(&["init", word]).unwrap(),
+                ["@MTSK".to_owned(), format!("@MINT PR={number}"), "@STAS SNO=0".to_owned()],
+                "{word}"
+            );
         }
         assert!(objection(&["init"]).contains("<WHAT>"));
         assert_eq!(intent(&["init", "points"]), "clear the coordinate table of the current task, for good");

@@ -42,6 +42,10 @@ fn refused(row: &Row, why: &str, hint: &str) -> Failure {
 fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     let told = |why: &str, hint: &str| Some((why.to_owned(), hint.to_owned()));
     let moves = row.risk == Risk::Motion;
+    // Nothing in the status keeps a question from being answered.
+    if row.risk == Risk::Read {
+        return None;
+    }
     if status.pendant_on() {
         return told("the teach pendant is ON", "switch the teach pendant OFF");
     }
@@ -165,6 +169,7 @@ mod tests {
         assert_eq!(why(fine.with(3, 0x10), Command::Spst).unwrap(), "servo power is off");
         assert_eq!(why(fine.with(0, 0x20), Command::Spst).unwrap(), "the axes have not returned to the origin");
         assert!(why(fine.with(0, 0x31).with(1, 0x28), Command::Spst).unwrap().starts_with("error 28: axis 1"));
+        assert_eq!(why(fine.with(2, 0x40), Command::Mbus), None, "that is no matter to a question");
         assert!(why(fine.with(0, 0xB0), Command::Cerr).unwrap().starts_with("parameter 2 was changed"));
         assert_eq!(why(fine.with(2, 0x83), Command::Spst).unwrap(), "the controller is in easy mode");
         assert_eq!(why(fine.with(2, 0x80), Command::Extp).unwrap(), "the controller is in sequential mode");

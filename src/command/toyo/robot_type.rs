@@ -58,10 +58,16 @@ impl Command for RobotType {
         let order = Request::of(table::Command::Type, [Value::Number(axis), Value::Number(robot_type)]);
         let answer = context.link.order_for(&order).await?;
         let shown = |number: i32| fields()[1].written(&Value::Number(number));
+        let in_force = shown(answer.number("in_force").unwrap_or(0));
+        let status = context.link.status_of(&[0]).await.map_err(|failure| {
+            let message = format!("robot type {in_force} is in force now, but then: {}", failure.message);
+            Failure { message, ..failure }
+        })?;
         Ok(InForce {
             axis: u8::try_from(axis).unwrap_or(u8::MAX),
-            robot_type: shown(answer.number("in_force").unwrap_or(0)),
+            robot_type: in_force,
             wanted: shown(robot_type),
+            needs_power_cycle: status.needs_power_cycle(),
         })
     }
 }
@@ -74,15 +80,18 @@ pub struct InForce {
     robot_type: String,
     /// The one that was asked for.
     wanted: String,
+    /// Nothing is executed until the power was off.
+    needs_power_cycle: bool,
 }
 
 impl Report for InForce {
     fn view(&self) -> View {
-        View::text(format!("axis {} is of robot type {}", self.axis, self.robot_type))
+        let then = if self.needs_power_cycle { "; switch the controller's power off and on" } else { "" };
+        View::text(format!("axis {} is of robot type {}{then}", self.axis, self.robot_type))
     }
 
     fn failure(&self) -> Option<Failure> {
-        let Self { axis, robot_type, wanted } = self;
+        let Self { axis, robot_type, wanted, .. } = self;
         let message = format!("the controller does not take robot type {wanted}: axis {axis} stays at {robot_type}");
         (robot_type != wanted)
             .then(|| Failure::new(Kind::Refused, message).hint("check the number; that of the name plate counts"))
@@ -104,7 +113,12 @@ mod tests {
 
     #[test]
     fn a_type_that_is_not_taken_is_a_refusal() {
-        let of = |robot_type: &str| InForce { axis: 2, robot_type: robot_type.into(), wanted: "000123".into() };
+        let of = |robot_type: &str| InForce {
+            axis: 2,
+            robot_type: robot_type.into(),
+            wanted: "000123".into(),
+            needs_power_cycle: false,
+        };
         assert_eq!(of("000123").failure(), None);
         let failure = of("000000").failure().unwrap();
         assert_eq!(failure.kind, Kind::Refused);

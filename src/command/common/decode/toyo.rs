@@ -15,13 +15,13 @@ use crate::output::view::{Section, Table, View};
 /// Lines to explain.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Who sent a line is told by its form, or by -> or <- in front of it, as in the text of --trace. An \
-                        answer is explained by the request before it. A damaged line is explained up to the damage, \
-                        and the exit code is 5."
+    after_help = "Who sent a line is told by its form, or by -> or <- in front of it: `armctl decode toyo -` takes what \
+                        `--trace -` writes. An answer is explained by the request before it. A damaged line is \
+                        explained up to the damage, and the exit code is 5."
 )]
 pub struct Toyo {
     /// Such as '@STAS SNO=0' or '@STAS SNO=0 ST1=22 ST2=00', or - for stdin, one a line
-    #[arg(required = true, value_name = "LINE", allow_hyphen_values = true)]
+    #[arg(required = true, value_name = "LINE")]
     lines: Vec<String>,
 }
 

@@ -95,7 +95,7 @@ impl Bank {
         let screens = match port {
             Some(port) if port > last => {
                 let message = format!("station {station} has {} ports 1 to {last}, not {port}", self.word);
-                return Err(Failure::usage(message).hint("--station names another station"));
+                return Err(Failure::usage(message).hint("without --port, all are shown"));
             }
             Some(port) => self.screen(station, port)..=self.screen(station, port),
             None => 1..=self.screen(station, last),

@@ -125,25 +125,31 @@ impl Command for Set {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Outputs, Failure> {
         let station = self.station;
-        let mut outputs: Vec<Output> = Vec::new();
-        for Assignment { port, mask } in self.orders()? {
-            let values = vec![Value::Number(station.into()), Value::Number(port.into()), Value::Mask(mask)];
+        let orders = self.orders()?;
+        for (done, Assignment { port, mask }) in orders.iter().enumerate() {
+            let values = vec![Value::Number(station.into()), Value::Number((*port).into()), Value::Mask(*mask)];
             let request = Request::new(table::Command::Dout, values).map_err(|error| wrong(&error))?;
             let ordered = context.link.order(&request).await;
-            ordered.map_err(|failure| after(&outputs, failure))?;
-            outputs.push(Output::new(port, mask));
+            ordered.map_err(|failure| account(failure, &orders, done))?;
         }
-        Ok(Outputs { station, outputs })
+        Ok(Outputs { station, outputs: orders.iter().map(Output::from).collect() })
     }
 }
 
-/// The failure of an order, with what was done before it.
-fn after(done: &[Output], failure: Failure) -> Failure {
-    if done.is_empty() {
+/// The failure of an order, with what became of the others; `done` of them were accepted.
+fn account(failure: Failure, orders: &[Assignment], done: usize) -> Failure {
+    if orders.len() == 1 {
         return failure;
     }
-    let names: Vec<&str> = done.iter().map(|output| output.name.as_str()).collect();
-    let message = format!("{}; set before that: {}", failure.message, names.join(", "));
+    let names = |orders: &[Assignment]| orders.iter().map(|order| name(order.port)).collect::<Vec<_>>().join(", ");
+    let (before, rest) = orders.split_at(done);
+    let (failed, after) = rest.split_at(1.min(rest.len()));
+    let mut message = format!("{}: {}", names(failed), failure.message);
+    for (words, orders) in [("set before that", before), ("not set", after)] {
+        if !orders.is_empty() {
+            message.push_str(&format!("; {words}: {}", names(orders)));
+        }
+    }
     Failure { message, ..failure }
 }
 
@@ -186,10 +192,10 @@ struct Output {
     off: Vec<u8>,
 }
 
-impl Output {
-    fn new(port: u8, mask: Mask) -> Self {
+impl From<&Assignment> for Output {
+    fn from(Assignment { port, mask }: &Assignment) -> Self {
         let off = numbers(mask.care & !mask.bits);
-        Self { name: name(port), port, raw: mask.to_string(), on: numbers(mask.bits), off }
+        Self { name: name(*port), port: *port, raw: mask.to_string(), on: numbers(mask.bits), off }
     }
 }
 
@@ -243,11 +249,12 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_tells_what_was_done_before() {
-        let failure = Failure::local("no");
-        assert_eq!(after(&[], failure.clone()).message, "no");
-        let done = [Output::new(1, Mask { care: 3, bits: 1 })];
-        assert_eq!((&done[0].on[..], &done[0].off[..]), (&[1][..], &[2][..]));
-        assert_eq!(after(&done, failure).message, "no; set before that: PN01");
+    fn a_failure_tells_what_became_of_each_port() {
+        let orders: Vec<Assignment> = ["1=......01", "2.1=on", "3.1=on"].map(|text| text.parse().unwrap()).into();
+        let message = |orders: &[Assignment], done| account(Failure::local("no"), orders, done).message;
+        assert_eq!(message(&orders[..1], 0), "no");
+        assert_eq!(message(&orders, 1), "PN02: no; set before that: PN01; not set: PN03");
+        let output = Output::from(&orders[0]);
+        assert_eq!((output.on, output.off), (vec![1], vec![2]));
     }
 }
