@@ -1,0 +1,124 @@
+//! `armctl sim toyo` as its user has it: a process with a TCP port or a pseudo-terminal, a console, and an end.
+#![cfg(unix)]
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::path::Path;
+use std::process::{Child, ChildStderr, Command, Output, Stdio};
+
+use serde_json::Value;
+
+/// A simulator that serves.
+struct Served {
+    process: Child,
+    stderr: BufReader<ChildStderr>,
+    /// The URL to reach it by.
+    target: String,
+}
+
+impl Served {
+    /// Starts one and waits until it serves.
+    fn start(folder: &Path, words: &str) -> Self {
+        let mut process = armctl(folder, &format!("sim toyo {words} --jq .data.target"))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut target = String::new();
+        BufReader::new(process.stdout.take().unwrap()).read_line(&mut target).unwrap();
+        let stderr = BufReader::new(process.stderr.take().unwrap());
+        Self { process, stderr, target: target.trim_end().to_owned() }
+    }
+
+    /// What a command line for it prints.
+    fn data(&self, folder: &Path, words: &str) -> Value {
+        let output = armctl(folder, &format!("--json -t {} toyo {words}", self.target)).output().unwrap();
+        assert!(output.status.success(), "{words}: {}", stderr(&output));
+        let envelope: Value = serde_json::from_slice(&output.stdout).unwrap();
+        envelope["data"].clone()
+    }
+
+    /// A line on stderr.
+    fn said(&mut self) -> String {
+        let mut line = String::new();
+        self.stderr.read_line(&mut line).unwrap();
+        line
+    }
+
+    /// Asks it to end, and returns its exit code.
+    fn end(mut self, signal: &str) -> Option<i32> {
+        let pid = self.process.id().to_string();
+        assert!(Command::new("kill").args([signal, pid.as_str()]).status().unwrap().success());
+        self.process.wait().unwrap().code()
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        // It may have ended as it was asked to.
+        self.process.kill().unwrap_or_default();
+        self.process.wait().unwrap();
+    }
+}
+
+fn armctl(folder: &Path, words: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+    command.args(words.split(' ')).current_dir(folder).env_clear().env("HOME", folder).stdin(Stdio::null());
+    command
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn a_pseudo_terminal_has_its_link_as_long_as_it_is_served() {
+    let folder = tempfile::tempdir().unwrap();
+    let link = folder.path().join("port");
+    for signal in ["-INT", "-TERM"] {
+        let served = Served::start(folder.path(), "--pty --link port");
+        assert_eq!(served.target, format!("serial://{}", link.canonicalize().map(|_| link.display()).unwrap()));
+        served.data(folder.path(), "counter set 7 42");
+        assert_eq!(served.data(folder.path(), "counter get 7")["counters"][0]["count"], 42, "it keeps its state");
+        let second = armctl(folder.path(), "sim toyo --pty --link port").output().unwrap();
+        assert_eq!(second.status.code(), Some(1), "{}", stderr(&second));
+        assert_eq!(served.end(signal), Some(0));
+        assert!(!link.is_symlink(), "{signal}");
+    }
+}
+
+#[test]
+fn the_console_drives_what_no_command_can() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut served = Served::start(folder.path(), "--bind 127.0.0.1:0 --console");
+    let mut console = served.process.stdin.take().unwrap();
+    console.write_all(b"input 0/01/3 on\n").unwrap();
+    assert!(served.said().contains("servo on"), "what is now");
+    assert_eq!(served.data(folder.path(), "io in --port 1")["ports"][0]["raw"], "00000100");
+    console.write_all(b"\ninptu 0/01/3 off\n").unwrap();
+    assert!(served.said().contains("inptu"));
+    drop(console);
+    assert!(served.said().trim().is_empty() && served.said().contains("`help`"), "a hint follows");
+    // It serves on after the end of the console.
+    assert_eq!(served.data(folder.path(), "io in --port 1")["ports"][0]["on"][0], 3);
+}
+
+#[test]
+fn a_line_has_a_speed_and_an_address_has_one_simulator() {
+    let folder = tempfile::tempdir().unwrap();
+    let served = Served::start(folder.path(), "--bind 127.0.0.1:0 --baud 115200 --axes 2");
+    let address = served.target.strip_prefix("tcp://").unwrap().strip_suffix("?baud=115200").unwrap();
+    let second = armctl(folder.path(), &format!("sim toyo --bind {address}")).output().unwrap();
+    assert_eq!(second.status.code(), Some(4));
+    assert!(stderr(&second).contains(&format!("cannot listen on TCP {address}: address")), "{}", stderr(&second));
+    assert_eq!(served.data(folder.path(), "status")["homed"], false);
+}
+
+#[test]
+fn others_on_the_network_are_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut served = Served::start(folder.path(), "--bind 0.0.0.0:0");
+    assert_eq!(served.said(), "warning: others on the network can reach this simulator\n");
+    assert_eq!(served.end("-INT"), Some(0));
+}
