@@ -8,11 +8,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::Instant;
 
-use super::local::{LocalNames, Target, make_folder, own_folder};
 use super::manifest::{Entry, Found, Hash, MANIFEST, Manifest, Reason, Saved};
 use super::name::{self, Shown, TypeArg, type_word};
 use super::results::{FileResult, Results, Shape, State};
 use super::transfer;
+use crate::command::local::{LocalNames, Target, make_folder, own_folder};
 use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};

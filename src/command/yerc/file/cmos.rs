@@ -11,8 +11,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::local::{Target, folder_of, make_folder, own_folder};
 use super::transfer;
+use crate::command::local::{Target, folder_of, make_folder, own_folder};
 use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use super::compare::{Comparer, Comparison};
 use super::content::Content;
-use super::local::{Target, folder_of, local_name};
 use super::results::FileResult;
 use super::transfer;
+use crate::command::local::{Target, folder_of, local_name};
 use crate::command::yerc::link::Link;
 use crate::controller::yerc::files::FileName;
 use crate::failure::{Failure, Kind};

@@ -10,9 +10,9 @@ use similar::{Algorithm, ChangeTag, capture_diff_slices_deadline, group_diff_ops
 
 use super::compare::{Comparer, Comparison};
 use super::content::Content;
-use super::local::{local_name, own_folder};
 use super::name::{self, Shown};
 use super::transfer;
+use crate::command::local::{local_name, own_folder};
 use crate::command::yerc::Family;
 use crate::command::{Command, Context, Report};
 use crate::controller::text::Encoding;

@@ -6,10 +6,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::local::{LocalNames, Target, make_folder, own_folder};
 use super::name::{self, Shown};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
+use crate::command::local::{LocalNames, Target, make_folder, own_folder};
 use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};

@@ -9,9 +9,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
-use super::local::{Target, is_plain_file_name};
-use super::name::{exact, unhex};
-use crate::controller::text::hex;
+use super::name::exact;
+use crate::command::local::{Target, is_plain_file_name};
+use crate::controller::text::{hex, unhex};
 use crate::controller::yerc::files::FileName;
 use crate::failure::Failure;
 use crate::output::escape;

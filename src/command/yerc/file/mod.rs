@@ -9,7 +9,6 @@ mod deliver;
 mod diff;
 mod get;
 mod list;
-mod local;
 mod manifest;
 mod name;
 mod put;

@@ -4,7 +4,7 @@ use clap::ValueEnum;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::controller::text::Encoding;
+use crate::controller::text::{Encoding, unhex};
 use crate::controller::yerc::files::{FileName, FileType};
 use crate::failure::Failure;
 
@@ -114,13 +114,6 @@ pub fn exact(bytes: Vec<u8>) -> Result<FileName, Failure> {
     FileName::new(bytes).map_err(|error| {
         Failure::usage(error.to_string()).hint("jobs are named as in TESTJOB.JBI; `yerc file list` shows what there is")
     })
-}
-
-/// Bytes from pairs of hexadecimal digits of either case.
-pub fn unhex(digits: &str) -> Option<Vec<u8>> {
-    let (pairs, []) = digits.as_bytes().as_chunks::<2>() else { return None };
-    let digit = |byte: u8| char::from(byte).to_digit(16).and_then(|digit| u8::try_from(digit).ok());
-    pairs.iter().map(|[high, low]| Some(digit(*high)? << 4 | digit(*low)?)).collect()
 }
 
 #[cfg(test)]

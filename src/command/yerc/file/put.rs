@@ -6,10 +6,10 @@ use clap::Args;
 
 use super::content::{Content, JobRules};
 use super::deliver::{Delivery, Manner, deliver};
-use super::local::controller_name;
 use super::name::{self, Shown};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
+use crate::command::local::controller_name;
 use crate::command::yerc::Family;
 use crate::command::{Command, Context};
 use crate::controller::Risk;

@@ -6,11 +6,11 @@ use clap::Args;
 
 use super::content::Content;
 use super::deliver::{Delivery, Manner, deliver};
-use super::local::own_folder;
 use super::manifest::{Entry, MANIFEST, Manifest};
 use super::name::{self, Shown, TypeArg};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
+use crate::command::local::own_folder;
 use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context};

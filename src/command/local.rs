@@ -9,7 +9,7 @@ use std::path::{Component, Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use crate::controller::text::{EncodeError, Encoding};
+use crate::controller::text::{EncodeError, Encoding, unhex};
 use crate::failure::Failure;
 use crate::output::escape;
 
@@ -244,7 +244,7 @@ fn unescaped(encoding: Encoding, local: &str) -> Option<Vec<u8>> {
         rest = tail;
         if c == '%' {
             let digits = rest.get(..2)?;
-            name.extend(super::name::unhex(digits)?);
+            name.extend(unhex(digits)?);
             rest = rest.get(2..)?;
         } else {
             name.extend(encoding.encode(c.encode_utf8(&mut [0; 4])).ok()?);
