@@ -51,6 +51,8 @@ pub struct Link {
     /// What this link set in motion.
     moving: Option<Moving>,
     host: Host,
+    /// What puts things back as they were found, the last change at the end.
+    borrowed: Vec<Request>,
     started: Instant,
     trace: Trace,
     waited: Duration,
@@ -150,7 +152,8 @@ impl Family for Toyo {
     }
 
     async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
-        let given_back = link.give_back().await;
+        let put_back = link.put_back().await;
+        let given_back = put_back.and(link.give_back().await);
         let Counters { sent, received, noise, garbled, foreign, echoes } = link.line.counters();
         screen.detail(1, &format!("{sent} blocks sent, {received} received in {:.1?}", link.waited));
         let odd = [(noise, "stray characters"), (garbled, "garbled"), (foreign, "foreign or late"), (echoes, "echoes")];
@@ -183,6 +186,7 @@ impl Link {
             label: robot.label(),
             moving: None,
             host: Host::Unknown,
+            borrowed: Vec::new(),
             started: Instant::now(),
             trace,
             waited: Duration::ZERO,
@@ -405,6 +409,52 @@ impl Link {
                 Ok(())
             }
         }
+    }
+
+    /// Changes something for a while: `back` makes it as it was, in [`Link::put_back`] or when the link ends. A dry run
+    /// notes what it is about.
+    pub async fn borrow(&mut self, change: &Request, back: Request, about: &str) -> Result<(), Failure> {
+        if self.is_dry() {
+            self.note(change, Some(about));
+            self.borrowed.push(back);
+            return Ok(());
+        }
+        // Before it is sent: if the answer is lost, it may have been done.
+        self.borrowed.push(back);
+        match self.try_order(change).await? {
+            Ok(()) => Ok(()),
+            Err(Refusal(command)) => {
+                self.borrowed.pop();
+                Err(refusal::explained(self, command).await)
+            }
+        }
+    }
+
+    /// Makes everything as it was before [`Link::borrow`]. All of it is tried; the first failure counts.
+    pub async fn put_back(&mut self) -> Result<(), Failure> {
+        let mut outcome = Ok(());
+        while let Some(back) = self.borrowed.pop() {
+            let text = back.text();
+            let kept = |why: String| {
+                Failure::new(Kind::Refused, format!("what was changed for a while was not put back by {text}: {why}"))
+                    .hint("`toyo mode` and `toyo task` set it; `toyo status` tells how the controller stands")
+            };
+            if self.is_gone {
+                self.screen.note(&kept("the line is gone".to_owned()).message);
+                continue;
+            }
+            if self.is_dry() {
+                self.note(&back, Some("to put back what was found"));
+                continue;
+            }
+            let failure = match self.converse(&back, true).await {
+                Ok(Answer::Refused) => kept("@NG".to_owned()),
+                Ok(_) => continue,
+                Err(failure) => Failure { kind: failure.kind, ..kept(failure.message) },
+            };
+            outcome = outcome.and(Err(failure));
+        }
+        outcome
     }
 
     /// The host stays as it is when the link ends: somebody asked for that.
