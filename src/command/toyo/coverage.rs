@@ -31,6 +31,7 @@ const LINES: &[(&str, &[&str])] = &[
     ("run easy --program 1", &["SESN", "SESY"]),
     ("run point 1", &["EXTP"]),
     ("jog X + inch", &["JGST"]),
+    ("param set pendant-language english", &["RPAR", "WPAR"]),
     ("io in", &["MINP"]),
     ("io out", &["MOUT"]),
     ("io internal", &["MNIN"]),
@@ -56,8 +57,7 @@ const LINES: &[(&str, &[&str])] = &[
 /// Commands that have no line above yet.
 #[rustfmt::skip]
 const TO_COME: &[&str] = &[
-    "CESY", "CPPL", "CPSS", "DSTL", "DSTX", "ISTX", "RESD", "RESY", "RPAR", "RPLD", "RPLT", "RSTX", "SSTG", "WESY",
-    "WPAR", "WPLT", "WSTX",
+    "CESY", "CPPL", "CPSS", "DSTL", "DSTX", "ISTX", "RESD", "RESY", "RPLD", "RPLT", "RSTX", "SSTG", "WESY", "WPLT", "WSTX",
 ];
 
 #[test]

@@ -242,10 +242,21 @@ impl Link {
 
     /// Reads the content of a parameter, a step or a palletizing record; a refusal is a failure.
     pub async fn read_content(&mut self, request: &Request) -> Result<Record, Failure> {
-        let record = self.read(request).await?;
+        match self.try_read_content(request).await? {
+            Ok(content) => Ok(content),
+            Err(Refusal(command)) => Err(refusal::explained(self, command).await),
+        }
+    }
+
+    /// Reads the content of a parameter, a step or a palletizing record; a refusal is an answer.
+    pub async fn try_read_content(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Failure> {
+        let record = match self.try_read(request).await? {
+            Ok(record) => record,
+            Err(refusal) => return Ok(Err(refusal)),
+        };
         let content =
             request.answered(&record).map_err(|error| self.malformed(&record.written(), &error.to_string()))?;
-        content.ok_or_else(|| Failure::local(format!("{} has no content", request.text())))
+        content.map(Ok).ok_or_else(|| Failure::local(format!("{} has no content", request.text())))
     }
 
     /// Gives an order; a refusal is a failure. Takes the host before, where that is needed. A dry run notes it and goes

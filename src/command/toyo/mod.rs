@@ -8,6 +8,7 @@ mod counter;
 #[cfg(test)]
 mod coverage;
 mod error;
+mod files;
 mod home;
 mod host;
 mod info;
@@ -15,25 +16,32 @@ mod init;
 mod io;
 mod jog;
 pub mod link;
+mod mvm;
 mod numbers;
 mod offset;
 mod orders;
 mod overrides;
 mod overview;
+mod param;
+mod point;
 mod ports;
 mod position;
 mod raw;
 mod reach;
 mod refusal;
 mod robot_type;
+mod rows;
 mod run;
 pub mod simulated;
 mod status;
+mod stores;
 mod task;
+mod tasks;
 #[cfg(test)]
 mod testing;
 mod timer;
 mod trace;
+mod values;
 mod waiting;
 
 pub use link::Toyo as Family;
@@ -66,6 +74,18 @@ commands! {
         Run(Verbs<run::Run>),
         /// Move one axis, for a time or by small steps
         Jog(jog::Jog),
+        /// Parameters: read, change, save, restore
+        Param(Verbs<param::Param>),
+        /// Points of the coordinate table
+        Point(Verbs<point::Point>),
+        /// Speeds that programs name by their row
+        SpeedTable(Verbs<rows::SpeedTable>),
+        /// Acceleration times that programs name by their row
+        AccelTable(Verbs<rows::AccelTable>),
+        /// Groups of the MVM table, from which MVM moves along a matrix
+        Mvm(Verbs<mvm::Mvm>),
+        /// Torque limits that programs name by their row
+        TorqueTable(Verbs<rows::TorqueTable>),
         /// Input, output and internal ports
         Io(Verbs<io::Io>),
         /// Counters

@@ -38,6 +38,19 @@ impl Numbers {
     }
 }
 
+/// Numbers in the order given, those that follow each other as `5-9`.
+pub fn runs(numbers: &[i32]) -> String {
+    let mut runs: Vec<(i32, i32)> = Vec::new();
+    for &number in numbers {
+        match runs.last_mut() {
+            Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
+            _ => runs.push((number, number)),
+        }
+    }
+    let run = |&(first, last): &(i32, i32)| if first == last { first.to_string() } else { format!("{first}-{last}") };
+    runs.iter().map(run).collect::<Vec<_>>().join(", ")
+}
+
 /// Reads a number, which must be in the range of the field; of one with decimals, in units of the last.
 pub fn number(field: &Field, text: &str) -> Result<i32, String> {
     match field.read(text) {
@@ -71,6 +84,22 @@ pub async fn ask_all(
     Ok(answers)
 }
 
+/// Asks for what is stored, one after the other, as [`ask_all`] does; returns what is in the answers.
+pub async fn read_contents(
+    link: &mut Link,
+    screen: &Screen,
+    what: &str,
+    requests: &[Request],
+) -> Result<Vec<Record>, Failure> {
+    let answers = ask_all(link, screen, what, requests).await?;
+    let content = |(request, answer): (&Request, &Record)| {
+        let content = request.answered(answer);
+        let content = content.map_err(|error| link.malformed(&answer.written(), &error.to_string()))?;
+        Ok(content.unwrap_or_else(|| answer.clone()))
+    };
+    requests.iter().zip(&answers).map(content).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,6 +114,7 @@ mod tests {
         let parse = |text| Numbers::parse(field(), text);
         let given = [parse("7").unwrap(), parse("2-4").unwrap(), parse("3..5").unwrap()];
         assert_eq!(Numbers::of(&given, field()), [7, 2, 3, 4, 5]);
+        assert_eq!(runs(&Numbers::of(&given, field())), "7, 2-5");
         assert_eq!(Numbers::of(&[], field()).len(), 99);
         assert_eq!(parse("100").unwrap_err(), "counter: 100 is out of range (a number, 1 to 99)");
         assert_eq!(parse("5-2").unwrap_err(), "the range ends before it begins; did you mean 2-5?");

@@ -8,7 +8,7 @@ pub mod errors;
 pub mod field;
 pub mod findings;
 pub mod layout;
-mod nearest;
+pub(crate) mod nearest;
 pub mod program;
 pub mod request;
 pub mod session;

@@ -1,0 +1,125 @@
+//! `toyo mvm set`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::{Group, SHEETS, VALUES, field, reads, sheet};
+use crate::command::toyo::cells::Cells;
+use crate::command::toyo::numbers::{number, read_contents};
+use crate::command::toyo::stores::{self, Store, Work, parameter_cell};
+use crate::command::toyo::values::{assignment, word};
+use crate::command::toyo::{Family, link};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::nearest::nearest;
+use crate::failure::Failure;
+use crate::output::view::{Section, View};
+
+/// A group, and what shall change in it.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Values: origin, p1, p2, p3 (rows of the coordinate table, 0 for none); pieces1 to pieces3; counter1 to \
+                  counter3; approach (absolute or incremental), approach-z, approach-r, destination-r (mm). What is not \
+                  named stays. What the controller holds already is not written: its EEPROM takes about a million \
+                  rewrites."
+)]
+pub struct Set {
+    /// Group, 1 to 32
+    #[arg(value_name = "GROUP", value_parser = |text: &str| number(field(), text))]
+    group: i32,
+    /// Such as origin=5, pieces1=10, approach=absolute
+    #[arg(required = true, value_name = "NAME=VALUE")]
+    values: Vec<String>,
+}
+
+/// What shall become of the values of a sheet.
+type Changes = Vec<Option<Value>>;
+
+const WORK: Work = Work { doing: "storing sheets", noun: "", resumes: false };
+
+impl Command for Set {
+    type Family = Family;
+    type Report = Stored;
+    const ID: &'static str = "toyo.mvm.set";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
+        let Context { link, screen, .. } = context;
+        let changes = self.changes()?;
+        let reads = reads(self.group)?;
+        if link.is_dry() {
+            for read in &reads {
+                link.foresee(read, "the group as it is");
+            }
+            // A sheet that keeps something cannot be foreseen.
+            let whole = changes
+                .iter()
+                .enumerate()
+                .filter_map(|(index, changes)| Some((index, changes.iter().cloned().collect::<Option<Vec<Value>>>()?)));
+            let stores = whole.map(|(index, values)| self.store(index, values)).collect::<Result<Vec<_>, _>>()?;
+            stores::store_all(link, screen, WORK, &stores, 0).await?;
+            return std::future::pending().await;
+        }
+        let mut sheets = read_contents(link, screen, "reading sheets", &reads).await?;
+        let mut stores = Vec::new();
+        for (index, changes) in changes.iter().enumerate().filter(|(_, changes)| changes.iter().any(Option::is_some)) {
+            let found = &sheets[index].values()[1..];
+            let values = changes.iter().zip(found).map(|(change, found)| change.as_ref().unwrap_or(found).clone());
+            let store = self.store(index, values.collect())?;
+            sheets[index] = store.cell.wanted.clone();
+            stores.push(store);
+        }
+        let fates = stores::store_all(link, screen, WORK, &stores, 0).await?;
+        Ok(Stored { group: Group::of(&sheets), cells: stores::sum(&fates) })
+    }
+}
+
+impl Set {
+    /// A sheet of the group, with all its values.
+    fn store(&self, index: usize, values: Vec<Value>) -> Result<Store, Failure> {
+        let values = std::iter::once(Value::Number(self.group)).chain(values).collect();
+        let cell = parameter_cell(sheet(index), values).map_err(|error| link::wrong(&error))?;
+        Ok(Store { key: sheet(index).name.to_owned(), cell, is_optional: false })
+    }
+
+    /// What was typed, sheet by sheet.
+    fn changes(&self) -> Result<Vec<Changes>, Failure> {
+        let mut changes: Vec<Changes> =
+            (0..SHEETS.len()).map(|index| vec![None; sheet(index).fields().len()]).collect();
+        for text in &self.values {
+            let wrong = |error: String| Failure::usage(error).hint("`toyo mvm set --help` names the values");
+            let (name, value) = assignment(text).ok_or_else(|| wrong(format!("'{text}' is not NAME=VALUE")))?;
+            let known = VALUES.iter().find(|(known, ..)| known.eq_ignore_ascii_case(name));
+            let (name, index, place) = known.ok_or_else(|| {
+                let near = nearest(name, VALUES.iter().map(|(known, ..)| *known));
+                let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+                wrong(format!("there is no value '{}'{near}", name.escape_debug()))
+            })?;
+            let value = word(&sheet(*index).fields()[*place].named(name), value).map_err(wrong)?;
+            if changes[*index][*place].replace(value).is_some() {
+                return Err(wrong(format!("{name} is given twice")));
+            }
+        }
+        Ok(changes)
+    }
+}
+
+/// What a group holds now.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Stored {
+    #[serde(flatten)]
+    group: Group,
+    #[serde(flatten)]
+    cells: Cells,
+}
+
+impl Report for Stored {
+    fn view(&self) -> View {
+        View { sections: vec![self.group.fields()] }.and(Section::Text(self.cells.in_words()))
+    }
+}

@@ -1,0 +1,180 @@
+//! `toyo param dump`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use jiff::Timestamp;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::entry::{Key, read_keys};
+use super::singles;
+use crate::command::local::Target;
+use crate::command::toyo::Family;
+use crate::command::toyo::values::{in_a_line, shown};
+use crate::command::{Command, Context, Report};
+use crate::controller::toyo::bulk::{Setting, parameters};
+use crate::controller::toyo::field::Form;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::table::parameters::PARAMETERS;
+use crate::failure::Failure;
+use crate::output::escape;
+use crate::output::view::View;
+
+/// Saves all parameters, and the tables of speeds, times, MVM groups and torque limits, as TOML.
+///
+/// The file is whole or is not written; `param restore` reads it, and so does a person: each value has its unit. Points
+/// go to a file of their own by `point list --csv`. It takes about 20 s at 9600 baud.
+#[derive(Debug, Args)]
+pub struct Dump {
+    /// A new file; without one, the text goes to stdout
+    file: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long, requires = "file")]
+    force: bool,
+}
+
+/// The table of points, which is for point list.
+const POINTS: &str = "T1";
+
+impl Command for Dump {
+    type Family = Family;
+    type Report = Dumped;
+    const ID: &'static str = "toyo.param.dump";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Dumped, Failure> {
+        let Context { robot, link, screen, several } = context;
+        if let Some(file) = self.file.as_ref().filter(|_| several) {
+            return Err(Failure::usage(format!("{} is for the parameters of one robot", file.display()))
+                .hint("run the command once for each robot, with a file each"));
+        }
+        let target = self.file.clone().map(|file| Target::new(file, self.force)).transpose()?;
+        let keys = keys();
+        let contents = read_keys(link, screen, &keys).await?;
+        let mut kept = Kept::default();
+        for ((parameter, row), content) in keys.into_iter().zip(contents) {
+            kept.add((parameter, row), content);
+        }
+        let now = Timestamp::now();
+        let taken_at = now.round(jiff::Unit::Second).unwrap_or(now).to_string();
+        let text = format!(
+            "# Parameters of a Toyo controller, saved by armctl; `toyo param restore` writes them back.\n# {}, {taken_at}\n\n{}{}",
+            escape::line(&robot.label()),
+            parameters::write(&kept.settings),
+            kept.remarks()
+        );
+        let file = match &target {
+            Some(target) => {
+                let mut draft = target.begin()?;
+                draft.write(text.as_bytes())?;
+                draft.commit()?;
+                Some(target.path().display().to_string())
+            }
+            None => None,
+        };
+        let Kept { settings, refused, unfit } = kept;
+        let text = file.is_none().then_some(text);
+        Ok(Dumped { saved: settings.len(), refused, unfit, taken_at, file, text })
+    }
+}
+
+/// All parameters, and all rows of the tables but points.
+fn keys() -> Vec<Key> {
+    let tables = PARAMETERS.iter().filter(|parameter| parameter.row().is_some() && parameter.id != POINTS);
+    let rows = tables.flat_map(|table| {
+        let rows = match table.row().map(|field| field.form) {
+            Some(Form::Number(number)) => number.least..=number.most,
+            _ => 1..=0,
+        };
+        rows.map(move |row| (table, Some(row)))
+    });
+    singles().map(|parameter| (parameter, None)).chain(rows).collect()
+}
+
+/// What was read.
+#[derive(Debug, Default)]
+struct Kept {
+    settings: Vec<Setting>,
+    refused: Vec<String>,
+    unfit: Vec<Unfit>,
+}
+
+/// A value that the controller holds although it may not be written.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Unfit {
+    /// `M17`, or a row as `T2.5`.
+    key: String,
+    /// As it is.
+    value: String,
+    /// Why it may not be written.
+    why: String,
+}
+
+impl Kept {
+    fn add(&mut self, (parameter, row): Key, content: Option<Record>) {
+        let key = key_text((parameter, row));
+        let Some(content) = content else { return self.refused.push(key) };
+        let setting = Setting { parameter, values: content.values().to_vec() };
+        match setting.write() {
+            Ok(_) => self.settings.push(setting),
+            Err(error) => {
+                let body = parameter.body().record(setting.values[parameter.key.fields.len()..].to_vec());
+                let value = body.map_or_else(|_| content.written(), |body| in_a_line(&shown(&body)));
+                self.unfit.push(Unfit { key, value, why: error.to_string() });
+            }
+        }
+    }
+
+    /// What is not in the file, as comments.
+    fn remarks(&self) -> String {
+        let mut text = String::new();
+        if !self.refused.is_empty() {
+            text.push_str(&format!("\n# Not on this controller: {}\n", self.refused.join(", ")));
+        }
+        for Unfit { key, value, why } in &self.unfit {
+            text.push_str(&format!("\n# {key} is {value}, which may not be written: {why}\n"));
+        }
+        text
+    }
+}
+
+/// `P01`, or a row as `T2.5`.
+pub fn key_text((parameter, row): Key) -> String {
+    match row {
+        Some(row) => format!("{}.{row}", parameter.id),
+        None => parameter.id.to_owned(),
+    }
+}
+
+/// What was saved.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Dumped {
+    /// Where; null if the text went to stdout.
+    file: Option<String>,
+    /// How many parameters and rows it holds.
+    saved: usize,
+    /// Those that the controller refuses, mostly because it does not have them.
+    refused: Vec<String>,
+    /// Those that are left out, as what they hold may not be written.
+    unfit: Vec<Unfit>,
+    taken_at: String,
+    /// The TOML, if there is no file.
+    text: Option<String>,
+}
+
+impl Report for Dumped {
+    fn view(&self) -> View {
+        let Self { file, saved, refused, unfit, text, .. } = self;
+        if let Some(text) = text {
+            return View::text(text.as_str());
+        }
+        let unfit: Vec<&str> = unfit.iter().map(|unfit| &unfit.key[..]).collect();
+        let listed = |keys: String| if keys.is_empty() { "none".to_owned() } else { keys };
+        View::fields([
+            ("file", file.as_deref().unwrap_or_default().into()),
+            ("parameters and rows", (*saved).into()),
+            ("not on this controller", listed(refused.join(", ")).into()),
+            ("may not be written", listed(unfit.join(", ")).into()),
+        ])
+    }
+}

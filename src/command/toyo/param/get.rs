@@ -1,0 +1,60 @@
+//! `toyo param get`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::entry::{self, Entry};
+use super::parse_name;
+use crate::command::toyo::Family;
+use crate::command::{Command, Context, Report};
+use crate::controller::toyo::table::Parameter;
+use crate::failure::{Failure, Kind};
+use crate::output::view::View;
+
+/// Which parameters.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Names and ids stand in the manual's order in `param list`. In JSON, each value has its unit, and \
+                        what is on the line beside what it means."
+)]
+pub struct Get {
+    /// Names or ids in any case: soft-limit-plus, P01
+    #[arg(required = true, value_name = "NAME", value_parser = parse_name)]
+    names: Vec<&'static Parameter>,
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Parameters;
+    const ID: &'static str = "toyo.param.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Parameters, Failure> {
+        let parameters = entry::read_all(context.link, context.screen, &self.names).await?;
+        Ok(Parameters { parameters })
+    }
+}
+
+/// What was asked for.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Parameters {
+    parameters: Vec<Entry>,
+}
+
+impl Report for Parameters {
+    fn view(&self) -> View {
+        View::table(Entry::table(&self.parameters))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let refused: Vec<&str> = self.parameters.iter().filter(|entry| entry.refused).map(|entry| entry.id).collect();
+        if refused.is_empty() {
+            return None;
+        }
+        Some(
+            Failure::new(Kind::Refused, format!("the controller refused {} (@NG)", refused.join(", ")))
+                .code("NG")
+                .hint("some parameters are only on some controllers; `only_on` in the JSON names them"),
+        )
+    }
+}

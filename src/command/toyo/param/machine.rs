@@ -1,0 +1,77 @@
+//! What is special about parameters 2 (E) and 3 (U).
+
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::table::{Group, Parameter};
+use crate::failure::Failure;
+use crate::gate::Demand;
+
+/// Most steps that the tasks have together (TO 2-4, E22).
+const MOST_STEPS: i32 = 5000;
+/// From more steps than that on, there is no room for easy programs.
+const BESIDE_EASY: i32 = 2000;
+
+/// What a change of a parameter demands.
+pub fn demand(parameter: &Parameter) -> Demand {
+    if parameter.group() != Group::Machine {
+        return Demand::Usual;
+    }
+    flag(&format!("{} ({})", parameter.id, parameter.name), is_task_steps(parameter))
+}
+
+/// What a change of machine parameters demands; `has_steps` if the steps of tasks are among them.
+pub fn flag(what: &str, has_steps: bool) -> Demand {
+    let lost = if has_steps {
+        "; steps beyond a smaller number are lost, and so are easy programs if there are more than 2000 steps"
+    } else {
+        ""
+    };
+    Demand::Flag(format!(
+        "after a change of {what} only communication works until the controller's power was switched off and on{lost}"
+    ))
+}
+
+/// What to say before a parameter is changed from what the controller holds.
+pub fn warnings(parameter: &Parameter, found: Option<&Record>, values: &[Value]) -> Vec<String> {
+    if parameter.group() == Group::Special {
+        return vec![format!("warning: {} ({}) is not for normal use", parameter.id, parameter.name)];
+    }
+    match found {
+        Some(found) if is_task_steps(parameter) => lost_steps(found, values),
+        _ => Vec::new(),
+    }
+}
+
+/// Whether values that are to be written go together.
+pub fn check(parameter: &Parameter, values: &[Value]) -> Result<(), Failure> {
+    let steps = total(values);
+    if is_task_steps(parameter) && steps > MOST_STEPS {
+        return Err(Failure::usage(format!("the tasks would have {steps} steps together; there are {MOST_STEPS}"))
+            .hint("take steps from another task: `toyo param get task-steps`"));
+    }
+    Ok(())
+}
+
+/// Whether a parameter says how many steps the program of each task has.
+pub fn is_task_steps(parameter: &Parameter) -> bool {
+    parameter.id == "E22"
+}
+
+fn lost_steps(found: &Record, values: &[Value]) -> Vec<String> {
+    let mut lost = Vec::new();
+    for (task, (before, after)) in found.values().iter().zip(values).enumerate() {
+        if let (Value::Number(before), Value::Number(after)) = (before, after)
+            && after < before
+        {
+            lost.push(format!("warning: steps {} to {before} of task {} become NOP", after + 1, task + 1));
+        }
+    }
+    if total(values) > BESIDE_EASY && total(found.values()) <= BESIDE_EASY {
+        lost.push(format!("warning: with more than {BESIDE_EASY} steps, all easy programs are erased"));
+    }
+    lost
+}
+
+fn total(values: &[Value]) -> i32 {
+    values.iter().map(|value| if let Value::Number(steps) = value { *steps } else { 0 }).sum()
+}

@@ -1,0 +1,205 @@
+//! `toyo param restore`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::dump::key_text;
+use super::machine;
+use super::set::POWER_CYCLE;
+use crate::command::toyo::cells::{Cell, Cells};
+use crate::command::toyo::stores::{self, Fate, Store, Work};
+use crate::command::toyo::{Family, files, link};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::bulk::{Setting, parameters};
+use crate::controller::toyo::table::Group;
+use crate::failure::{Failure, Kind};
+use crate::gate::Demand;
+use crate::output::view::View;
+
+/// Writes back what a file of parameters holds.
+///
+/// The whole file is checked before anything is sent. Each value is compared first: what the controller holds already is
+/// not written, as its EEPROM takes about a million rewrites. Machine parameters (E) and special ones (U) are left out
+/// unless --group names them.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Machine parameters come last, and need --yes: after a change only communication works until the \
+                        controller's power was switched off and on."
+)]
+pub struct Restore {
+    /// What `param dump` wrote, or somebody with an editor; - is stdin
+    file: PathBuf,
+    /// Only these, such as machine,special [default: mode,axis,table]
+    #[arg(long, value_name = "GROUP", value_delimiter = ',')]
+    group: Vec<Part>,
+    /// Go on with a file that was cut off; with a key, such as P05 or T2.7, those before it are not even compared
+    #[arg(long, value_name = "KEY", num_args = 0..=1, require_equals = true)]
+    resume: Option<Option<String>>,
+}
+
+/// A part of a file of parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Part {
+    /// M: how the controller is used
+    Mode,
+    /// P, parameter 1: axes
+    Axis,
+    /// T: tables
+    Table,
+    /// U, parameter 3: not for normal use
+    Special,
+    /// E, parameter 2: the machine
+    Machine,
+}
+
+/// In the order of writing: after a machine parameter, a controller may take nothing else.
+const ORDER: [(Part, Group); 5] = [
+    (Part::Mode, Group::Mode),
+    (Part::Axis, Group::Axis),
+    (Part::Table, Group::Table),
+    (Part::Special, Group::Special),
+    (Part::Machine, Group::Machine),
+];
+/// What is written if nobody says which.
+const USUAL: [Part; 3] = [Part::Mode, Part::Axis, Part::Table];
+
+const WORK: Work = Work { doing: "storing parameters", noun: "", resumes: true };
+
+impl Command for Restore {
+    type Family = Family;
+    type Report = Restored;
+    const ID: &'static str = "toyo.param.restore";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    fn demand(&self) -> Demand {
+        if self.group.contains(&Part::Machine) { machine::flag("machine parameters", true) } else { Demand::Usual }
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
+        let Context { link, screen, .. } = context;
+        let name = files::shown(&self.file);
+        let read = parameters::read(&files::read(&self.file)?);
+        let settings = read.map_err(|errors| files::faulty(&name, &errors))?;
+        let (chosen, left): (Vec<Setting>, Vec<Setting>) =
+            settings.into_iter().map(|(setting, _)| setting).partition(|setting| self.place(setting).is_some());
+        let mut chosen = chosen;
+        chosen.sort_by_key(|setting| self.place(setting));
+        if chosen.is_empty() {
+            return Err(Failure::usage(format!("{name} holds no parameters of the groups wanted"))
+                .hint("--group chooses the groups: mode, axis, table, special, machine"));
+        }
+        let stores = chosen.iter().map(store).collect::<Result<Vec<Store>, Failure>>()?;
+        let left_out = stores::left_out(&stores, self.resume.as_ref().and_then(|key| key.as_deref()))?;
+        let other_groups = left.iter().map(|setting| key_text((setting.parameter, setting.row()))).collect::<Vec<_>>();
+        if self.group.is_empty() && !other_groups.is_empty() {
+            screen.note(&format!("left out: {} (--group machine,special writes them)", other_groups.join(", ")));
+        }
+        for setting in &chosen[left_out..] {
+            let found = if machine::is_task_steps(setting.parameter) && !link.is_dry() {
+                Some(link.read_content(&setting.read().map_err(|error| link::wrong(&error))?).await?)
+            } else {
+                None
+            };
+            for warning in machine::warnings(setting.parameter, found.as_ref(), &setting.values) {
+                screen.note(&warning);
+            }
+        }
+        let fates = stores::store_all(link, screen, WORK, &stores, left_out).await?;
+        let is_machine = |setting: &Setting| setting.parameter.group() == Group::Machine;
+        let needs_power_cycle =
+            chosen.iter().zip(&fates).any(|(setting, fate)| is_machine(setting) && *fate == Fate::Written);
+        let parameters = chosen.iter().zip(&stores).zip(&fates).map(|((setting, store), fate)| Row {
+            key: store.key.clone(),
+            name: setting.parameter.name,
+            result: *fate,
+        });
+        Ok(Restored {
+            file: name,
+            parameters: parameters.collect(),
+            other_groups,
+            cells: stores::sum(&fates),
+            needs_power_cycle,
+        })
+    }
+}
+
+impl Restore {
+    /// Where in the order of writing a setting stands; `None` if its group is not wanted.
+    fn place(&self, setting: &Setting) -> Option<usize> {
+        let wanted = if self.group.is_empty() { &USUAL[..] } else { &self.group };
+        ORDER.iter().position(|(part, group)| *group == setting.parameter.group() && wanted.contains(part))
+    }
+}
+
+fn store(setting: &Setting) -> Result<Store, Failure> {
+    let wrong = |error| link::wrong(&error);
+    let cell = Cell {
+        read: setting.read().map_err(wrong)?,
+        write: setting.write().map_err(wrong)?,
+        wanted: setting.parameter.layout.record(setting.values.clone()).map_err(wrong)?,
+    };
+    let is_optional = !setting.parameter.only_on.is_empty();
+    Ok(Store { key: key_text((setting.parameter, setting.row())), cell, is_optional })
+}
+
+/// What became of the parameters of a file.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Restored {
+    file: String,
+    parameters: Vec<Row>,
+    /// In the file, but of groups that were not wanted.
+    other_groups: Vec<String>,
+    #[serde(flatten)]
+    cells: Cells,
+    /// Nothing but communication works until the controller's power was switched off and on.
+    needs_power_cycle: bool,
+}
+
+/// A parameter or a row, and what became of it.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Row {
+    /// `P01`, or a row as `T2.5`.
+    key: String,
+    /// `soft-limit-plus`.
+    name: &'static str,
+    result: Fate,
+}
+
+impl Restored {
+    fn of(&self, fate: Fate) -> Vec<&str> {
+        self.parameters.iter().filter(|row| row.result == fate).map(|row| &row.key[..]).collect()
+    }
+}
+
+impl Report for Restored {
+    fn view(&self) -> View {
+        let mut lines = Vec::new();
+        for (words, fate) in [("written", Fate::Written), ("not on this controller", Fate::NotThere)] {
+            let keys = self.of(fate);
+            if !keys.is_empty() {
+                lines.push(format!("{words}: {}", keys.join(", ")));
+            }
+        }
+        lines.push(self.cells.in_words());
+        if self.needs_power_cycle {
+            lines.push(POWER_CYCLE.to_owned());
+        }
+        View::text(lines.join("\n"))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let absent = self.of(Fate::NotThere);
+        if absent.is_empty() {
+            return None;
+        }
+        let message = format!("the controller does not have {}; the rest is stored", absent.join(", "));
+        Some(Failure::new(Kind::Refused, message).code("NG").hint("the file is of another controller"))
+    }
+}

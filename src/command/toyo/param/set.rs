@@ -1,0 +1,116 @@
+//! `toyo param set`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::{machine, parse_name};
+use crate::command::toyo::cells::Cells;
+use crate::command::toyo::stores::parameter_cell;
+use crate::command::toyo::values::{self, Changes, Shown};
+use crate::command::toyo::{Family, link};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table::{Group, Parameter};
+use crate::failure::Failure;
+use crate::gate::Demand;
+use crate::output::view::View;
+
+/// A parameter, and what it shall hold.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "All values in their order, or some by name, which keeps the others: `param set soft-limit-plus 100 \
+                  200 0 0`, `param set P01 ax2=150`. Words as on the line or by what they mean: `param set \
+                  pendant-language english`. A bit of a port is STATION/PORT/BIT: 0/01/3.\n\n\
+                  What the controller holds already is not written: its EEPROM takes about a million rewrites. \
+                  Machine parameters (E) need --yes: after a change only communication works until the power was \
+                  switched off and on."
+)]
+pub struct Set {
+    /// Name or id in any case: soft-limit-plus, P01
+    #[arg(value_name = "NAME", value_parser = parse_name)]
+    parameter: &'static Parameter,
+    /// All values in their order, or some as name=value
+    #[arg(required = true, value_name = "VALUE", allow_negative_numbers = true)]
+    values: Vec<String>,
+}
+
+impl Command for Set {
+    type Family = Family;
+    type Report = Written;
+    const ID: &'static str = "toyo.param.set";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    fn demand(&self) -> Demand {
+        machine::demand(self.parameter)
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Written, Failure> {
+        let Context { link, screen, .. } = context;
+        let parameter = self.parameter;
+        let changes = Changes::read(parameter.name, &parameter.body(), &self.values)?;
+        if let Some(values) = changes.whole() {
+            machine::check(parameter, &values)?;
+        }
+        // What is there matters where some of it is kept, or lost.
+        let read = Request::read_parameter(parameter, None).map_err(|error| link::wrong(&error))?;
+        let (found, values) = match changes.whole() {
+            Some(values) if !machine::is_task_steps(parameter) || link.is_dry() => (None, values),
+            _ => {
+                let found = link.read_content(&read).await?;
+                let values = changes.applied(found.values());
+                (Some(found), values)
+            }
+        };
+        machine::check(parameter, &values)?;
+        let cell = parameter_cell(parameter, values).map_err(|error| {
+            Failure::usage(format!("{}: {error}", parameter.name))
+                .hint("the controller holds a value that may not be written; give all values")
+        })?;
+        for warning in machine::warnings(parameter, found.as_ref(), cell.wanted.values()) {
+            screen.note(&warning);
+        }
+        let mut cells = Cells::default();
+        link.store(screen, &cell, &mut cells).await?;
+        Ok(Written {
+            id: parameter.id,
+            name: parameter.name,
+            values: values::shown(&cell.wanted),
+            cells,
+            needs_power_cycle: parameter.group() == Group::Machine && cells.cells_written > 0,
+        })
+    }
+}
+
+/// What a parameter holds now.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Written {
+    /// `P01`.
+    id: &'static str,
+    /// `soft-limit-plus`.
+    name: &'static str,
+    values: Vec<Shown>,
+    #[serde(flatten)]
+    cells: Cells,
+    /// Nothing but communication works until the controller's power was switched off and on.
+    needs_power_cycle: bool,
+}
+
+/// What to do after a machine parameter was changed.
+pub const POWER_CYCLE: &str = "switch the controller's power off and on: until then only communication works";
+
+impl Report for Written {
+    fn view(&self) -> View {
+        let values = values::in_a_line(&self.values);
+        let mut text = format!("{} {}: {values}\n{}", self.id, self.name, self.cells.in_words());
+        if self.needs_power_cycle {
+            text.push('\n');
+            text.push_str(POWER_CYCLE);
+        }
+        View::text(text)
+    }
+}

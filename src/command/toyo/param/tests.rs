@@ -1,0 +1,163 @@
+//! What `toyo param` sends, and what it refuses.
+
+use crate::command::toyo::testing::{Bench, all_blocks, blocks, objection};
+use crate::gate::Demand;
+
+use super::machine;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::table::Parameter;
+
+#[test]
+fn parameters_are_read_by_name_or_id() {
+    assert_eq!(
+        blocks(&["param", "get", "Soft-Limit-Plus", "p01", "M09"]).unwrap(),
+        ["@RPAR P01", "@RPAR P01", "@RPAR M09"]
+    );
+    assert_eq!(blocks(&["param", "list", "--group", "special"]).unwrap(), ["@RPAR U03", "@RPAR U21", "@RPAR U22"]);
+    assert_eq!(blocks(&["param", "list"]).unwrap().len(), 74);
+    let error = objection(&["param", "get", "soft-limit-pluss"]);
+    assert!(error.contains("there is no such parameter; did you mean soft-limit-plus?"), "{error}");
+    let error = objection(&["param", "get", "t4.s1"]);
+    assert!(error.contains("mvm-points is a table; `toyo mvm get` reads its rows"), "{error}");
+}
+
+#[test]
+fn a_write_compares_first_and_takes_the_host() {
+    assert_eq!(
+        all_blocks(&["param", "set", "soft-limit-minus", "-100", "-200.5", "0", "0"]).unwrap(),
+        ["@RPAR P02", "@STAS SNO=2", "@HSON", "@WPAR P02 AX1=-0100.00 AX2=-0200.50 AX3=+0000.00 AX4=+0000.00", "@HSOF"]
+    );
+    assert_eq!(blocks(&["param", "set", "m09", "english"]).unwrap(), ["@RPAR M09", "@WPAR M09 E"]);
+    assert_eq!(blocks(&["param", "set", "m01", "0/01/3"]).unwrap(), ["@RPAR M01", "@WPAR M01 0/01/3"]);
+    assert_eq!(blocks(&["param", "set", "p13", "<=", "-5", "0/01/3"]).unwrap()[1], "@WPAR P13 AX1<=-0005.00 0/01/3");
+    // What the others hold is not known in a dry run.
+    assert_eq!(blocks(&["param", "set", "p01", "ax2=150"]).unwrap(), ["@RPAR P01"]);
+}
+
+#[test]
+fn what_cannot_be_meant_is_not_sent() {
+    let failed = |words: &[&str]| {
+        let failure = blocks(words).unwrap_err();
+        assert_eq!(failure.kind.exit(), 2, "{words:?}");
+        failure.message
+    };
+    assert_eq!(
+        failed(&["param", "set", "p01", "8000.01", "0", "0", "0"]),
+        "soft-limit-plus: ax1: 8000.01 is out of range (a number, -8000.00 to 8000.00 mm)"
+    );
+    assert_eq!(
+        failed(&["param", "set", "e22", "4000", "1000", "1", "0"]),
+        "the tasks would have 5001 steps together; there are 5000"
+    );
+    assert_eq!(
+        failed(&["param", "set", "e05", "left", "0", "0", "0"]),
+        "motor-direction: ax1: 'left' is not 0 (clockwise) or 1 (counterclockwise)"
+    );
+}
+
+#[test]
+fn machine_parameters_demand_a_flag() {
+    let demand = |id| machine::demand(Parameter::named(id).unwrap());
+    assert_eq!((demand("P01"), demand("U03")), (Demand::Usual, Demand::Usual));
+    let Demand::Flag(why) = demand("E06") else { panic!("a flag is demanded") };
+    assert_eq!(
+        why,
+        "after a change of E06 (max-speed) only communication works until the controller's power was switched off and \
+         on"
+    );
+    assert!(matches!(demand("E22"), Demand::Flag(why) if why.contains("easy programs")));
+}
+
+#[test]
+fn what_is_lost_is_said_before() {
+    let steps = Parameter::named("E22").unwrap();
+    let record = |numbers: [i32; 4]| steps.layout.record(numbers.map(Value::Number).into()).unwrap();
+    let told = |found, wanted| machine::warnings(steps, Some(&record(found)), record(wanted).values());
+    assert_eq!(
+        told([1000, 0, 0, 0], [500, 1501, 0, 0]),
+        [
+            "warning: steps 501 to 1000 of task 1 become NOP",
+            "warning: with more than 2000 steps, all easy programs are erased"
+        ]
+    );
+    assert!(told([3000, 0, 0, 0], [4000, 0, 0, 0]).is_empty());
+    assert_eq!(
+        machine::warnings(Parameter::named("U03").unwrap(), None, &[]),
+        ["warning: U03 (resolver-cable-length) is not for normal use"]
+    );
+}
+
+/// A file in a folder of its own.
+fn written(text: &str) -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("parameters.toml").to_str().unwrap().to_owned();
+    std::fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+#[test]
+fn a_restore_leaves_the_machine_for_the_end_or_out() {
+    let text = "[parameters]\nE06 = { ax1 = 1000, ax2 = 1000, ax3 = 1000, ax4 = 1000 }\nP16 = { compare = '<=', \
+                place = 1.0, station = 0, port = 1, bit = 0 }\nM09 = 'E'\n[speed-table]\n3 = 99.5\n";
+    let (_folder, path) = written(text);
+    let usual = [
+        "@RPAR M09",
+        "@WPAR M09 E",
+        "@RPAR P16",
+        "@WPAR P16 AX4<=+0001.00 0/01/0",
+        "@RPAR T2 V03",
+        "@WPAR T2 V03=0099.5",
+    ];
+    assert_eq!(blocks(&["param", "restore", &path]).unwrap(), usual);
+    let machine = ["@RPAR E06", "@WPAR E06 AX1=1000 AX2=1000 AX3=1000 AX4=1000"];
+    assert_eq!(blocks(&["param", "restore", &path, "--group", "machine"]).unwrap(), machine);
+    assert_eq!(
+        blocks(&["param", "restore", &path, "--group", "machine,table"]).unwrap(),
+        [&usual[4..], &machine[..]].concat()
+    );
+    assert_eq!(blocks(&["param", "restore", &path, "--resume=T2.3"]).unwrap(), usual[4..]);
+    assert_eq!(blocks(&["param", "restore", &path, "--resume=E06"]).unwrap_err().kind.exit(), 2);
+    assert_eq!(blocks(&["param", "restore", &path, "--group", "special"]).unwrap_err().kind.exit(), 2);
+    std::fs::write(&path, "[parameters]\nM09 = 'X'\n").unwrap();
+    let failure = blocks(&["param", "restore", &path]).unwrap_err();
+    assert!(failure.message.ends_with(":2:7: language: 'X' is not J or E"), "{failure}");
+}
+
+#[test]
+fn a_dump_is_restored_to_the_last_value() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (first, second) = (path("first.toml"), path("second.toml"));
+    let mut bench = Bench::new("sim:");
+    bench.data(&["param", "set", "soft-limit-minus", "-100", "-50.5", "0", "0"]);
+    bench.data(&["param", "set", "m14", "0/01/1", "0/02/2", "0/03/3", "0/04/4"]);
+    bench.data(&["speed-table", "set", "20", "123.4"]);
+    bench.data(&["mvm", "set", "32", "approach=incremental", "approach-z=-1.5"]);
+    let dumped = bench.data(&["param", "dump", &first]);
+    let counted = dumped["saved"].as_u64().unwrap()
+        + dumped["refused"].as_array().unwrap().len() as u64
+        + dumped["unfit"].as_array().unwrap().len() as u64;
+    assert_eq!(counted, 74 + 20 + 20 + 5 * 32 + 8);
+    assert_eq!(bench.run(&["param", "dump", &first]).unwrap_err().kind.exit(), 1);
+    let mut other = Bench::new("sim:");
+    let restored = other.data(&["param", "restore", &first]);
+    assert_eq!((&restored["cells_written"], &restored["needs_power_cycle"]), (&4.into(), &false.into()), "{restored}");
+    other.data(&["param", "dump", &second, "--force"]);
+    let lines = |path: &str| {
+        let text = std::fs::read_to_string(path).unwrap();
+        text.lines().skip(2).map(ToOwned::to_owned).collect::<Vec<String>>()
+    };
+    assert_eq!(lines(&first), lines(&second));
+    assert_eq!(other.data(&["param", "restore", &first])["cells_written"], 0);
+}
+
+#[test]
+fn a_machine_parameter_asks_for_the_power_to_be_cycled() {
+    let mut bench = Bench::new("sim:");
+    let before = bench.data(&["param", "get", "e06"])["parameters"][0]["values"][0]["value"].clone();
+    let same = bench.data(&["param", "set", "e06", &format!("ax1={before}")]);
+    assert_eq!((&same["needs_power_cycle"], &same["cells_unchanged"]), (&false.into(), &1.into()));
+    let changed = bench.data(&["param", "set", "e06", "ax1=777"]);
+    assert_eq!((&changed["needs_power_cycle"], &changed["values"][0]["value"]), (&true.into(), &777.into()));
+    assert_eq!(bench.data(&["status"])["needs_power_cycle"], true);
+}

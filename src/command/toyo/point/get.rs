@@ -1,0 +1,56 @@
+//! `toyo point get`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::{OTHER_TASK, Row, field, parse_points, read_all};
+use crate::command::toyo::numbers::Numbers;
+use crate::command::toyo::{Family, tasks};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// Which points.
+#[derive(Debug, Args)]
+#[command(after_help = OTHER_TASK)]
+pub struct Get {
+    /// Rows of the coordinate table, 1 to 999: 1-10,20
+    #[arg(required = true, value_name = "POINT", value_delimiter = ',', value_parser = parse_points)]
+    points: Vec<Numbers>,
+    /// Task, 1 to 4, instead of the current one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    task: Option<u8>,
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Points;
+    const ID: &'static str = "toyo.point.get";
+
+    fn risk(&self) -> Risk {
+        if self.task.is_some() { Risk::Write } else { Risk::Read }
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Points, Failure> {
+        let Context { link, screen, .. } = context;
+        let task = tasks::choose(link, self.task).await?;
+        let points = read_all(link, screen, &Numbers::of(&self.points, field())).await?;
+        Ok(Points { task, points: points.iter().map(Row::of).collect() })
+    }
+}
+
+/// Points of a task.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Points {
+    /// Whose points these are.
+    pub task: u8,
+    pub points: Vec<Row>,
+}
+
+impl Report for Points {
+    fn view(&self) -> View {
+        View::table(Row::table(&self.points))
+    }
+}

@@ -1,0 +1,110 @@
+//! `toyo point list`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::get::Points;
+use super::{OTHER_TASK, Row, alone, read_all};
+use crate::command::local::Target;
+use crate::command::toyo::{Family, tasks};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::bulk::{Setting, points};
+use crate::controller::toyo::layout::Record;
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// Reads the points of a task: 999 take a minute and a half at 9600 baud.
+///
+/// The file of --csv is whole or is not written; `point set --from` reads it. `-o csv` prints the same.
+#[derive(Debug, Args)]
+#[command(after_help = OTHER_TASK)]
+pub struct List {
+    /// First point
+    #[arg(long, value_name = "POINT", default_value_t = 1, value_parser = clap::value_parser!(i32).range(1..=999))]
+    from: i32,
+    /// Last point
+    #[arg(long, value_name = "POINT", default_value_t = 999, value_parser = clap::value_parser!(i32).range(1..=999))]
+    to: i32,
+    /// Task, 1 to 4, instead of the current one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    task: Option<u8>,
+    /// Write them into this new file
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long, requires = "csv")]
+    force: bool,
+}
+
+impl Command for List {
+    type Family = Family;
+    type Report = Listing;
+    const ID: &'static str = "toyo.point.list";
+
+    fn risk(&self) -> Risk {
+        if self.task.is_some() { Risk::Write } else { Risk::Read }
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Listing, Failure> {
+        let Context { link, screen, several, .. } = context;
+        if self.to < self.from {
+            return Err(Failure::usage(format!("--to {} is before --from {}", self.to, self.from)));
+        }
+        let target = match &self.csv {
+            Some(file) => {
+                alone(file, several)?;
+                Some(Target::new(file.clone(), self.force)?)
+            }
+            None => None,
+        };
+        let task = tasks::choose(link, self.task).await?;
+        let records = read_all(link, screen, &(self.from..=self.to).collect::<Vec<_>>()).await?;
+        let Some(target) = target else {
+            return Ok(Listing::Points(Points { task, points: records.iter().map(Row::of).collect() }));
+        };
+        let setting = |record: &Record| Setting { parameter: points::table(), values: record.values().to_vec() };
+        let settings: Vec<Setting> = records.iter().map(setting).collect();
+        let mut draft = target.begin()?;
+        draft.write(points::write(&settings, AXES).as_bytes())?;
+        draft.commit()?;
+        Ok(Listing::File(Saved { task, file: target.path().display().to_string(), saved: settings.len() }))
+    }
+}
+
+/// Every point has four coordinates, whatever axes there are.
+pub const AXES: usize = 4;
+
+/// Points, or where they went.
+#[derive(Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Listing {
+    /// Without a file.
+    Points(Points),
+    /// With `--csv`.
+    File(Saved),
+}
+
+/// Where points went.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Saved {
+    /// Whose points these are.
+    task: u8,
+    file: String,
+    /// How many it holds.
+    saved: usize,
+}
+
+impl Report for Listing {
+    fn view(&self) -> View {
+        match self {
+            Self::Points(points) => points.view(),
+            Self::File(Saved { task, file, saved }) => {
+                View::fields([("file", file.as_str().into()), ("task", (*task).into()), ("points", (*saved).into())])
+            }
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! `toyo point`: rows of the coordinate table, which each task has for itself.
+
+mod get;
+mod list;
+mod set;
+
+use std::path::Path;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::link::{self, Link};
+use super::numbers::{self, Numbers};
+use super::position::Place;
+use crate::command::commands;
+use crate::controller::toyo::bulk::points::table;
+use crate::controller::toyo::field::Field;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::request::Request;
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::{Cell, Table};
+
+commands! {
+    /// What can be done with points.
+    pub enum Point of Family {
+        /// Read points: 1-10,20
+        Get(get::Get),
+        /// Write a point, or all that a CSV file has
+        Set(set::Set),
+        /// Read all points, also into a CSV file
+        List(list::List),
+    }
+}
+
+/// What every command of a task's points says in its help.
+const OTHER_TASK: &str = "Each task has its own points. With --task, that task is made the current one for a while, which \
+                          is a change: a read-only robot refuses it.";
+
+/// A point of the coordinate table.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Row {
+    /// Its row, from 1.
+    point: i32,
+    #[serde(flatten)]
+    place: Place,
+}
+
+impl Row {
+    fn of(record: &Record) -> Self {
+        Self { point: record.number(field().name).unwrap_or_default(), place: Place::of(record) }
+    }
+
+    /// With the columns of a CSV file that `point set --from` reads.
+    fn table(rows: &[Self]) -> Table {
+        let mut table = Table::new(&["point", "x (mm)", "y (mm)", "z (mm)", "r (mm)"], "no points");
+        let mm = |value: f64| Cell::number(format!("{value:.2}"));
+        for Self { point, place: Place { x_mm, y_mm, z_mm, r_mm } } in rows {
+            table.row([(*point).into(), mm(*x_mm), mm(*y_mm), mm(*z_mm), mm(*r_mm)]);
+        }
+        table
+    }
+}
+
+/// The number of a point, 1 to 999.
+fn field() -> &'static Field {
+    &table().key.fields[0]
+}
+
+/// Points on a command line.
+fn parse_points(text: &str) -> Result<Numbers, String> {
+    Numbers::parse(field(), text)
+}
+
+/// Reads points of the current task, one after the other. A dry run notes them and ends.
+async fn read_all(link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Vec<Record>, Failure> {
+    let requests: Result<Vec<Request>, _> =
+        points.iter().map(|point| Request::read_parameter(table(), Some(*point))).collect();
+    let requests = requests.map_err(|error| link::wrong(&error))?;
+    numbers::read_contents(link, screen, "reading points", &requests).await
+}
+
+/// A file is for one robot: another one would replace it, or be given its points.
+fn alone(file: &Path, several: bool) -> Result<(), Failure> {
+    if several {
+        return Err(Failure::usage(format!("{} is for the points of one robot", file.display()))
+            .hint("run the command once for each robot, with a file each"));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,154 @@
+//! `toyo point set`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::list::AXES;
+use super::{OTHER_TASK, Row, alone, field};
+use crate::command::toyo::cells::Cells;
+use crate::command::toyo::link::Link;
+use crate::command::toyo::numbers::{number, runs};
+use crate::command::toyo::stores::{self, Fate, Store, Work, parameter_cell};
+use crate::command::toyo::values::Changes;
+use crate::command::toyo::{Family, files, link, tasks};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::bulk::points;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::request::Request;
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// Writes a point, or all that a CSV file has.
+///
+/// The whole file is checked before anything is sent: `point,x_mm,y_mm,z_mm,r_mm`, a point a line, as `point list --csv`
+/// writes it. What the controller holds already is not written: its EEPROM takes about a million rewrites.
+#[derive(Debug, Args)]
+#[command(after_help = OTHER_TASK)]
+pub struct Set {
+    /// Row of the coordinate table, 1 to 999
+    #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "POINT", value_parser = |text: &str| number(field(), text))]
+    point: Option<i32>,
+    /// X, Y, Z and R in mm, or some of them by name, such as z=12.5, which keeps the others
+    #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "MM", allow_negative_numbers = true)]
+    values: Vec<String>,
+    /// Write the points of this CSV file; - is stdin
+    #[arg(long, value_name = "FILE")]
+    from: Option<PathBuf>,
+    /// Task, 1 to 4, instead of the current one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    task: Option<u8>,
+    /// Go on with a file that was cut off; with a point, those before it are not even compared
+    #[arg(long, value_name = "POINT", num_args = 0..=1, require_equals = true, conflicts_with = "point")]
+    resume: Option<Option<i32>>,
+}
+
+const WORK: Work = Work { doing: "storing points", noun: "point ", resumes: true };
+
+impl Command for Set {
+    type Family = Family;
+    type Report = Stored;
+    const ID: &'static str = "toyo.point.set";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
+        let Context { link, screen, several, .. } = context;
+        if let Some(file) = &self.from {
+            alone(file, several)?;
+            let name = files::shown(file);
+            let read = points::read(&files::read(file)?, AXES);
+            let points = read.map_err(|errors| files::faulty(&name, &errors))?;
+            let points = points.into_iter().map(|(point, _)| store(point.values));
+            let points = points.collect::<Result<Vec<Store>, Failure>>()?;
+            if points.is_empty() {
+                return Err(Failure::usage(format!("{name} has no points")));
+            }
+            let key = self.resume.flatten().map(|point| point.to_string());
+            let left_out = stores::left_out(&points, key.as_deref())?;
+            let task = tasks::choose(link, self.task).await?;
+            let fates = stores::store_all(link, screen, WORK, &points, left_out).await?;
+            return Ok(Stored::new(task, &points, &fates));
+        }
+        let point = self.point.unwrap_or_default();
+        let changes = Changes::read(&format!("point {point}"), &points::table().body(), &self.values)?;
+        let task = tasks::choose(link, self.task).await?;
+        let points = [store(whole(link, point, &changes).await?)?];
+        let fates = stores::store_all(link, screen, WORK, &points, 0).await?;
+        Ok(Stored::new(task, &points, &fates))
+    }
+}
+
+/// All fields of a point, with those that are kept from the controller.
+async fn whole(link: &mut Link, point: i32, changes: &Changes) -> Result<Vec<Value>, Failure> {
+    let coordinates = match changes.whole() {
+        Some(coordinates) => coordinates,
+        None => {
+            let read = Request::read_parameter(points::table(), Some(point)).map_err(|error| link::wrong(&error))?;
+            let found = link.read_content(&read).await?;
+            changes.applied(&found.values()[1..])
+        }
+    };
+    Ok(std::iter::once(Value::Number(point)).chain(coordinates).collect())
+}
+
+fn store(values: Vec<Value>) -> Result<Store, Failure> {
+    let cell = parameter_cell(points::table(), values).map_err(|error| link::wrong(&error))?;
+    let row = cell.wanted.number(field().name).unwrap_or_default();
+    Ok(Store { key: row.to_string(), cell, is_optional: false })
+}
+
+/// What became of points.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Stored {
+    /// Whose points these are.
+    task: u8,
+    points: Vec<StoredRow>,
+    #[serde(flatten)]
+    cells: Cells,
+}
+
+/// A point, and what became of it.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct StoredRow {
+    #[serde(flatten)]
+    row: Row,
+    result: Fate,
+}
+
+impl Stored {
+    fn new(task: u8, stores: &[Store], fates: &[Fate]) -> Self {
+        let rows =
+            stores.iter().zip(fates).map(|(store, fate)| StoredRow { row: Row::of(&store.cell.wanted), result: *fate });
+        Self { task, points: rows.collect(), cells: stores::sum(fates) }
+    }
+}
+
+impl Report for Stored {
+    fn view(&self) -> View {
+        let of = |fate: Fate| {
+            let rows = self.points.iter().filter(move |row| row.result == fate);
+            runs(&rows.map(|row| row.row.point).collect::<Vec<_>>())
+        };
+        let mut lines = Vec::new();
+        if let [StoredRow { row, .. }] = &self.points[..] {
+            lines.push(format!("point {} of task {}: {} (mm)", row.point, self.task, row.place.in_a_line()));
+        } else {
+            for (words, fate) in
+                [("written", Fate::Written), ("unchanged", Fate::Unchanged), ("left out", Fate::LeftOut)]
+            {
+                let rows = of(fate);
+                if !rows.is_empty() {
+                    lines.push(format!("points of task {} {words}: {rows}", self.task));
+                }
+            }
+        }
+        lines.push(self.cells.in_words());
+        View::text(lines.join("\n"))
+    }
+}

@@ -1,0 +1,32 @@
+//! The task that commands are about, which may be another one for a while.
+
+use super::link::Link;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table::Command;
+use crate::failure::Failure;
+
+/// Asks which task is the current one, and makes another one that for a while; says which is the current one then.
+pub async fn choose(link: &mut Link, wanted: Option<u8>) -> Result<u8, Failure> {
+    if link.is_dry() {
+        link.foresee(&Request::bare(Command::Mtsk), "which task is the current one");
+        if let Some(task) = wanted {
+            link.foresee(&choice(task), "if another one is; the one that was found comes back at the end");
+        }
+        return Ok(wanted.unwrap_or(1));
+    }
+    let answer = link.read(&Request::bare(Command::Mtsk)).await?;
+    let found = answer.number("task").and_then(|task| u8::try_from(task).ok()).filter(|task| (1..=4).contains(task));
+    let found = found.ok_or_else(|| link.malformed(&answer.written(), "there are tasks 1 to 4"))?;
+    match wanted.filter(|wanted| *wanted != found) {
+        Some(wanted) => {
+            link.borrow(&choice(wanted), choice(found), "").await?;
+            Ok(wanted)
+        }
+        None => Ok(found),
+    }
+}
+
+fn choice(task: u8) -> Request {
+    Request::of(Command::Ctsk, [Value::Number(task.into())])
+}

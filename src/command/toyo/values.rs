@@ -1,0 +1,327 @@
+//! Values as an operator types and reads them: `ax1=100.00`, `english`, `0/01/3`.
+//!
+//! What a controller stores is a row of fields. An operator sees places: a field, or the three of a port's bit as one.
+
+use std::ops::Range;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value as Json;
+
+use crate::controller::toyo::field::{Field, Form, Number, Value};
+use crate::controller::toyo::layout::{Layout, Record};
+use crate::controller::toyo::nearest::nearest;
+use crate::failure::Failure;
+
+/// A place for one value that an operator types.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// `ax1`, `low`, `port`.
+    pub name: String,
+    /// Which fields of the layout it stands for.
+    fields: Range<usize>,
+}
+
+/// A value with all that is known of it.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Shown {
+    /// As typed before `=`: `ax1`.
+    pub name: String,
+    /// A number in its unit, a word as on the line, or a bit of a port as `station/port/bit`.
+    pub value: Json,
+    /// Unit of the number: `mm`, `mm/s`, `s`; null where it has none.
+    pub unit: Option<&'static str>,
+    /// The word in words; null where it says what it means.
+    pub meaning: Option<&'static str>,
+    /// As on the line.
+    pub raw: String,
+    /// As typed.
+    #[serde(skip)]
+    pub text: String,
+}
+
+/// What shall become of fields: a value, or what is there already.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Changes(Vec<Option<Value>>);
+
+/// The places of a layout.
+pub fn places(layout: &Layout) -> Vec<Place> {
+    let mut places = Vec::new();
+    let mut words = layout.text.split("{}");
+    let mut index = 0;
+    while let Some(field) = layout.fields.get(index) {
+        let before = words.next().unwrap_or_default();
+        let is_bit = before != "/" && field.name.starts_with("station") && layout.text.contains("{}/{}/{}");
+        if is_bit {
+            // `PN1={}/{}/{}` has a name of its own.
+            let label = before.rsplit(' ').next().and_then(|label| label.strip_suffix('='));
+            let label = label.map_or("port".to_owned(), str::to_lowercase);
+            places.push(Place { name: label, fields: index..index + 3 });
+            words.next();
+            words.next();
+            index += 3;
+        } else {
+            places.push(Place { name: field.name.to_owned(), fields: index..index + 1 });
+            index += 1;
+        }
+    }
+    places
+}
+
+/// The values of a record, place by place.
+pub fn shown(record: &Record) -> Vec<Shown> {
+    let layout = record.layout();
+    places(&layout).into_iter().map(|place| place.shown(&layout, record.values())).collect()
+}
+
+/// Values in a line as they may be typed, with their units behind: `low=10.0 high=100.0 mm/s`.
+pub fn in_a_line(shown: &[Shown]) -> String {
+    let common =
+        shown.first().and_then(|first| first.unit).filter(|unit| shown.iter().all(|one| one.unit == Some(unit)));
+    let mut texts = Vec::with_capacity(shown.len() + 1);
+    for one in shown {
+        let name = if shown.len() > 1 { format!("{}=", one.name) } else { String::new() };
+        let meaning = one.meaning.map_or(String::new(), |meaning| format!(" ({meaning})"));
+        let unit = one.unit.filter(|_| common.is_none()).map_or(String::new(), |unit| format!(" {unit}"));
+        texts.push(format!("{name}{}{meaning}{unit}", one.text));
+    }
+    texts.extend(common.map(ToOwned::to_owned));
+    texts.join(" ")
+}
+
+impl Place {
+    fn shown(&self, layout: &Layout, values: &[Value]) -> Shown {
+        let pairs: Vec<(&Field, &Value)> =
+            self.fields.clone().filter_map(|index| Some((layout.fields.get(index)?, values.get(index)?))).collect();
+        let raw = pairs.iter().map(|(field, value)| field.written(value)).collect::<Vec<_>>().join("/");
+        let (value, text, unit, meaning) = match pairs[..] {
+            [(Field { form: Form::Number(form), unit, .. }, Value::Number(units))] => {
+                (number(*form, *units), form.plain(*units), *unit, None)
+            }
+            [(Field { form: Form::Word(words), .. }, Value::Word(text))] => {
+                let about = words.iter().find(|word| word.text == *text).map(|word| word.about);
+                (Json::from(text.trim_end()), text.trim_end().to_owned(), "", about.filter(|about| about != text))
+            }
+            _ => (Json::from(raw.as_str()), raw.clone(), "", None),
+        };
+        let unit = Some(unit).filter(|unit| !unit.is_empty());
+        Shown { name: self.name.clone(), value, unit, meaning, raw, text }
+    }
+
+    /// What somebody typed here.
+    fn read(&self, layout: &Layout, text: &str) -> Result<Vec<Value>, String> {
+        let fields = &layout.fields[self.fields.clone()];
+        if let [field] = fields {
+            return Ok(vec![word(field, text)?]);
+        }
+        let parts: Vec<&str> = text.split('/').collect();
+        if parts.len() != fields.len() {
+            return Err(format!("{}: '{text}' is not STATION/PORT/BIT, such as 0/01/3", self.name));
+        }
+        fields.iter().zip(parts).map(|(field, part)| word(field, part)).collect()
+    }
+
+    fn put(&self, changes: &mut [Option<Value>], values: Vec<Value>) {
+        for (index, value) in self.fields.clone().zip(values) {
+            changes[index] = Some(value);
+        }
+    }
+
+    /// What may be typed here.
+    fn expected(&self, layout: &Layout) -> String {
+        match &layout.fields[self.fields.clone()] {
+            [field] => expected(field),
+            _ => "STATION/PORT/BIT, such as 0/01/3".to_owned(),
+        }
+    }
+}
+
+impl Changes {
+    /// What was typed for a layout: all values in their order, or some of them as `name=value`. `what` names it.
+    pub fn read(what: &str, layout: &Layout, typed: &[String]) -> Result<Self, Failure> {
+        let places = places(layout);
+        let wrong = |error: String| Failure::usage(format!("{what}: {error}")).hint(usage(&places, layout));
+        let named: Vec<Option<(&str, &str)>> = typed.iter().map(|text| assignment(text)).collect();
+        let mut changes = vec![None; layout.fields.len()];
+        if named.iter().all(Option::is_none) {
+            if typed.len() != places.len() {
+                let values = if places.len() == 1 { "value" } else { "values" };
+                let message = format!("{} {values} needed, {} given", places.len(), typed.len());
+                return Err(wrong(message));
+            }
+            for (place, text) in places.iter().zip(typed) {
+                place.put(&mut changes, place.read(layout, text).map_err(wrong)?);
+            }
+            return Ok(Self(changes));
+        }
+        for (assignment, text) in named.into_iter().zip(typed) {
+            let (name, value) = assignment.ok_or_else(|| wrong(format!("'{text}' has no name, and others have")))?;
+            let place = places.iter().find(|place| place.name.eq_ignore_ascii_case(name)).ok_or_else(|| {
+                let near = nearest(name, places.iter().map(|place| &place.name[..]));
+                let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+                wrong(format!("there is no value '{}'{near}", name.escape_debug()))
+            })?;
+            if changes[place.fields.start].is_some() {
+                return Err(wrong(format!("{} is given twice", place.name)));
+            }
+            place.put(&mut changes, place.read(layout, value).map_err(wrong)?);
+        }
+        Ok(Self(changes))
+    }
+
+    /// All values, if none is left as it is.
+    pub fn whole(&self) -> Option<Vec<Value>> {
+        self.0.iter().cloned().collect()
+    }
+
+    /// All values, with those that are left from what is there.
+    pub fn applied(&self, found: &[Value]) -> Vec<Value> {
+        self.0.iter().zip(found).map(|(change, found)| change.as_ref().unwrap_or(found).clone()).collect()
+    }
+}
+
+/// A number in its unit; a float only where there are decimals.
+fn number(form: Number, units: i32) -> Json {
+    if form.scale() > 1 { Json::from(f64::from(units) / f64::from(form.scale())) } else { Json::from(units) }
+}
+
+/// `ax1=5`: name and value. What begins with something else, such as `<=`, is a value.
+pub fn assignment(text: &str) -> Option<(&str, &str)> {
+    let (name, value) = text.split_once('=')?;
+    name.starts_with(|c: char| c.is_ascii_alphabetic()).then_some((name, value))
+}
+
+/// A value of a field; a word also by its meaning, and in any case.
+pub fn word(field: &Field, text: &str) -> Result<Value, String> {
+    let Form::Word(words) = field.form else { return field.read(text).map_err(|error| error.to_string()) };
+    let same = |other: &str| slug(other) == slug(text);
+    let found = words.iter().find(|word| word.text.trim_end() == text.trim_end());
+    let found = found.or_else(|| words.iter().find(|word| same(word.text) || same(word.about)));
+    match found {
+        Some(word) => Ok(Value::Word(word.text)),
+        None => Err(format!("{}: '{}' is not {}", field.name, text.escape_debug(), expected(field))),
+    }
+}
+
+/// What may be typed for a field: `J (japanese) or E (english)`.
+fn expected(field: &Field) -> String {
+    let Form::Word(words) = field.form else { return field.expected() };
+    let texts: Vec<String> = words
+        .iter()
+        .map(|word| match word.text.trim_end() {
+            text if text == word.about => text.to_owned(),
+            text => format!("{text} ({})", slug(word.about)),
+        })
+        .collect();
+    match texts.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+        _ => texts.concat(),
+    }
+}
+
+/// A meaning as one word: `external-point`.
+fn slug(text: &str) -> String {
+    text.trim().to_lowercase().split([' ', '-', '_']).filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
+}
+
+/// How values are typed.
+fn usage(places: &[Place], layout: &Layout) -> String {
+    match places {
+        [place] => format!("its value is {}", place.expected(layout)),
+        [first, ..] => {
+            let names: Vec<&str> = places.iter().map(|place| &place.name[..]).collect();
+            format!(
+                "give all values in the order {}, or some by name, such as {}=…, which keeps the others",
+                names.join(" "),
+                first.name
+            )
+        }
+        [] => "it has no values".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::toyo::table::Parameter;
+
+    fn body(name: &str) -> Layout {
+        Parameter::named(name).unwrap().body()
+    }
+
+    fn names(name: &str) -> Vec<String> {
+        places(&body(name)).into_iter().map(|place| place.name).collect()
+    }
+
+    fn read(name: &str, typed: &[&str]) -> Result<String, String> {
+        let typed: Vec<String> = typed.iter().map(|text| (*text).to_owned()).collect();
+        let changes = Changes::read(name, &body(name), &typed).map_err(|failure| failure.message)?;
+        Ok(body(name).emit(&changes.whole().unwrap()).unwrap())
+    }
+
+    #[test]
+    fn every_parameter_has_places_for_all_its_fields() {
+        for row in &crate::controller::toyo::table::parameters::PARAMETERS {
+            let (layout, places) = (row.body(), places(&row.body()));
+            let covered: Vec<usize> = places.iter().flat_map(|place| place.fields.clone()).collect();
+            assert_eq!(covered, (0..layout.fields.len()).collect::<Vec<_>>(), "{}", row.id);
+        }
+        assert_eq!(names("M01"), ["port"]);
+        assert_eq!(names("M12"), ["pn1", "pn2", "pn3", "pn4"]);
+        assert_eq!(names("M14"), ["ta1", "ta2", "ta3", "ta4"]);
+        assert_eq!(names("P08"), ["low", "high"]);
+        assert_eq!(names("P13"), ["compare", "place", "port"]);
+        let whole = places(&Parameter::named("M14").unwrap().layout);
+        assert_eq!(whole.iter().map(|place| &place.name[..]).collect::<Vec<_>>(), ["ta1", "ta2", "ta3", "ta4"]);
+        assert_eq!(names("M17"), ["station", "rate", "options"]);
+    }
+
+    #[test]
+    fn values_are_typed_in_order_or_by_name() {
+        assert_eq!(read("P08", &["10", "100.5"]).unwrap(), "L=010.0 H=100.5");
+        assert_eq!(read("P08", &["HIGH=100.5", "low=1"]).unwrap(), "L=001.0 H=100.5");
+        assert_eq!(read("M01", &["0/01/3"]).unwrap(), "0/01/3");
+        assert_eq!(read("M01", &["0/1/3"]).unwrap(), "0/01/3");
+        assert_eq!(read("P13", &["<=", "-5", "1/12/0"]).unwrap(), "AX1<=-0005.00 1/12/0");
+        assert_eq!(read("P13", &["compare=at-least", "place=5", "port=0/01/1"]).unwrap(), "AX1>=+0005.00 0/01/1");
+        assert_eq!(read("M09", &["english"]).unwrap(), "E");
+        assert_eq!(read("M09", &["j"]).unwrap(), "J");
+        assert_eq!(read("M10", &["External Point"]).unwrap(), "P");
+    }
+
+    #[test]
+    fn what_is_left_out_stays() {
+        let layout = body("P08");
+        let changes = Changes::read("P08", &layout, &["high=9".to_owned()]).unwrap();
+        assert_eq!(changes.whole(), None);
+        assert_eq!(changes.applied(&[Value::Number(1), Value::Number(2)]), [Value::Number(1), Value::Number(90)]);
+    }
+
+    #[test]
+    fn mistakes_name_range_unit_and_choice() {
+        let error = |name, typed: &[&str]| read(name, typed).unwrap_err();
+        assert_eq!(error("P01", &["1", "2"]), "P01: 4 values needed, 2 given");
+        assert_eq!(
+            error("P01", &["9000", "0", "0", "0"]),
+            "P01: ax1: 9000.00 is out of range (a number, -8000.00 to 8000.00 mm)"
+        );
+        assert_eq!(error("P08", &["lwo=1"]), "P08: there is no value 'lwo'; did you mean low?");
+        assert_eq!(error("P08", &["low=1", "low=2"]), "P08: low is given twice");
+        assert_eq!(error("P08", &["low=1", "2"]), "P08: '2' has no name, and others have");
+        assert_eq!(error("M09", &["french"]), "M09: language: 'french' is not J (japanese) or E (english)");
+        assert_eq!(error("M01", &["3"]), "M01: port: '3' is not STATION/PORT/BIT, such as 0/01/3");
+        assert!(error("M01", &["9/01/3"]).starts_with("M01: station: 9 is out of range"));
+    }
+
+    #[test]
+    fn values_are_shown_as_they_are_typed() {
+        let line = |name: &str, text: &str| in_a_line(&shown(&body(name).parse(text).unwrap()));
+        assert_eq!(line("P08", "L=010.0 H=100.0"), "low=10.0 high=100.0 mm/s");
+        assert_eq!(line("M01", "0/01/3"), "0/01/3");
+        assert_eq!(line("M09", "E"), "E (English)");
+        assert_eq!(line("M16", "10"), "10 m");
+        assert_eq!(line("P13", "AX1<=-0100.00 0/01/3"), "compare=<= (at most) place=-100.00 mm port=0/01/3");
+        let [low, _] = &shown(&body("P08").parse("L=010.5 H=100.0").unwrap())[..] else { panic!() };
+        assert_eq!((&low.value, low.unit, &low.raw[..]), (&Json::from(10.5), Some("mm/s"), "010.5"));
+    }
+}
