@@ -1,7 +1,9 @@
-//! Points and parameters as files: text to values and back, without files.
+//! Points, parameters and palletizing programs as files: text to values and back, without files.
 
+pub mod pallets;
 pub mod parameters;
 pub mod points;
+mod reading;
 
 use super::field::{Field, Form, Value};
 use super::layout::Misfit;

@@ -16,16 +16,14 @@
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
-use std::ops::Range;
 
-use toml_edit::{Document, Item, TableLike, Value as Toml};
+use toml_edit::{Item, TableLike};
 
-use super::{Placed, Setting, plain};
-use crate::controller::toyo::field::{Field, Form, Value};
-use crate::controller::toyo::findings::{Finding, Findings, Place};
-use crate::controller::toyo::nearest::nearest;
+use super::reading::{self, Reading};
+use super::{Placed, Setting};
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::findings::{Finding, Place};
 use crate::controller::toyo::program::MOST_STEPS;
-use crate::controller::toyo::source;
 use crate::controller::toyo::table::Parameter;
 use crate::controller::toyo::table::parameters::PARAMETERS;
 
@@ -58,70 +56,35 @@ pub fn write(settings: &[Setting]) -> String {
 
 /// Settings in a TOML file: each once, known, whole, and in range.
 pub fn read(bytes: &[u8]) -> Result<Vec<Placed>, Vec<Finding>> {
-    let mut findings = Findings::default();
-    let text = source::lines(bytes, &mut findings).join("\n");
-    if findings.errors() > 0 {
-        return Err(findings.into_errors());
-    }
-    let mut reader = Reader { places: Places::new(&text), findings, settings: Vec::new(), seen: HashMap::new() };
-    match Document::parse(&text[..]) {
-        Ok(document) => reader.document(document.as_table()),
-        Err(error) => {
-            let at = reader.places.place(&error.span().unwrap_or_default());
-            reader.findings.error(at, error.message().replace('\n', ", "), None);
-        }
-    }
-    if reader.findings.errors() == 0 { Ok(reader.settings) } else { Err(reader.findings.into_errors()) }
+    reading::read(bytes, |reading, document| {
+        let mut reader = Reader { reading, settings: Vec::new(), seen: HashMap::new() };
+        reader.document(document);
+        reader.settings
+    })
 }
 
 /// What a parameter is, for people.
 fn comment(parameter: &Parameter) -> String {
-    let mut comment = format!("# {}: {}", parameter.id, parameter.about);
-    let mut told: Vec<String> = Vec::new();
-    for field in parameter.fields() {
-        let about = match field.form {
-            Form::Word(words) if words.iter().any(|word| word.text != word.about) => {
-                let words = words.iter().map(|word| format!("{} {}", word.text.trim_end(), word.about));
-                format!("; {}", words.collect::<Vec<_>>().join(", "))
-            }
-            _ if !field.unit.is_empty() => format!(", {}", field.unit),
-            _ => continue,
-        };
-        if !told.contains(&about) {
-            comment.push_str(&about);
-            told.push(about);
-        }
-    }
-    comment
+    format!("# {}: {}{}", parameter.id, parameter.about, reading::comment(parameter.fields()))
 }
 
-/// The values of a setting: one alone, several as a table.
+/// The values of a setting.
 fn toml(setting: &Setting) -> String {
-    let keys = setting.parameter.key.fields.len();
-    let pairs = setting.parameter.fields().iter().zip(setting.values.iter().skip(keys));
-    let mut values = pairs.map(|(field, value)| match value {
-        Value::Number(_) => (field.name, plain(field, value)),
-        _ => (field.name, format!("\"{}\"", plain(field, value))),
-    });
-    if setting.parameter.fields().len() == 1 {
-        return values.next().map(|(_, value)| value).unwrap_or_default();
-    }
-    let pairs: Vec<String> = values.map(|(name, value)| format!("{name} = {value}")).collect();
-    format!("{{ {} }}", pairs.join(", "))
+    let Setting { parameter, values } = setting;
+    reading::toml(parameter.fields(), values.get(parameter.key.fields.len()..).unwrap_or_default())
 }
 
-struct Reader<'t> {
-    places: Places<'t>,
-    findings: Findings,
+struct Reader<'r, 't> {
+    reading: &'r mut Reading<'t>,
     settings: Vec<Placed>,
     /// Line of each parameter and row.
     seen: HashMap<(&'static str, Option<i32>), usize>,
 }
 
-impl Reader<'_> {
+impl Reader<'_, '_> {
     fn document(&mut self, document: &toml_edit::Table) {
         for (name, item) in document {
-            let at = self.key(document, name);
+            let at = self.reading.key(document, name);
             match (Parameter::named(name), item.as_table_like()) {
                 (None, Some(table)) if name == SINGLE => self.parameters(table),
                 // An id with a point in it is a table in a table.
@@ -129,18 +92,22 @@ impl Reader<'_> {
                 (Some(parameter), Some(table)) if parameter.row().is_some() => self.rows(parameter, table),
                 (Some(parameter), None) if parameter.row().is_some() => {
                     let message = format!("{name} is a table");
-                    self.findings.error(at, message, Some(format!("write [{}], and a row a line", parameter.name)));
+                    self.reading.findings.error(
+                        at,
+                        message,
+                        Some(format!("write [{}], and a row a line", parameter.name)),
+                    );
                 }
                 (Some(_), _) => {
                     let hint = format!("write [{SINGLE}] before it");
-                    self.findings.error(at, format!("{name} belongs into [{SINGLE}]"), Some(hint));
+                    self.reading.findings.error(at, format!("{name} belongs into [{SINGLE}]"), Some(hint));
                 }
                 (None, None) if name == SINGLE => {
-                    self.findings.error(at, format!("{name} is a table"), Some(format!("write [{SINGLE}]")));
+                    self.reading.findings.error(at, format!("{name} is a table"), Some(format!("write [{SINGLE}]")));
                 }
                 (None, _) => {
                     let tables = PARAMETERS.iter().filter(|row| row.row().is_some()).map(|row| row.name);
-                    self.unknown(at, "table", name, tables.chain([SINGLE]));
+                    self.reading.unknown(at, "table", name, tables.chain([SINGLE]));
                 }
             }
         }
@@ -149,28 +116,28 @@ impl Reader<'_> {
 
     fn sheets(&mut self, tables: &dyn TableLike) {
         for (name, item) in tables.iter() {
-            let at = self.key(tables, name);
+            let at = self.reading.key(tables, name);
             match (Parameter::named(&format!("T4.{name}")), item.as_table_like()) {
                 (Some(parameter), Some(table)) => self.rows(parameter, table),
                 (Some(parameter), None) => {
                     let hint = format!("write [{}], and a row a line", parameter.name);
-                    self.findings.error(at, format!("T4.{name} is a table"), Some(hint));
+                    self.reading.findings.error(at, format!("T4.{name} is a table"), Some(hint));
                 }
-                (None, _) => self.unknown(at, "table", name, ["S1", "S2", "S3", "S4", "S5"]),
+                (None, _) => self.reading.unknown(at, "table", name, ["S1", "S2", "S3", "S4", "S5"]),
             }
         }
     }
 
     fn parameters(&mut self, table: &dyn TableLike) {
         for (name, item) in table.iter() {
-            let at = self.key(table, name);
+            let at = self.reading.key(table, name);
             match Parameter::named(name) {
                 Some(parameter) if parameter.row().is_some() => {
                     let hint = format!("write [{}], and a row a line", parameter.name);
-                    self.findings.error(at, format!("{name} is a table of its own"), Some(hint));
+                    self.reading.findings.error(at, format!("{name} is a table of its own"), Some(hint));
                 }
                 Some(parameter) => self.setting(parameter, None, item, at),
-                None => self.unknown(at, "parameter", name, PARAMETERS.iter().map(|row| row.name)),
+                None => self.reading.unknown(at, "parameter", name, PARAMETERS.iter().map(|row| row.name)),
             }
         }
     }
@@ -178,74 +145,27 @@ impl Reader<'_> {
     fn rows(&mut self, parameter: &'static Parameter, table: &dyn TableLike) {
         let Some(field) = parameter.row() else { return };
         for (name, item) in table.iter() {
-            let at = self.key(table, name);
+            let at = self.reading.key(table, name);
             match field.read(name) {
                 Ok(row) => self.setting(parameter, Some(row), item, at),
-                Err(error) => self.findings.error(at, error.to_string(), None),
+                Err(error) => self.reading.findings.error(at, error.to_string(), None),
             }
         }
     }
 
     /// One parameter, or one row.
     fn setting(&mut self, parameter: &'static Parameter, row: Option<Value>, item: &Item, at: Place) {
-        let before = self.findings.errors();
+        let before = self.reading.findings.errors();
         let mut values: Vec<Value> = row.into_iter().collect();
-        match (parameter.fields(), item, item.as_table_like()) {
-            ([field], Item::Value(value), _) => values.extend(self.value(field, value)),
-            ([field], ..) => {
-                let message = format!("{} is one value: {}", parameter.name, field.expected());
-                self.findings.error(at, message, None);
-            }
-            (fields, _, Some(table)) => values.extend(self.fields(fields, table, at)),
-            (fields, ..) => {
-                let names: Vec<String> = fields.iter().map(|field| format!("{} = …", field.name)).collect();
-                let hint = format!("write {{ {} }}", names.join(", "));
-                self.findings.error(at, format!("{} has {} values", parameter.name, fields.len()), Some(hint));
-            }
-        }
+        values.extend(self.reading.values(parameter.name, parameter.fields(), item, at));
         let setting = Setting { parameter, values };
         if let Some(other) = self.seen.insert((parameter.id, setting.row()), at.line) {
             let what = setting.row().map_or_else(|| parameter.name.to_owned(), |row| format!("row {row}"));
-            self.findings.error(at, format!("{what} is there already, in line {other}"), None);
+            self.reading.findings.error(at, format!("{what} is there already, in line {other}"), None);
         }
-        if self.findings.errors() == before {
+        if self.reading.findings.errors() == before {
             self.settings.push((setting, at.line));
         }
-    }
-
-    /// All fields of a parameter, in their order.
-    fn fields(&mut self, fields: &'static [Field], table: &dyn TableLike, at: Place) -> Vec<Value> {
-        for (name, _) in table.iter().filter(|(name, _)| !fields.iter().any(|field| field.name == *name)) {
-            let at = self.key(table, name);
-            self.unknown(at, "value", name, fields.iter().map(|field| field.name));
-        }
-        let mut values = Vec::with_capacity(fields.len());
-        for field in fields {
-            match table.get(field.name) {
-                Some(Item::Value(value)) => values.extend(self.value(field, value)),
-                Some(_) => {
-                    let at = self.key(table, field.name);
-                    self.findings.error(at, format!("{}: {} is expected", field.name, field.expected()), None);
-                }
-                None => self.findings.error(at, format!("{} is missing: {}", field.name, field.expected()), None),
-            }
-        }
-        values
-    }
-
-    /// One value. Numbers are taken as they are written, so that no decimal is lost.
-    fn value(&mut self, field: &Field, value: &Toml) -> Option<Value> {
-        let span = value.span().unwrap_or_default();
-        let text = match value {
-            Toml::String(text) if !matches!(field.form, Form::Number(_)) => Some(&text.value()[..]),
-            Toml::Integer(_) | Toml::Float(_) => self.places.text.get(span.clone()),
-            _ => None,
-        };
-        let read = match text {
-            Some(text) => field.read(text).map_err(|error| error.to_string()),
-            None => Err(format!("{}: {} is expected", field.name, field.expected())),
-        };
-        read.map_err(|message| self.findings.error(self.places.place(&span), message, None)).ok()
     }
 
     /// The tasks share the steps there are (TO 2-4, E22).
@@ -255,43 +175,9 @@ impl Reader<'_> {
             let steps = steps.fold(0_usize, |sum, steps| sum + usize::try_from(steps).unwrap_or_default());
             if steps > MOST_STEPS {
                 let message = format!("the tasks have {steps} steps together; there are {MOST_STEPS}");
-                self.findings.error(Place { line: *line, column: 1 }, message, None);
+                self.reading.findings.error(Place { line: *line, column: 1 }, message, None);
             }
         }
-    }
-
-    fn unknown(&mut self, at: Place, what: &str, name: &str, known: impl IntoIterator<Item = &'static str>) {
-        if self.findings.is_full() {
-            return self.findings.error(at, "", None);
-        }
-        let near = nearest(name, known).map(|near| format!("did you mean {near}?"));
-        self.findings.error(at, format!("there is no {what} '{}'", name.escape_debug()), near);
-    }
-
-    /// Where a key of a table is.
-    fn key(&self, table: &dyn TableLike, name: &str) -> Place {
-        self.places.place(&table.key(name).and_then(toml_edit::Key::span).unwrap_or_default())
-    }
-}
-
-/// Lines of a text, to find places quickly.
-struct Places<'t> {
-    text: &'t str,
-    /// Where each line begins.
-    lines: Vec<usize>,
-}
-
-impl<'t> Places<'t> {
-    fn new(text: &'t str) -> Self {
-        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
-        Self { text, lines }
-    }
-
-    fn place(&self, span: &Range<usize>) -> Place {
-        let line = self.lines.partition_point(|start| *start <= span.start);
-        let start = self.lines.get(line.saturating_sub(1)).copied().unwrap_or_default();
-        let column = self.text.get(start..span.start).map_or(0, |before| before.chars().count()) + 1;
-        Place { line, column }
     }
 }
 
