@@ -4,8 +4,8 @@ use super::tags::Resolved;
 use crate::controller::toyo::findings::{Findings, Place};
 use crate::controller::toyo::table::{Instruction, Op};
 
-/// Tells what looks wrong in a program without errors.
-pub(super) fn check(resolved: &Resolved, findings: &mut Findings) {
+/// Tells what looks wrong in a program without errors. A part of one may go on behind its last step.
+pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings) {
     let steps = || resolved.program.steps.iter().zip(&resolved.places).map(|(step, at)| (step.instruction, *at));
     let mut before: Option<Op> = None;
     for (row, at) in steps() {
@@ -20,7 +20,8 @@ pub(super) fn check(resolved: &Resolved, findings: &mut Findings) {
             before = Some(row.op);
         }
     }
-    if let Some((row, at)) = steps().rfind(|(row, _)| row.op != Op::Nop)
+    if !is_part
+        && let Some((row, at)) = steps().rfind(|(row, _)| row.op != Op::Nop)
         && !never_goes_on(row.op)
         && !jumps_somewhere(row.op)
     {

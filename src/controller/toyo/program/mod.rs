@@ -21,6 +21,8 @@ mod tags;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeSet;
+
 pub use listing::{Listing, Rows, listing, uses};
 
 use super::findings::Findings;
@@ -87,13 +89,31 @@ impl Checked {
     }
 }
 
+/// Steps among others of a task.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Part {
+    /// Its first step, from 1.
+    pub first: usize,
+    /// Tags of the steps around it; `None` if they are not known, and any may be there.
+    pub tags: Option<BTreeSet<i32>>,
+}
+
 /// Reads the text of a program for a task with so many steps (TO 2-4, E22).
 pub fn check(text: &[u8], room: usize) -> Checked {
+    check_with(text, room, None)
+}
+
+/// Reads the text of a part of a program, for which there is room for so many steps.
+pub fn check_part(text: &[u8], room: usize, part: &Part) -> Checked {
+    check_with(text, room, Some(part))
+}
+
+fn check_with(text: &[u8], room: usize, part: Option<&Part>) -> Checked {
     let mut findings = Findings::default();
-    let read = reader::read(text, room, &mut findings);
-    let program = tags::resolve(read, &mut findings);
+    let read = reader::read(text, room, part, &mut findings);
+    let program = tags::resolve(read, part, &mut findings);
     if findings.errors() == 0 {
-        flow::check(&program, &mut findings);
+        flow::check(&program, part.is_some(), &mut findings);
     }
     let program = (findings.errors() == 0).then_some(program.program);
     Checked { program, findings: findings.sorted() }

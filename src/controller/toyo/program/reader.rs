@@ -1,7 +1,7 @@
 //! The lines of a file: step numbers, labels, instructions, comments.
 
-use super::MOST_STEPS;
 use super::instruction::{Cursor, Draft, TagUse, Target, is_label, read as read_instruction, shown};
+use super::{MOST_STEPS, Part};
 use crate::controller::toyo::findings::{Findings, Place};
 use crate::controller::toyo::source;
 use crate::controller::toyo::table::Op;
@@ -24,11 +24,12 @@ pub(super) struct Defined {
     pub at: Place,
 }
 
-/// Reads the lines, for a task that has room for so many steps.
-pub(super) fn read(text: &[u8], room: usize, findings: &mut Findings) -> Read {
+/// Reads the lines, for a task or a part of it that has room for so many steps.
+pub(super) fn read(text: &[u8], room: usize, part: Option<&Part>, findings: &mut Findings) -> Read {
     let room = room.min(MOST_STEPS);
     let lines = source::lines(text, findings);
-    let mut reader = Reader { read: Read::default(), first: None, findings };
+    let start = part.map_or(1, |part| part.first);
+    let mut reader = Reader { read: Read::default(), start, first: None, findings };
     for (index, line) in lines.iter().enumerate() {
         if reader.findings.is_full() {
             break;
@@ -38,7 +39,7 @@ pub(super) fn read(text: &[u8], room: usize, findings: &mut Findings) -> Read {
         let after = reader.read.steps.len();
         if before <= room && room < after {
             let at = reader.read.steps[room].at;
-            let message = format!("step {} is one too many: the task has room for {room}", room + 1);
+            let message = format!("step {} is one too many: the task has room for {}", start + room, start + room - 1);
             reader.findings.error(at, message, Some("the machine parameter E22 (task-steps) says how many".to_owned()));
         }
         // Beyond all that any task can have, there is nothing to learn.
@@ -54,7 +55,9 @@ pub(super) fn read(text: &[u8], room: usize, findings: &mut Findings) -> Read {
 
 struct Reader<'f> {
     read: Read,
-    /// The number of the first step, as the file has it.
+    /// The number of the first step.
+    start: usize,
+    /// The same, as the file has it.
     first: Option<usize>,
     findings: &'f mut Findings,
 }
@@ -120,8 +123,9 @@ impl Reader<'_> {
             self.findings.error(at, message, Some("instructions need no step numbers".to_owned()));
             // What follows is measured by this one.
             self.first = Some(number.saturating_sub(steps));
-        } else if is_first && first != 1 {
-            let message = format!("the file counts from {first}; its first instruction is step 1 nevertheless");
+        } else if is_first && first != self.start {
+            let start = self.start;
+            let message = format!("the file counts from {first}; its first instruction is step {start} nevertheless");
             self.findings.warning(at, message, None);
         }
     }

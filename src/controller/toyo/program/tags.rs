@@ -1,11 +1,11 @@
 //! Which tag a label is, and whether every tag that is named is there, once.
 
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{BTreeSet, HashMap};
 
 use super::instruction::{Draft, Target};
 use super::reader::{Defined, Read};
-use super::{Label, Program, Step};
+use super::{Label, Part, Program, Step};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::findings::{Findings, Place};
 use crate::controller::toyo::nearest::nearest;
@@ -21,8 +21,8 @@ pub(super) struct Resolved {
 const MOST: usize = 999;
 
 /// Gives labels their tags, and steps the tags of their labels. Errors are told; the program counts only without any.
-pub(super) fn resolve(read: Read, findings: &mut Findings) -> Resolved {
-    let mut tags = Tags::default();
+pub(super) fn resolve(read: Read, part: Option<&Part>, findings: &mut Findings) -> Resolved {
+    let mut tags = Tags { part, ..Tags::default() };
     tags.collect(&read.labels, findings);
     tags.number(&read, findings);
     tags.places(&read.steps, findings);
@@ -31,18 +31,21 @@ pub(super) fn resolve(read: Read, findings: &mut Findings) -> Resolved {
     if findings.errors() == 0 {
         tags.idle(findings);
     }
-    let labels = tags.list.into_iter().map(Known::label).collect();
+    let first = part.map_or(1, |part| part.first);
+    let labels = tags.list.into_iter().map(|known| known.label(first)).collect();
     Resolved { program: Program { steps, labels }, places }
 }
 
 #[derive(Default)]
-struct Tags {
+struct Tags<'p> {
     /// In the order of the text.
     list: Vec<Known>,
     /// By name in lower case.
     by_name: HashMap<String, usize>,
     /// Where each tag is; there is no tag 0.
     defined: Vec<Option<Place>>,
+    /// What the text is a part of.
+    part: Option<&'p Part>,
 }
 
 struct Known {
@@ -55,12 +58,12 @@ struct Known {
 }
 
 impl Known {
-    fn label(self) -> Label {
-        Label { name: self.name, tag: self.tag, step: self.step + 1, line: self.at.line }
+    fn label(self, first: usize) -> Label {
+        Label { name: self.name, tag: self.tag, step: self.step + first, line: self.at.line }
     }
 }
 
-impl Tags {
+impl Tags<'_> {
     /// Every label, once.
     fn collect(&mut self, labels: &[Defined], findings: &mut Findings) {
         for label in labels {
@@ -89,7 +92,7 @@ impl Tags {
         let uses = read.steps.iter().flat_map(|draft| &draft.tags);
         let named = uses.filter_map(|used| if let Target::Number(tag) = used.target { Some(tag) } else { None });
         let given = self.list.iter().filter(|known| known.given).map(|known| known.tag);
-        for tag in named.chain(given) {
+        for tag in named.chain(given).chain(self.around().iter().flat_map(|tags| tags.iter().copied())) {
             if let Some(taken) = usize::try_from(tag).ok().and_then(|tag| taken.get_mut(tag)) {
                 *taken = true;
             }
@@ -115,6 +118,10 @@ impl Tags {
             // A label that is there twice was told.
             if self.known(&used.target).is_some_and(|known| known.at != draft.at) {
                 continue;
+            }
+            if self.around().is_some_and(|tags| tags.contains(&tag)) {
+                let message = format!("tag {tag:03} is there already, in a step around these");
+                findings.error(used.at, message, Some("a controller stops with error A2".to_owned()));
             }
             let Some(place) = usize::try_from(tag).ok().and_then(|tag| self.defined.get_mut(tag)) else { continue };
             match place {
@@ -160,12 +167,18 @@ impl Tags {
             }
             Target::Number(_) => {
                 let place = usize::try_from(tag).ok().and_then(|tag| self.defined.get(tag));
-                if !place.is_some_and(Option::is_some) {
+                let is_around = self.part.is_some_and(|part| part.tags.as_ref().is_none_or(|tags| tags.contains(&tag)));
+                if !place.is_some_and(Option::is_some) && !is_around {
                     let hint = Some("a controller stops with error A1".to_owned());
                     findings.error(at, format!("there is no tag {tag:03} in the program"), hint);
                 }
             }
         }
+    }
+
+    /// The tags around a part, where they are known.
+    fn around(&self) -> Option<&BTreeSet<i32>> {
+        self.part.and_then(|part| part.tags.as_ref())
     }
 
     fn tag(&self, target: &Target) -> Option<i32> {

@@ -318,3 +318,35 @@ fn five_thousand_steps_are_read_whole() {
     let much = text.replace("label5:", "label5: label5b:");
     assert!(check(much.as_bytes(), 5000).errors().any(|finding| finding.message.contains("no tag left")));
 }
+
+#[test]
+fn a_part_knows_the_tags_around_it() {
+    let around = |tags: Option<&[i32]>| Part { first: 100, tags: tags.map(|tags| tags.iter().copied().collect()) };
+    let part = |text: &str, tags| check_part(text.as_bytes(), 10, &around(tags));
+    let text = "here: CAL TAG=5\nJMP TAG=here\n";
+    // Nothing is said of an end, which is elsewhere.
+    let checked = part(text, Some(&[1, 2, 5]));
+    assert_eq!(checked.findings, []);
+    let program = checked.program.unwrap();
+    let texts: Vec<_> = program.steps.iter().map(Step::text).collect();
+    assert_eq!(texts, ["TAG TAG=003", "CAL TAG=005", "JMP TAG=003"]);
+    assert_eq!((program.labels[0].tag, program.labels[0].step), (3, 100));
+    let told = |checked: Checked| checked.findings.iter().map(ToString::to_string).collect::<Vec<_>>();
+    assert_eq!(
+        told(part(text, Some(&[]))),
+        ["line 1, column 15: error: there is no tag 005 in the program (a controller stops with error A1)"]
+    );
+    assert_eq!(
+        told(part("TAG TAG=5", Some(&[5]))),
+        [
+            "line 1, column 9: error: tag 005 is there already, in a step around these (a controller stops with error A2)"
+        ]
+    );
+    assert!(part("JMP TAG=7\nTAG TAG=8", None).program.is_some(), "any tag may be around");
+    assert_eq!(
+        told(check_part(b"0100 NOP\n0101 NOP", 1, &around(None))),
+        ["line 2, column 6: error: step 101 is one too many: the task has room for 100 \
+             (the machine parameter E22 (task-steps) says how many)"]
+    );
+    assert!(told(part("0001 NOP", None))[0].ends_with("its first instruction is step 100 nevertheless"));
+}
