@@ -258,7 +258,8 @@ proptest! {
 
     #[test]
     fn programs_read_back(steps in steps(), numbered: bool, room in 0_usize..200) {
-        let listing = program::listing(&steps, numbered, &program::Rows::new());
+        let style = program::Style { first: 1, is_whole: true, is_numbered: numbered };
+        let listing = program::listing(&steps, style, &program::Rows::new());
         let checked = program::check(listing.text.as_bytes(), program::MOST_STEPS);
         prop_assert!(checked.errors().count() == 0, "{}{:?}", listing.text, checked.findings);
         let read: Vec<Record> = checked.program.unwrap().steps.into_iter().map(|step| step.record).collect();

@@ -19,6 +19,17 @@ pub struct Listing {
     pub left_out: usize,
 }
 
+/// How steps become text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Style {
+    /// Number of the first step.
+    pub first: usize,
+    /// Whether NOPs at the end are left out, as nothing follows them.
+    pub is_whole: bool,
+    /// Whether step numbers stand before the instructions.
+    pub is_numbered: bool,
+}
+
 /// Fields of instructions that name a row of a table, with its id.
 const TABLES: [(&str, &str); 5] =
     [("point", "T1"), ("speed", "T2"), ("ramp", "T3"), ("group", "T4.S1"), ("table", "T5")];
@@ -28,18 +39,19 @@ pub fn uses(steps: &[Record]) -> BTreeSet<(&'static str, i32)> {
     steps.iter().flat_map(rows_of).map(|(_, key)| key).collect()
 }
 
-/// The text of steps, the first of which is step 1. `numbered` puts step numbers before them.
-pub fn listing(steps: &[Record], numbered: bool, rows: &Rows) -> Listing {
-    let is_nop = |record: &Record| record.layout() == Op::Nop.row().layout;
-    let end = steps.iter().rposition(|record| !is_nop(record)).map_or(steps.len().min(1), |last| last + 1);
+/// The text of steps.
+pub fn listing(steps: &[Record], style: Style, rows: &Rows) -> Listing {
+    let Style { first, is_whole, is_numbered } = style;
+    let used = used(steps).max(steps.len().min(1));
+    let end = if is_whole { used } else { steps.len() };
     let (shown, left_out) = (&steps[..end], steps.len() - end);
     let texts: Vec<String> = shown.iter().map(Record::written).collect();
     let width = texts.iter().map(String::len).max().unwrap_or_default();
-    let tags = tags(shown);
+    let tags = tags(shown, first);
     let mut text = String::new();
     for (index, (record, own)) in shown.iter().zip(&texts).enumerate() {
-        if numbered {
-            let _ = write!(text, "{:04}  ", index + 1);
+        if is_numbered {
+            let _ = write!(text, "{:04}  ", index + first);
         }
         text.push_str(own);
         let comments = comments(record, &tags, rows);
@@ -87,12 +99,18 @@ fn values_of(id: &str, row: &Record) -> String {
     values.collect::<Vec<_>>().join(", ")
 }
 
-/// The step of every tag, the first where it is there twice.
-fn tags(steps: &[Record]) -> BTreeMap<i32, usize> {
+/// Steps up to the last that is no NOP.
+pub fn used(steps: &[Record]) -> usize {
+    let is_nop = |record: &Record| record.layout() == Op::Nop.row().layout;
+    steps.iter().rposition(|record| !is_nop(record)).map_or(0, |last| last + 1)
+}
+
+/// The step of every tag, the first where it is there twice; the steps count from `first`.
+pub fn tags(steps: &[Record], first: usize) -> BTreeMap<i32, usize> {
     let mut tags = BTreeMap::new();
     for (index, record) in steps.iter().enumerate().filter(|(_, record)| record.layout() == Op::Tag.row().layout) {
         if let Some(tag) = record.number("tag") {
-            tags.entry(tag).or_insert(index + 1);
+            tags.entry(tag).or_insert(index + first);
         }
     }
     tags

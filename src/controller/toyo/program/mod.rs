@@ -23,7 +23,7 @@ mod tests;
 
 use std::collections::BTreeSet;
 
-pub use listing::{Listing, Rows, listing, uses};
+pub use listing::{Listing, Rows, Style, listing, tags, used, uses};
 
 use super::findings::Findings;
 pub use super::findings::{Finding, Severity};

@@ -243,6 +243,19 @@ fn bytes_that_are_no_text_are_told() {
     }
 }
 
+fn whole(is_numbered: bool) -> Style {
+    Style { first: 1, is_whole: true, is_numbered }
+}
+
+#[test]
+fn a_part_is_listed_with_its_numbers() {
+    let steps = ["JMP TAG=003", "TAG TAG=003", "NOP"].map(|text| request::instruction(text).unwrap());
+    let style = Style { first: 10, is_whole: false, is_numbered: true };
+    let listing = listing(&steps, style, &Rows::new());
+    assert_eq!(listing.text, "0010  JMP TAG=003  # tag 003 is step 11\n0011  TAG TAG=003\n0012  NOP\n");
+    assert_eq!(listing.left_out, 0);
+}
+
 #[test]
 fn a_listing_reads_back() {
     let steps: Vec<Record> = INSTRUCTIONS
@@ -254,7 +267,7 @@ fn a_listing_reads_back() {
         .chain(["END", "NOP", "NOP"].map(|text| request::instruction(text).unwrap()))
         .collect();
     for numbered in [false, true] {
-        let listing = listing(&steps, numbered, &Rows::new());
+        let listing = listing(&steps, whole(numbered), &Rows::new());
         assert_eq!(listing.left_out, 2);
         let program = check(listing.text.as_bytes(), MOST_STEPS).program.unwrap();
         assert_eq!(program.steps.len(), steps.len() - 2);
@@ -289,7 +302,7 @@ fn a_listing_explains_what_it_names() {
         );
     }
     assert_eq!(
-        listing(&steps, true, &rows).text,
+        listing(&steps, whole(true), &rows).text,
         "\
 0001  SPD V=05                         # speed 5: 250.0 mm/s
 0002  MOVP a PT=001 CN=00 S V=00 POST  # point 1: x 100.00 mm, y 20.00 mm, z 0.00 mm, r 0.00 mm
@@ -299,9 +312,9 @@ fn a_listing_explains_what_it_names() {
 "
     );
     let nops = ["NOP", "NOP"].map(|text| request::instruction(text).unwrap());
-    let empty = listing(&nops, false, &rows);
+    let empty = listing(&nops, whole(false), &rows);
     assert_eq!((empty.text.lines().next(), empty.left_out), (Some("NOP"), 1));
-    assert_eq!(listing(&[], false, &rows).text, "");
+    assert_eq!(listing(&[], whole(false), &rows).text, "");
 }
 
 #[test]
