@@ -70,6 +70,14 @@ impl Link {
             cells.cells_unchanged += 1;
             return Ok(());
         }
+        self.overwrite(screen, cell, cells).await
+    }
+
+    /// Stores one cell that is known to hold something else, and reads it back.
+    ///
+    /// # Errors
+    /// As those of [`Link::store`].
+    pub async fn overwrite(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<(), Failure> {
         self.order(&cell.write).await?;
         let name = cell.read.text();
         let wear = self.wear.entry(name.clone()).or_default();

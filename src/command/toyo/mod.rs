@@ -26,6 +26,7 @@ mod param;
 mod point;
 mod ports;
 mod position;
+mod program;
 mod raw;
 mod reach;
 mod refusal;
@@ -114,5 +115,7 @@ commands! {
         Raw(raw::Raw),
         /// The serial ports of this machine
         Ports(AtDesk<ports::Ports>),
+        /// Sequential programs: read, write, edit, check
+        Program(Verbs<program::Program>),
     }
 }

@@ -1,0 +1,204 @@
+//! `toyo program check`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::text::{self, Remark};
+use crate::command::{Desk, Report};
+use crate::controller::toyo::program::{self, MOST_STEPS};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::output::view::{Cell, Section, Tone, View};
+
+/// Checks program files and tells every mistake with its line and column. Takes no robot.
+#[derive(Debug, Args)]
+#[command(after_help = "The exit code is 0 if every file is a program, 8 if one is not, and 1 if one cannot be read. \
+                        `program put` and `sim run` check as well; a faulty file is a wrong argument to them: 2.\n\n\
+                        The form of a file: a step a line, # or ; begin a comment, labels stand for tags, numbers may \
+                        be short:\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      \
+                        JMPI TAG=next STN=0 PN1=.......1   ; while the gripper is full\n      END")]
+pub struct Check {
+    /// Program files; - is stdin
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// Steps that the task has room for
+    #[arg(long, value_name = "STEPS", default_value_t = 5000, value_parser = clap::value_parser!(u16).range(1..=5000))]
+    room: u16,
+    /// Warnings are errors
+    #[arg(long)]
+    strict: bool,
+}
+
+impl Desk for Check {
+    type Report = Verdict;
+    const ID: &'static str = "toyo.program.check";
+
+    fn run(&self, _screen: &Screen) -> Result<Verdict, Failure> {
+        let room = usize::from(self.room).min(MOST_STEPS);
+        let files = self.files.iter().map(|path| Ok(FileVerdict::new(&text::shown(path), &text::read(path)?, room)));
+        Ok(Verdict { files: files.collect::<Result<_, Failure>>()?, strict: self.strict })
+    }
+}
+
+/// What there is to say about files.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Verdict {
+    files: Vec<FileVerdict>,
+    #[serde(skip)]
+    strict: bool,
+}
+
+/// What there is to say about a file.
+#[derive(Debug, Serialize, JsonSchema)]
+struct FileVerdict {
+    file: String,
+    /// Whether it is a program.
+    ok: bool,
+    /// Steps of the program; null if it is none.
+    steps: Option<usize>,
+    /// Its labels with the tags they stand for.
+    labels: Vec<Labelled>,
+    errors: usize,
+    warnings: usize,
+    /// In the order of the text.
+    findings: Vec<Remark>,
+}
+
+/// A label.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Labelled {
+    name: String,
+    /// Number of its tag.
+    tag: i32,
+    /// Its TAG step.
+    step: usize,
+    /// Line of the file.
+    line: usize,
+}
+
+impl Labelled {
+    /// The labels of a program.
+    pub fn of(program: &program::Program) -> Vec<Self> {
+        let labelled = |label: &program::Label| {
+            let program::Label { name, tag, step, line } = label.clone();
+            Self { name, tag, step, line }
+        };
+        program.labels.iter().map(labelled).collect()
+    }
+
+    /// `next = tag 001, step 2`.
+    pub fn in_a_line(&self) -> String {
+        format!("{} = tag {:03}, step {}", self.name, self.tag, self.step)
+    }
+}
+
+impl FileVerdict {
+    fn new(file: &str, bytes: &[u8], room: usize) -> Self {
+        let checked = program::check(bytes, room);
+        let text = String::from_utf8_lossy(bytes);
+        let lines: Vec<&str> = text.lines().collect();
+        let findings: Vec<Remark> = checked.findings.iter().map(|finding| Remark::new(finding, &lines)).collect();
+        let count = |severity| findings.iter().filter(|remark| remark.severity == severity).count();
+        Self {
+            file: file.to_owned(),
+            ok: checked.program.is_some(),
+            steps: checked.program.as_ref().map(|program| program.steps.len()),
+            labels: checked.program.as_ref().map(Labelled::of).unwrap_or_default(),
+            errors: count("error"),
+            warnings: count("warning"),
+            findings,
+        }
+    }
+
+    /// `pick.txt: 12 steps, 2 labels, 1 warning`.
+    fn in_a_line(&self) -> Cell {
+        let counted = |count: usize, what: &str| match count {
+            0 => None,
+            1 => Some(format!("1 {what}")),
+            _ => Some(format!("{count} {what}s")),
+        };
+        let parts = [
+            self.steps.and_then(|steps| counted(steps, "step")),
+            counted(self.labels.len(), "label"),
+            counted(self.errors, "error"),
+            counted(self.warnings, "warning"),
+        ];
+        let text = format!("{}: {}", self.file, parts.into_iter().flatten().collect::<Vec<_>>().join(", "));
+        Cell::from(text).tone(match self {
+            Self { ok: false, .. } => Tone::Bad,
+            Self { warnings: 0, .. } => Tone::Good,
+            _ => Tone::Warning,
+        })
+    }
+}
+
+impl Report for Verdict {
+    fn view(&self) -> View {
+        let remarks = |file: &FileVerdict| {
+            let mut lines: Vec<Cell> = file.findings.iter().flat_map(|remark| remark.lines(&file.file)).collect();
+            lines.push(file.in_a_line());
+            lines
+        };
+        View { sections: vec![Section::Lines(self.files.iter().flat_map(remarks).collect())] }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let bad = |file: &&FileVerdict| !file.ok || (self.strict && file.warnings > 0);
+        let bad: Vec<&str> = self.files.iter().filter(bad).map(|file| file.file.as_str()).collect();
+        let what = match (&bad[..], self.strict) {
+            ([], _) => return None,
+            ([one], false) => format!("{one} is no program"),
+            ([one], true) => format!("{one} is no program without warnings"),
+            (many, _) => format!("{} of {} files are not in order: {}", many.len(), self.files.len(), many.join(", ")),
+        };
+        Some(Failure::new(Kind::ConditionNotMet, what))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::render;
+
+    fn verdict(texts: &[(&str, &str)], strict: bool) -> Verdict {
+        let files = texts.iter().map(|(name, text)| FileVerdict::new(name, text.as_bytes(), MOST_STEPS));
+        Verdict { files: files.collect(), strict }
+    }
+
+    #[test]
+    fn mistakes_are_shown_where_they_are() {
+        let verdict = verdict(&[("a.txt", "SPD V=11\nEMD\n"), ("b.txt", "x: JMP TAG=x\n")], false);
+        assert_eq!(
+            render::text(&verdict.view(), 80, false),
+            "\
+error: speed: 11 is out of range (a number, 1 to 10)
+ --> a.txt:1:7
+  |
+1 | SPD V=11
+  |       ^
+
+error: there is no instruction 'EMD'
+ --> a.txt:2:1
+  |
+2 | EMD
+  | ^
+  = did you mean END?
+
+a.txt: 2 errors
+b.txt: 2 steps, 1 label
+"
+        );
+        let failure = verdict.failure().unwrap();
+        assert_eq!((failure.kind.exit(), failure.message.as_str()), (8, "a.txt is no program"));
+    }
+
+    #[test]
+    fn warnings_count_when_they_should() {
+        let texts = [("a.txt", "SPD V=1\n")];
+        assert!(verdict(&texts, false).failure().is_none());
+        assert_eq!(verdict(&texts, true).failure().unwrap().message, "a.txt is no program without warnings");
+    }
+}

@@ -1,0 +1,170 @@
+//! `toyo program copy`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::and_mode;
+use super::insert::moved_wrong;
+use super::steps::{self, Tasks};
+use crate::command::toyo::Family;
+use crate::command::toyo::link::Link;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::program::tags;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::View;
+
+/// Copies steps over others, in a task or from one to another.
+#[derive(Debug, Args)]
+#[command(after_help = and_mode("A tag that is copied within a task is there twice: a program stops at it with error A2."))]
+pub struct Copy {
+    /// First step
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
+    from: u16,
+    /// Last step
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
+    to: u16,
+    /// Step that becomes a copy of the first; what is there and behind it is overwritten
+    #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
+    at: u16,
+    /// Task of the steps, 1 to 4, instead of the current one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    from_task: Option<u8>,
+    /// Task of the copy, 1 to 4, instead of the same
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    to_task: Option<u8>,
+}
+
+impl Command for Copy {
+    type Family = Family;
+    type Report = Copied;
+    const ID: &'static str = "toyo.program.copy";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Copied, Failure> {
+        let Context { link, screen, .. } = context;
+        if self.to < self.from {
+            return Err(Failure::usage(format!("the last step, {}, is before the first, {}", self.to, self.from)));
+        }
+        if usize::from(self.end()) > crate::controller::toyo::program::MOST_STEPS {
+            return Err(Failure::usage(format!("the copy would end at step {}; there are 5000", self.end())));
+        }
+        if self.to_task.is_none() || self.from_task == self.to_task {
+            self.overlap()?;
+        }
+        if link.is_dry() {
+            return self.rehearse(link).await;
+        }
+        let outcome = self.copy(link, screen).await;
+        steps::done(link, outcome).await
+    }
+}
+
+impl Copy {
+    /// Last step of the copy.
+    fn end(&self) -> u16 {
+        self.at.saturating_add(self.to - self.from)
+    }
+
+    /// What a controller makes of it is not known.
+    fn overlap(&self) -> Result<(), Failure> {
+        if self.at > self.to || self.end() < self.from {
+            return Ok(());
+        }
+        let Self { from, to, at, .. } = self;
+        Err(Failure::usage(format!("steps {from} to {to} and their copy, {at} to {}, overlap", self.end()))
+            .hint("`program get --from --to` and `program put --at` move steps a little"))
+    }
+
+    fn order(&self, from_task: u8, to_task: u8) -> Request {
+        let step = |step: u16| Value::Number(step.into());
+        let task = |task: u8| Value::Number(task.into());
+        let values = [task(from_task), step(self.from), step(self.to), task(to_task), step(self.at)];
+        Request::of(table::Command::Cpss, values)
+    }
+
+    async fn copy(&self, link: &mut Link, screen: &Screen) -> Result<Copied, Failure> {
+        let mut tasks = Tasks::choose(link, self.from_task).await?;
+        let source = tasks.current;
+        let target = self.to_task.unwrap_or(source);
+        if source == target {
+            self.overlap()?;
+        }
+        steps::room(link, source, self.to).await?;
+        steps::room(link, target, self.end()).await?;
+        let wanted = steps::read_all(link, screen, self.from..=self.to).await?;
+        tasks.switch(link, target).await?;
+        let found = steps::read_all(link, screen, self.at..=self.end()).await?;
+        let report = Copied {
+            from_task: source,
+            first_step: self.from,
+            last_step: self.to,
+            to_task: target,
+            at_step: self.at,
+            steps: wanted.len(),
+            was_there: found == wanted,
+        };
+        if report.was_there {
+            return Ok(report);
+        }
+        if source == target
+            && let Some(tag) = tags(&wanted, 1).keys().next()
+        {
+            screen
+                .note(&format!("warning: tag {tag:03} is in the task twice now; a program stops there with error A2"));
+        }
+        steps::open(link).await?;
+        link.order(&self.order(source, target)).await?;
+        let found = steps::read_all(link, screen, self.at..=self.end()).await?;
+        let different = (self.at..).zip(wanted.iter().zip(&found)).find(|(_, (wanted, found))| wanted != found);
+        match different {
+            Some((step, (wanted, found))) => Err(moved_wrong(step, wanted, found)),
+            None => Ok(report),
+        }
+    }
+
+    async fn rehearse(&self, link: &mut Link) -> Result<Copied, Failure> {
+        Tasks::foresee(link, self.from_task).await?;
+        link.foresee(&steps::rooms_request(), "whether there is room");
+        link.foresee(&steps::read_request(self.from), "what is copied, a step each, and what is there");
+        steps::foresee_open(link).await?;
+        let source = self.from_task.unwrap_or(1);
+        let about = if self.from_task.is_none() { "with the current task in the place of 1" } else { "if it differs" };
+        link.foresee(&self.order(source, self.to_task.unwrap_or(source)), about);
+        link.put_back().await?;
+        std::future::pending().await
+    }
+}
+
+/// What was copied.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Copied {
+    from_task: u8,
+    first_step: u16,
+    last_step: u16,
+    to_task: u8,
+    /// First step of the copy.
+    at_step: u16,
+    /// How many.
+    steps: usize,
+    /// Whether they were the same before, so that nothing was written.
+    was_there: bool,
+}
+
+impl Report for Copied {
+    fn view(&self) -> View {
+        let Self { from_task, first_step, last_step, to_task, at_step, steps, was_there } = self;
+        let to = if from_task == to_task { String::new() } else { format!(" of task {to_task}") };
+        let end = usize::from(*at_step) + steps - 1;
+        let done = if *was_there { "nothing written: they are the same already" } else { "copied, and compared" };
+        View::text(format!("steps {first_step} to {last_step} of task {from_task} to {at_step} to {end}{to}: {done}"))
+    }
+}

@@ -1,0 +1,113 @@
+//! `toyo program delete`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::and_mode;
+use super::get::Step;
+use super::insert::moved_wrong;
+use super::steps::{self, Tasks};
+use crate::command::toyo::Family;
+use crate::command::toyo::link::Link;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::View;
+
+/// Deletes steps; those behind them move up.
+#[derive(Debug, Args)]
+#[command(after_help = and_mode("What is deleted is printed, in the form of a program file."))]
+pub struct Delete {
+    /// Step, or the first of several
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
+    step: u16,
+    /// The last of several
+    #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
+    to: Option<u16>,
+    /// Task, 1 to 4, instead of the current one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    task: Option<u8>,
+}
+
+impl Command for Delete {
+    type Family = Family;
+    type Report = Deleted;
+    const ID: &'static str = "toyo.program.delete";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Deleted, Failure> {
+        let Context { link, screen, .. } = context;
+        let last = self.to.unwrap_or(self.step);
+        if last < self.step {
+            return Err(Failure::usage(format!("--to {last} is before step {}", self.step)));
+        }
+        if link.is_dry() {
+            return self.rehearse(link, last).await;
+        }
+        let outcome = self.delete(link, screen, last).await;
+        steps::done(link, outcome).await
+    }
+}
+
+impl Delete {
+    fn order(&self, last: u16) -> Request {
+        let (first, last) = (Value::Number(self.step.into()), Value::Number(last.into()));
+        if first == last {
+            Request::of(table::Command::Dstx, [first])
+        } else {
+            Request::of(table::Command::Dstl, [first, last])
+        }
+    }
+
+    async fn delete(&self, link: &mut Link, screen: &Screen, last: u16) -> Result<Deleted, Failure> {
+        let tasks = Tasks::choose(link, self.task).await?;
+        let room = steps::room(link, tasks.current, last).await?;
+        let deleted = steps::read_all(link, screen, self.step..=last).await?;
+        let behind = match last {
+            last if last < room => link.read_content(&steps::read_request(last + 1)).await?,
+            _ => steps::nop(),
+        };
+        steps::open(link).await?;
+        link.order(&self.order(last)).await?;
+        let found = link.read_content(&steps::read_request(self.step)).await?;
+        if found != behind {
+            return Err(moved_wrong(self.step, &behind, &found));
+        }
+        let deleted = (usize::from(self.step)..).zip(&deleted);
+        let deleted = deleted.map(|(step, record)| Step { step, instruction: record.written() }).collect();
+        Ok(Deleted { task: tasks.current, deleted })
+    }
+
+    async fn rehearse(&self, link: &mut Link, last: u16) -> Result<Deleted, Failure> {
+        Tasks::foresee(link, self.task).await?;
+        link.foresee(&steps::rooms_request(), "how many steps the task has");
+        link.foresee(&steps::read_request(self.step), "what is deleted, a step each");
+        steps::foresee_open(link).await?;
+        link.order(&self.order(last)).await?;
+        link.put_back().await?;
+        std::future::pending().await
+    }
+}
+
+/// Steps that are no more.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Deleted {
+    task: u8,
+    /// With the numbers that they had.
+    deleted: Vec<Step>,
+}
+
+impl Report for Deleted {
+    fn view(&self) -> View {
+        let lines = self.deleted.iter().map(|Step { step, instruction }| format!("{step:04}  {instruction}\n"));
+        View::text(format!("# deleted from task {}\n{}", self.task, lines.collect::<String>()))
+    }
+}

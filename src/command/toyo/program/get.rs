@@ -1,0 +1,224 @@
+//! `toyo program get`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::steps::{self, Tasks};
+use crate::command::local::Target;
+use crate::command::toyo::Family;
+use crate::command::toyo::link::{Link, misuse};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::program::{self, Rows, Style, listing};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table::{Op, Parameter};
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// Reads the program of a task as text, which `program put` writes back.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "All steps are read, as subroutines may stand behind END; NOPs up to the end of the task are left out of the text. A step takes about 35 ms at 9600 baud. To read another task than the current one, that task is \
+                        made the current one for a while, which is a change: a read-only robot refuses it."
+)]
+pub struct Get {
+    /// A new file; without one, the text goes to stdout
+    file: Option<PathBuf>,
+    /// Task, 1 to 4, instead of the current one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    task: Option<u8>,
+    /// First step
+    #[arg(long, value_name = "STEP", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=5000))]
+    from: u16,
+    /// Last step, instead of the last of the task
+    #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
+    to: Option<u16>,
+    /// Stop at the first END
+    #[arg(long)]
+    until_end: bool,
+    /// Put step numbers before the instructions
+    #[arg(long)]
+    numbers: bool,
+    /// Say in comments what the points, speeds and other table rows are that the program names
+    #[arg(long)]
+    explain: bool,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Got;
+    const ID: &'static str = "toyo.program.get";
+
+    fn risk(&self) -> Risk {
+        if self.task.is_some() { Risk::Write } else { Risk::Read }
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Got, Failure> {
+        let Context { link, screen, several, .. } = context;
+        if let Some(to) = self.to.filter(|to| *to < self.from) {
+            return Err(Failure::usage(format!("--to {to} is before --from {}", self.from)));
+        }
+        if let Some(file) = self.file.as_ref().filter(|_| several) {
+            return Err(Failure::usage(format!("{} is for the program of one robot", file.display()))
+                .hint("run the command once for each robot, or `toyo backup` for all of them"));
+        }
+        let target = self.file.clone().map(|file| Target::new(file, self.force)).transpose()?;
+        if link.is_dry() {
+            return self.rehearse(link).await;
+        }
+        let outcome = self.read(link, screen).await;
+        let (tasks, room, read) = steps::done(link, outcome).await?;
+        let rows = if self.explain { rows(link, &read).await? } else { Rows::new() };
+        let last = usize::from(self.from) + read.len() - 1;
+        let is_whole = self.from == 1 && last == usize::from(room);
+        let style = Style { first: self.from.into(), is_whole, is_numbered: self.numbers };
+        let program::Listing { text, .. } = listing(&read, style, &rows);
+        let file = match &target {
+            Some(target) => {
+                let mut draft = target.begin()?;
+                draft.write(text.as_bytes())?;
+                draft.commit()?;
+                Some(target.path().display().to_string())
+            }
+            None => None,
+        };
+        let shown = if is_whole { program::used(&read) } else { read.len() };
+        let numbered = (usize::from(self.from)..).zip(&read[..shown]);
+        Ok(Got {
+            task: tasks.current,
+            room_steps: room,
+            first_step: self.from,
+            last_step: last,
+            used_steps: program::used(&read),
+            tags: program::tags(&read, self.from.into()).into_iter().map(|(tag, step)| Tag { tag, step }).collect(),
+            steps: numbered.map(|(step, record)| Step { step, instruction: record.written() }).collect(),
+            text: file.is_none().then_some(text),
+            file,
+        })
+    }
+}
+
+impl Get {
+    async fn read(
+        &self,
+        link: &mut Link,
+        screen: &crate::output::Screen,
+    ) -> Result<(Tasks, u16, Vec<Record>), Failure> {
+        let tasks = Tasks::choose(link, self.task).await?;
+        let room = steps::room(link, tasks.current, self.to.unwrap_or(self.from)).await?;
+        let is_end = |record: &Record| self.until_end && record.layout() == Op::End.row().layout;
+        let read = steps::read(link, screen, self.from..=self.to.unwrap_or(room), is_end).await?;
+        Ok((tasks, room, read))
+    }
+
+    async fn rehearse(&self, link: &mut Link) -> Result<Got, Failure> {
+        Tasks::foresee(link, self.task).await?;
+        link.foresee(&steps::rooms_request(), "how many steps the task has");
+        link.foresee(&steps::read_request(self.from), "and so on, a step each");
+        link.put_back().await?;
+        std::future::pending().await
+    }
+}
+
+/// The rows of tables that steps name; those that the controller refuses are left out.
+async fn rows(link: &mut Link, steps: &[Record]) -> Result<Rows, Failure> {
+    let mut rows = Rows::new();
+    for (id, row) in program::uses(steps) {
+        let parameter = Parameter::named(id).ok_or_else(|| Failure::local(format!("there is no table {id}")))?;
+        let request = Request::read_parameter(parameter, Some(row)).map_err(|error| misuse(&error.into()))?;
+        if let Ok(answer) = link.try_read(&request).await? {
+            let content = request.answered(&answer);
+            let content = content.map_err(|error| link.malformed(&answer.written(), &error.to_string()))?;
+            rows.extend(content.map(|content| ((id, row), content)));
+        }
+    }
+    Ok(rows)
+}
+
+/// The program of a task, or a part of it.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Got {
+    task: u8,
+    /// Steps that the task has.
+    room_steps: u16,
+    /// The first step that was read.
+    first_step: u16,
+    /// The last step that was read.
+    last_step: usize,
+    /// Steps up to the last that is no NOP.
+    used_steps: usize,
+    /// Tags with their steps.
+    tags: Vec<Tag>,
+    /// Each step; without the NOPs at the end of the task.
+    steps: Vec<Step>,
+    /// The text as a file has it; null if it went to a file.
+    text: Option<String>,
+    /// The file that was written.
+    file: Option<String>,
+}
+
+/// A tag.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Tag {
+    tag: i32,
+    step: usize,
+}
+
+/// A step.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Step {
+    /// From 1.
+    pub step: usize,
+    /// As the controller has it.
+    pub instruction: String,
+}
+
+impl Report for Got {
+    fn view(&self) -> View {
+        if let Some(text) = &self.text {
+            return View::text(text.clone());
+        }
+        View::fields([
+            ("file", self.file.clone().unwrap_or_default().into()),
+            ("task", self.task.into()),
+            ("steps read", format!("{} to {}", self.first_step, self.last_step).into()),
+            ("used steps", self.used_steps.into()),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{all_blocks, blocks, objection};
+
+    #[test]
+    fn a_read_of_another_task_puts_the_task_back() {
+        assert_eq!(blocks(&["program", "get"]).unwrap(), ["@MTSK", "@RPAR E22", "@RSTX 0001"]);
+        assert_eq!(
+            all_blocks(&["program", "get", "--task", "2", "--from", "10"]).unwrap(),
+            ["@MTSK", "@CTSK TASK=02", "@RPAR E22", "@RSTX 0010", "@CTSK TASK=01"]
+        );
+    }
+
+    #[test]
+    fn steps_and_tasks_have_ranges() {
+        assert!(objection(&["program", "get", "--from", "0"]).contains("1..=5000"));
+        assert!(objection(&["program", "get", "--task", "5"]).contains("1..=4"));
+        let failure = blocks(&["program", "get", "--from", "5", "--to", "4"]).unwrap_err();
+        assert_eq!(failure.kind.exit(), 2);
+    }
+
+    #[test]
+    fn a_file_that_is_there_is_kept() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let failure = blocks(&["program", "get", file.path().to_str().unwrap()]).unwrap_err();
+        assert_eq!(failure.kind.exit(), 1);
+    }
+}

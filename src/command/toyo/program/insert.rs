@@ -1,0 +1,133 @@
+//! `toyo program insert`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::and_mode;
+use super::get::Step;
+use super::steps::{self, Tasks};
+use crate::command::toyo::Family;
+use crate::command::toyo::cells::Cells;
+use crate::command::toyo::link::Link;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::program::{Part, check_part};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::output::view::View;
+
+/// Inserts a step; the one that was there and those behind it move on by one.
+#[derive(Debug, Args)]
+#[command(after_help = and_mode("The last step of the task must be a NOP, as it falls out."))]
+pub struct Insert {
+    /// Number of the new step
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
+    step: u16,
+    /// Its instruction, such as OUT STN=0 PN1=.......1; quote < and >
+    #[arg(num_args = 0.., default_value = "NOP")]
+    instruction: Vec<String>,
+    /// Task, 1 to 4, instead of the current one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    task: Option<u8>,
+}
+
+impl Command for Insert {
+    type Family = Family;
+    type Report = Inserted;
+    const ID: &'static str = "toyo.program.insert";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Inserted, Failure> {
+        let Context { link, screen, .. } = context;
+        let instruction = self.instruction()?;
+        if link.is_dry() {
+            return self.rehearse(link, screen, &instruction).await;
+        }
+        let outcome = self.insert(link, screen, &instruction).await;
+        steps::done(link, outcome).await
+    }
+}
+
+impl Insert {
+    /// The instruction as it is sent. Its tag may be anywhere in the program.
+    fn instruction(&self) -> Result<Record, Failure> {
+        let text = self.instruction.join(" ");
+        let checked = check_part(text.as_bytes(), 1, &Part { first: self.step.into(), tags: None });
+        let wrong = checked.errors().next().map(|finding| {
+            let hint = finding.hint.clone().unwrap_or_else(|| "nothing was sent".to_owned());
+            Failure::usage(format!("column {} of '{text}': {}", finding.column, finding.message)).hint(hint)
+        });
+        match (wrong, checked.program.and_then(|program| program.steps.into_iter().next())) {
+            (None, Some(step)) => Ok(step.record),
+            (wrong, _) => Err(wrong.unwrap_or_else(|| Failure::usage(format!("'{text}' is no instruction")))),
+        }
+    }
+
+    fn order(&self) -> Request {
+        Request::of(table::Command::Istx, [Value::Number(self.step.into())])
+    }
+
+    async fn insert(&self, link: &mut Link, screen: &Screen, instruction: &Record) -> Result<Inserted, Failure> {
+        let step = self.step;
+        let tasks = Tasks::choose(link, self.task).await?;
+        let room = steps::room(link, tasks.current, step).await?;
+        let before = link.read_content(&steps::read_request(step)).await?;
+        let last = link.read_content(&steps::read_request(room)).await?;
+        if last != steps::nop() {
+            let message =
+                format!("step {room}, the last of task {}, would fall out: {}", tasks.current, last.written());
+            return Err(Failure::new(Kind::RefusedHere, message)
+                .hint("delete it first, or give the task more steps by the machine parameter E22 (task-steps)"));
+        }
+        steps::open(link).await?;
+        link.order(&self.order()).await?;
+        if step < room {
+            let behind = link.read_content(&steps::read_request(step + 1)).await?;
+            if behind != before {
+                return Err(moved_wrong(step + 1, &before, &behind));
+            }
+        }
+        let mut cells = Cells::default();
+        link.store(screen, &steps::cell(step, instruction)?, &mut cells).await?;
+        Ok(Inserted { task: tasks.current, inserted: Step { step: step.into(), instruction: instruction.written() } })
+    }
+
+    async fn rehearse(&self, link: &mut Link, screen: &Screen, instruction: &Record) -> Result<Inserted, Failure> {
+        Tasks::foresee(link, self.task).await?;
+        link.foresee(&steps::rooms_request(), "how many steps the task has; the last one must be a NOP");
+        steps::foresee_open(link).await?;
+        link.order(&self.order()).await?;
+        link.store(screen, &steps::cell(self.step, instruction)?, &mut Cells::default()).await?;
+        link.put_back().await?;
+        std::future::pending().await
+    }
+}
+
+/// Steps did not move as they should.
+pub fn moved_wrong(step: u16, wanted: &Record, found: &Record) -> Failure {
+    let (wanted, found) = (wanted.written(), found.written());
+    Failure::new(Kind::Malformed, format!("the controller said @OK, but step {step} is '{found}', not '{wanted}'"))
+        .hint("`toyo program get` shows what it has now")
+}
+
+/// A step that is new.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Inserted {
+    task: u8,
+    inserted: Step,
+}
+
+impl Report for Inserted {
+    fn view(&self) -> View {
+        let Step { step, instruction } = &self.inserted;
+        View::text(format!("inserted in task {}: {step:04} {instruction}", self.task))
+    }
+}

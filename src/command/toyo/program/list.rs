@@ -1,0 +1,108 @@
+//! `toyo program list`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::steps::{self, Tasks};
+use crate::command::toyo::Family;
+use crate::command::toyo::link::Link;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::program::{tags, used};
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::{Cell, Table, View};
+
+/// Lists the tasks with the steps that their programs have room for.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "To count what is used, every step of every task is read, at about 35 ms a step at 9600 baud, and \
+                        each task is made the current one for a while, which is a change: a read-only robot refuses \
+                        it."
+)]
+pub struct List {
+    /// Read the programs: how many steps they use, and their tags
+    #[arg(long)]
+    used: bool,
+}
+
+impl Command for List {
+    type Family = Family;
+    type Report = Listed;
+    const ID: &'static str = "toyo.program.list";
+
+    fn risk(&self) -> Risk {
+        if self.used { Risk::Write } else { Risk::Read }
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Listed, Failure> {
+        let Context { link, screen, .. } = context;
+        if link.is_dry() {
+            Tasks::foresee(link, None).await?;
+            link.foresee(&steps::rooms_request(), "how many steps the tasks have");
+            if self.used {
+                link.foresee(&steps::read_request(1), "and so on, every step of every task");
+            }
+            return std::future::pending().await;
+        }
+        let outcome = self.list(link, screen).await;
+        steps::done(link, outcome).await
+    }
+}
+
+impl List {
+    async fn list(&self, link: &mut Link, screen: &Screen) -> Result<Listed, Failure> {
+        let mut chosen = Tasks::choose(link, None).await?;
+        let current = chosen.current;
+        let mut tasks = Vec::new();
+        for (task, room) in (1..).zip(steps::rooms(link).await?) {
+            let mut listed = Task { task, current: task == current, room_steps: room, used_steps: None, tags: None };
+            if self.used && room > 0 {
+                chosen.switch(link, task).await?;
+                let read = steps::read_all(link, screen, 1..=room).await?;
+                listed.used_steps = Some(used(&read));
+                listed.tags = Some(tags(&read, 1).into_keys().collect());
+            }
+            tasks.push(listed);
+        }
+        Ok(Listed { tasks })
+    }
+}
+
+/// The tasks.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Listed {
+    tasks: Vec<Task>,
+}
+
+/// A task.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Task {
+    task: u8,
+    /// Whether commands that name no task are about it.
+    current: bool,
+    /// Steps that it has (E22).
+    room_steps: u16,
+    /// Steps up to the last that is no NOP; null where they were not read.
+    used_steps: Option<usize>,
+    /// Tags in its program; null where it was not read.
+    tags: Option<Vec<i32>>,
+}
+
+impl Report for Listed {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["task", "current", "steps", "used", "tags"], "no tasks");
+        for Task { task, current, room_steps, used_steps, tags } in &self.tasks {
+            let tags = tags.as_ref().map(|tags| tags.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "));
+            table.row([
+                (*task).into(),
+                if *current { "yes" } else { "" }.into(),
+                (*room_steps).into(),
+                used_steps.map_or_else(|| Cell::number("-"), Cell::from),
+                Cell::maybe(tags),
+            ]);
+        }
+        View::table(table)
+    }
+}

@@ -1,0 +1,50 @@
+//! `toyo program`: sequential programs, as files and step by step.
+
+mod check;
+mod copy;
+mod delete;
+mod get;
+mod insert;
+mod list;
+mod put;
+mod search;
+mod show;
+mod steps;
+mod text;
+
+use super::Family;
+use crate::command::{AtDesk, commands};
+
+commands! {
+    /// What can be done with sequential programs.
+    pub enum Program of Family {
+        /// The tasks, with the steps their programs have room for and use
+        List(list::List),
+        /// Read a program as text
+        Get(get::Get),
+        /// Write a program from a file, after checking it whole
+        Put(put::Put),
+        /// Insert a step; those behind it move on
+        Insert(insert::Insert),
+        /// Delete steps; those behind them move up
+        Delete(delete::Delete),
+        /// Copy steps, also between tasks
+        Copy(copy::Copy),
+        /// Find the step of a tag
+        Search(search::Search),
+        /// The step at which the program stands
+        Show(show::Show),
+        /// Check program files; takes no robot
+        Check(AtDesk<check::Check>),
+    }
+}
+
+/// A help text with why commands that write steps may switch to program mode and back.
+fn and_mode(text: &str) -> String {
+    format!("{text}\n\n{MODE}")
+}
+
+const MODE: &str = "Steps are written in program mode, as in the sample session of the manual (TO 3-1). A controller \
+                    in automatic or step mode is switched to it for the time of writing, and back; while a program \
+                    runs or is paused, nothing is written. What is stored already is not written again: the EEPROM \
+                    takes about a million rewrites of a step.";

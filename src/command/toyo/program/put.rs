@@ -1,0 +1,266 @@
+//! `toyo program put`.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::and_mode;
+use super::check::Labelled;
+use super::steps::{self, Tasks};
+use super::text;
+use crate::command::toyo::Family;
+use crate::command::toyo::cells::Cells;
+use crate::command::toyo::link::Link;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::program::{self, MOST_STEPS, Part, Program};
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::{Section, View};
+
+/// Writes a program from a text file.
+#[derive(Debug, Args)]
+#[command(after_help = and_mode(HELP))]
+pub struct Put {
+    /// What `program get` wrote, or somebody with an editor; - is stdin
+    file: PathBuf,
+    /// Task, 1 to 4, instead of the current one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    task: Option<u8>,
+    /// Write a part of a program, with this as its first step; the other steps stay
+    #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
+    at: Option<u16>,
+    /// Leave the steps behind the last one of the file as they are
+    #[arg(long, conflicts_with = "at")]
+    keep_rest: bool,
+    /// Go on with a put that was cut off; with a step, those before it are not even compared
+    #[arg(long, value_name = "STEP", num_args = 0..=1, require_equals = true, default_missing_value = "1",
+          value_parser = clap::value_parser!(u16).range(1..=5000))]
+    resume: Option<u16>,
+}
+
+const HELP: &str = "The whole file is checked before anything is sent. It is the program of the task: steps behind its \
+                    last one become NOP, as a tag in what is left of an older program would be there twice. With --at \
+                    it is a part of the program, and the other steps stay.";
+
+/// A step that is to be written.
+struct Change {
+    step: u16,
+    instruction: Record,
+}
+
+impl Command for Put {
+    type Family = Family;
+    type Report = Stored;
+    const ID: &'static str = "toyo.program.put";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
+        let Context { link, screen, .. } = context;
+        let name = text::shown(&self.file);
+        let bytes = text::read(&self.file)?;
+        let checked = match self.at {
+            None => program::check(&bytes, MOST_STEPS),
+            // Which tags are around it is known later.
+            Some(at) => program::check_part(&bytes, MOST_STEPS + 1 - usize::from(at), &part(at, None)),
+        };
+        let program = text::program(&name, checked, screen)?;
+        let first = self.at.unwrap_or(1);
+        let last = last_of(first, &program);
+        let from = self.resume.unwrap_or(first).max(first);
+        if from > last {
+            return Err(Failure::usage(format!("--resume={from} is behind step {last}, the last one of the file")));
+        }
+        if link.is_dry() {
+            return self.rehearse(link, screen, &program, from).await;
+        }
+        let outcome = self.store(link, screen, &bytes, from, last).await;
+        steps::done(link, outcome).await
+    }
+}
+
+impl Put {
+    async fn store(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        bytes: &[u8],
+        from: u16,
+        last: u16,
+    ) -> Result<Stored, Failure> {
+        let name = text::shown(&self.file);
+        let first = self.at.unwrap_or(1);
+        let tasks = Tasks::choose(link, self.task).await?;
+        let room = steps::room(link, tasks.current, last).await?;
+        let program = match self.at {
+            None => text::program(&name, program::check(bytes, room.into()), &screen.silenced())?,
+            Some(at) => {
+                let tags = tags_around(link, screen, first, last, room).await?;
+                let checked = program::check_part(bytes, usize::from(room - at) + 1, &part(at, Some(tags)));
+                text::program(&name, checked, &screen.silenced())?
+            }
+        };
+        let end = if self.at.is_some() || self.keep_rest { last } else { room };
+        let found = steps::read_all(link, screen, from..=end).await?;
+        let wanted = program.steps.iter().map(|step| step.record.clone()).chain(std::iter::repeat_with(steps::nop));
+        let wanted = (first..=end).zip(wanted).skip_while(|(step, _)| *step < from);
+        let changes: Vec<Change> = wanted
+            .zip(&found)
+            .filter(|((_, wanted), found)| wanted != *found)
+            .map(|((step, instruction), _)| Change { step, instruction })
+            .collect();
+        let mut cells = Cells::default();
+        if !changes.is_empty() {
+            steps::open(link).await?;
+            let mut journal = Journal { screen, name: &name, first, next: from, left: changes.len() };
+            let mut progress = screen.items_progress("writing steps", changes.len() as u64);
+            for Change { step, instruction } in &changes {
+                journal.next = *step;
+                let outcome = link.overwrite(screen, &steps::cell(*step, instruction)?, &mut cells).await;
+                outcome.map_err(|failure| journal.told(failure))?;
+                journal.left -= 1;
+                progress.advance(1);
+            }
+        }
+        let cleared = changes.iter().filter(|change| change.step > last).count();
+        cells.cells_unchanged = u32::try_from(found.len() - changes.len()).unwrap_or(u32::MAX);
+        Ok(Stored {
+            file: name,
+            task: tasks.current,
+            first_step: first,
+            last_step: last,
+            cleared_steps: cleared,
+            labels: Labelled::of(&program),
+            cells,
+        })
+    }
+
+    async fn rehearse(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        program: &Program,
+        from: u16,
+    ) -> Result<Stored, Failure> {
+        let first = self.at.unwrap_or(1);
+        let last = last_of(first, program);
+        Tasks::foresee(link, self.task).await?;
+        link.foresee(&steps::rooms_request(), "whether there is room");
+        steps::foresee_open(link).await?;
+        for (step, wanted) in (first..).zip(&program.steps).filter(|(step, _)| *step >= from) {
+            link.store(screen, &steps::cell(step, &wanted.record)?, &mut Cells::default()).await?;
+        }
+        if self.at.is_none() && !self.keep_rest && usize::from(last) < MOST_STEPS {
+            let rest = "and so on to the end of the task: what is no NOP becomes one";
+            link.foresee(&steps::read_request(last + 1), rest);
+        }
+        link.put_back().await?;
+        std::future::pending().await
+    }
+}
+
+fn last_of(first: u16, program: &Program) -> u16 {
+    u16::try_from(program.steps.len() - 1).unwrap_or(u16::MAX).saturating_add(first)
+}
+
+fn part(at: u16, tags: Option<BTreeSet<i32>>) -> Part {
+    Part { first: at.into(), tags }
+}
+
+/// The tags of the steps before and behind a part.
+async fn tags_around(
+    link: &mut Link,
+    screen: &Screen,
+    first: u16,
+    last: u16,
+    room: u16,
+) -> Result<BTreeSet<i32>, Failure> {
+    let mut around = steps::read_all(link, screen, 1..=first - 1).await?;
+    around.extend(steps::read_all(link, screen, last + 1..=room).await?);
+    Ok(program::tags(&around, 1).into_keys().collect())
+}
+
+/// How far the writing is, told if it ends early.
+struct Journal<'a> {
+    screen: &'a Screen,
+    name: &'a str,
+    first: u16,
+    /// The step that is written now.
+    next: u16,
+    /// Steps that are not yet written.
+    left: usize,
+}
+
+impl Journal<'_> {
+    fn state(&self) -> String {
+        let Self { name, first, next, left, .. } = self;
+        let steps = if *left == 1 { "1 step is".to_owned() } else { format!("{left} steps are") };
+        match next - first {
+            0 => format!("no step is known to be as in {name}, {steps} still to be written"),
+            1 => format!("step {first} is as in {name}; behind it, {steps} still to be written"),
+            _ => format!("steps {first} to {} are as in {name}; behind them, {steps} still to be written", next - 1),
+        }
+    }
+
+    fn hint(&self) -> String {
+        format!(
+            "--resume={} goes on; without it all steps are compared again, and only what differs is written",
+            self.next
+        )
+    }
+
+    /// A failure that says how far it got.
+    fn told(&mut self, failure: Failure) -> Failure {
+        let hint = failure.hint.iter().cloned().chain([self.hint()]).collect::<Vec<_>>().join("\n");
+        let told = Failure { message: format!("{}; {}", failure.message, self.state()), ..failure }.hint(hint);
+        self.left = 0;
+        told
+    }
+}
+
+impl Drop for Journal<'_> {
+    /// Ctrl-C.
+    fn drop(&mut self) {
+        if self.left > 0 {
+            self.screen.note(&format!("{}; {}", self.state(), self.hint()));
+        }
+    }
+}
+
+/// A program that is on the controller now.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Stored {
+    file: String,
+    task: u8,
+    first_step: u16,
+    /// The last step of the file.
+    last_step: u16,
+    /// Steps behind it that became NOP.
+    cleared_steps: usize,
+    /// Labels with the tags they stand for.
+    labels: Vec<Labelled>,
+    #[serde(flatten)]
+    cells: Cells,
+}
+
+impl Report for Stored {
+    fn view(&self) -> View {
+        let Self { file, task, first_step, last_step, cleared_steps, labels, cells } = self;
+        let mut fields = vec![
+            ("file", file.as_str().into()),
+            ("task", (*task).into()),
+            ("steps", format!("{first_step} to {last_step}").into()),
+            ("cleared behind", (*cleared_steps).into()),
+            ("result", cells.in_words().into()),
+        ];
+        fields.extend(labels.iter().map(|label| ("label", label.in_a_line().into())));
+        View { sections: vec![Section::Fields(fields)] }
+    }
+}

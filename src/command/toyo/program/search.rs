@@ -1,0 +1,106 @@
+//! `toyo program search`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::steps::{self, Tasks};
+use crate::command::toyo::Family;
+use crate::command::toyo::link::Link;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table::{self, Op};
+use crate::failure::{Failure, Kind};
+use crate::output::view::View;
+
+/// Finds the step of a tag. The current step of the program goes there.
+#[derive(Debug, Args)]
+#[command(after_help = "The controller only says whether the tag is there. Its step is read as the current one after \
+                        the search, and told if it is that tag. `program get` tells all tags, and moves nothing.")]
+pub struct Search {
+    /// Number of the tag
+    #[arg(value_name = "TAG", value_parser = clap::value_parser!(u16).range(1..=999))]
+    number: u16,
+    /// Task, 1 to 4, instead of the current one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    task: Option<u8>,
+}
+
+impl Command for Search {
+    type Family = Family;
+    type Report = Found;
+    const ID: &'static str = "toyo.program.search";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Found, Failure> {
+        let link = context.link;
+        if link.is_dry() {
+            Tasks::foresee(link, self.task).await?;
+            link.order(&self.order()).await?;
+            link.foresee(&steps::read_request(0), "at which step it is");
+            link.put_back().await?;
+            return std::future::pending().await;
+        }
+        let outcome = self.search(link).await;
+        steps::done(link, outcome).await
+    }
+}
+
+impl Search {
+    fn order(&self) -> Request {
+        Request::of(table::Command::Sstg, [Value::Number(self.number.into())])
+    }
+
+    async fn search(&self, link: &mut Link) -> Result<Found, Failure> {
+        let tasks = Tasks::choose(link, self.task).await?;
+        let status = link.status_of(&[0]).await?;
+        if status.executing() || status.paused() {
+            return Err(Failure::new(
+                Kind::RefusedHere,
+                "a program runs or is paused; a search would move its current step",
+            )
+            .hint("`toyo program get` tells all tags"));
+        }
+        if link.try_order(&self.order()).await?.is_err() {
+            let (tag, task) = (self.number, tasks.current);
+            return Err(Failure::new(Kind::Refused, format!("there is no tag {tag:03} in task {task} (@NG)"))
+                .hint(
+                    "`toyo program get` tells all tags; `toyo status` tells if something else keeps it from searching",
+                )
+                .code("NG"));
+        }
+        let request = steps::read_request(0);
+        let answer = link.read(&request).await?;
+        let content = request.answered(&answer);
+        let content = content.map_err(|error| link.malformed(&answer.written(), &error.to_string()))?;
+        let is_tag = content.is_some_and(|content| {
+            content.layout() == Op::Tag.row().layout && content.number("tag") == Some(self.number.into())
+        });
+        let step = answer.number("step").filter(|_| is_tag);
+        Ok(Found { task: tasks.current, tag: self.number, step })
+    }
+}
+
+/// A tag that is there.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Found {
+    task: u8,
+    tag: u16,
+    /// Its step; null if the controller did not go there (ambiguity C21).
+    step: Option<i32>,
+}
+
+impl Report for Found {
+    fn view(&self) -> View {
+        let Self { task, tag, step } = self;
+        View::text(match step {
+            Some(step) => format!("tag {tag:03} is step {step} of task {task}"),
+            None => format!("tag {tag:03} is in task {task}; the controller does not tell at which step"),
+        })
+    }
+}

@@ -1,0 +1,59 @@
+//! `toyo program show`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::steps;
+use crate::command::toyo::Family;
+use crate::command::{Command, Context, Report};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// Asks for the step at which the program of the current task stands.
+#[derive(Debug, Args)]
+pub struct Show {}
+
+impl Command for Show {
+    type Family = Family;
+    type Report = Current;
+    const ID: &'static str = "toyo.program.show";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Current, Failure> {
+        let link = context.link;
+        let (which, request) = (Request::bare(table::Command::Mtsk), steps::read_request(0));
+        if link.is_dry() {
+            link.foresee(&which, "which task is the current one");
+            link.foresee(&request, "its current step");
+            return std::future::pending().await;
+        }
+        let which = link.read(&which).await?;
+        let answer = link.read(&request).await?;
+        Ok(Current {
+            task: which.number("task").unwrap_or_default(),
+            step: answer.number("step").unwrap_or_default(),
+            instruction: answer.text("text").unwrap_or_default().to_owned(),
+        })
+    }
+}
+
+/// Where a program stands.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Current {
+    task: i32,
+    step: i32,
+    /// What stands there.
+    instruction: String,
+}
+
+impl Report for Current {
+    fn view(&self) -> View {
+        View::fields([
+            ("task", self.task.into()),
+            ("step", self.step.into()),
+            ("instruction", self.instruction.as_str().into()),
+        ])
+    }
+}

@@ -1,0 +1,168 @@
+//! The steps of a task: which task is meant, how many it has, reading them, and what it takes to write them.
+
+use std::ops::RangeInclusive;
+
+use crate::command::toyo::cells::Cell;
+use crate::command::toyo::link::{Link, misuse};
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::status::RunMode;
+use crate::controller::toyo::table::{Command, Op, Parameter};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+
+/// The task that commands are about, which may be another one for a while.
+#[derive(Debug)]
+pub struct Tasks {
+    /// Before.
+    found: u8,
+    /// Now.
+    pub current: u8,
+}
+
+impl Tasks {
+    /// Asks which task is the current one, and makes another one that for a while.
+    pub async fn choose(link: &mut Link, wanted: Option<u8>) -> Result<Self, Failure> {
+        let answer = link.read(&Request::bare(Command::Mtsk)).await?;
+        let found =
+            answer.number("task").and_then(|task| u8::try_from(task).ok()).filter(|task| (1..=4).contains(task));
+        let found = found.ok_or_else(|| link.malformed(&answer.written(), "there are tasks 1 to 4"))?;
+        let mut tasks = Self { found, current: found };
+        tasks.switch(link, wanted.unwrap_or(found)).await?;
+        Ok(tasks)
+    }
+
+    /// Makes a task the current one for a while.
+    pub async fn switch(&mut self, link: &mut Link, task: u8) -> Result<(), Failure> {
+        if task == self.current {
+            return Ok(());
+        }
+        if self.current == self.found {
+            link.borrow(&choice(task), choice(self.found), "").await?;
+        } else {
+            link.order(&choice(task)).await?;
+        }
+        self.current = task;
+        Ok(())
+    }
+
+    /// What a dry run notes of [`Tasks::choose`].
+    pub async fn foresee(link: &mut Link, wanted: Option<u8>) -> Result<(), Failure> {
+        link.foresee(&Request::bare(Command::Mtsk), "which task is the current one");
+        match wanted {
+            Some(task) => {
+                link.borrow(&choice(task), choice(1), "if another one is; later the one that was found").await
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+fn choice(task: u8) -> Request {
+    Request::of(Command::Ctsk, [Value::Number(task.into())])
+}
+
+/// How many steps each task has (TO 2-4, E22).
+pub async fn rooms(link: &mut Link) -> Result<[u16; 4], Failure> {
+    let record = link.read_content(&rooms_request()).await?;
+    let room = |task| record.number(task).and_then(|steps| u16::try_from(steps).ok()).unwrap_or_default();
+    Ok(["task1", "task2", "task3", "task4"].map(room))
+}
+
+/// Asks for the steps of tasks.
+pub fn rooms_request() -> Request {
+    let parameter = Parameter::named("E22").expect("the table has E22");
+    Request::read_parameter(parameter, None).expect("E22 has no rows")
+}
+
+/// How many steps a task has, of which a command wants some: up to `last`.
+pub async fn room(link: &mut Link, task: u8, last: u16) -> Result<u16, Failure> {
+    let room = rooms(link).await?.get(usize::from(task) - 1).copied().unwrap_or_default();
+    if last <= room {
+        return Ok(room);
+    }
+    let has = if room == 0 { "no steps".to_owned() } else { format!("{room} steps") };
+    Err(Failure::usage(format!("task {task} has {has}, and the command is about step {last}"))
+        .hint("the machine parameter E22 (task-steps) shares the steps out to the tasks"))
+}
+
+/// Asks for a step.
+pub fn read_request(step: u16) -> Request {
+    Request::read_step(step.into()).expect("steps are at most 5000")
+}
+
+/// Reads steps up to the first for which `is_last` holds.
+pub async fn read(
+    link: &mut Link,
+    screen: &Screen,
+    steps: RangeInclusive<u16>,
+    is_last: impl Fn(&Record) -> bool,
+) -> Result<Vec<Record>, Failure> {
+    let mut read = Vec::with_capacity(steps.len());
+    let mut progress = screen.items_progress("reading steps", steps.len() as u64);
+    for step in steps {
+        let record = link.read_content(&read_request(step)).await?;
+        progress.advance(1);
+        let ends = is_last(&record);
+        read.push(record);
+        if ends {
+            break;
+        }
+    }
+    Ok(read)
+}
+
+/// Reads all steps of a range.
+pub async fn read_all(link: &mut Link, screen: &Screen, steps: RangeInclusive<u16>) -> Result<Vec<Record>, Failure> {
+    read(link, screen, steps, |_| false).await
+}
+
+/// A step as something that is stored.
+pub fn cell(step: u16, instruction: &Record) -> Result<Cell, Failure> {
+    let write = Request::write_step(step.into(), instruction).map_err(|error| misuse(&error.into()))?;
+    Ok(Cell { read: read_request(step), write, wanted: instruction.clone() })
+}
+
+/// The instruction that does nothing.
+pub fn nop() -> Record {
+    Op::Nop.row().layout.record(Vec::new()).expect("NOP has no values")
+}
+
+/// Sees to it that steps can be written: nothing runs, and the controller is in program mode for a while.
+pub async fn open(link: &mut Link) -> Result<(), Failure> {
+    let status = link.status_of(&[0, 2]).await?;
+    let busy = |what: &str, hint: &str| {
+        Err(Failure::new(Kind::RefusedHere, format!("{what}, and steps are not written meanwhile")).hint(hint))
+    };
+    if status.executing() || status.homing() {
+        return busy("the controller executes a program or a command", "wait for its end, or `toyo stop`");
+    }
+    if status.paused() {
+        return busy("a program is paused", "`toyo run sequential` goes on with it, `toyo reset` gives it up");
+    }
+    let back = match status.run_mode() {
+        Some(RunMode::Automatic) => Command::Maut,
+        Some(RunMode::Step) => Command::Mstp,
+        Some(RunMode::Program) | None => return Ok(()),
+    };
+    link.borrow(&Request::bare(Command::Mpro), Request::bare(back), "").await
+}
+
+/// What a dry run notes of [`open`].
+pub async fn foresee_open(link: &mut Link) -> Result<(), Failure> {
+    let page = |page| Request::of(Command::Stas, [Value::Number(page)]);
+    link.foresee(&page(0), "whether something runs");
+    link.foresee(&page(2), "in which mode it is");
+    link.take_host().await?;
+    let (change, back) = (Request::bare(Command::Mpro), Request::bare(Command::Maut));
+    link.borrow(&change, back, "if it is in automatic or step mode; later the mode that was found").await
+}
+
+/// Puts back what was changed for a while, whatever became of the work.
+pub async fn done<T>(link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
+    let put_back = link.put_back().await;
+    let value = outcome?;
+    put_back.map_err(|failure| Failure { message: format!("it was done, but {}", failure.message), ..failure })?;
+    Ok(value)
+}
