@@ -10,6 +10,8 @@ mod put;
 mod search;
 mod show;
 mod steps;
+#[cfg(test)]
+mod tests;
 mod text;
 
 use super::Family;

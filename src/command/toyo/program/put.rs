@@ -11,6 +11,7 @@ use super::and_mode;
 use super::check::Labelled;
 use super::steps::{self, Tasks};
 use super::text;
+use crate::command::interrupt::interruptible;
 use crate::command::toyo::Family;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::link::Link;
@@ -119,14 +120,21 @@ impl Put {
         let mut cells = Cells::default();
         if !changes.is_empty() {
             steps::open(link).await?;
-            let mut journal = Journal { screen, name: &name, first, next: from, left: changes.len() };
             let mut progress = screen.items_progress("writing steps", changes.len() as u64);
-            for Change { step, instruction } in &changes {
-                journal.next = *step;
-                let outcome = link.overwrite(screen, &steps::cell(*step, instruction)?, &mut cells).await;
-                outcome.map_err(|failure| journal.told(failure))?;
-                journal.left -= 1;
-                progress.advance(1);
+            // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
+            let outcome = interruptible(async {
+                for Change { step, instruction } in &changes {
+                    link.overwrite(screen, &steps::cell(*step, instruction)?, &mut cells).await?;
+                    progress.advance(1);
+                }
+                Ok(())
+            })
+            .await
+            .and_then(|outcome| outcome);
+            drop(progress);
+            let done = usize::try_from(cells.cells_written).unwrap_or(usize::MAX);
+            if let (Err(failure), Some(change)) = (outcome, changes.get(done)) {
+                return Err(account(failure, &name, first, change.step, changes.len() - done));
             }
         }
         let cleared = changes.iter().filter(|change| change.step > last).count();
@@ -187,51 +195,17 @@ async fn tags_around(
     Ok(program::tags(&around, 1).into_keys().collect())
 }
 
-/// How far the writing is, told if it ends early.
-struct Journal<'a> {
-    screen: &'a Screen,
-    name: &'a str,
-    first: u16,
-    /// The step that is written now.
-    next: u16,
-    /// Steps that are not yet written.
-    left: usize,
-}
-
-impl Journal<'_> {
-    fn state(&self) -> String {
-        let Self { name, first, next, left, .. } = self;
-        let steps = if *left == 1 { "1 step is".to_owned() } else { format!("{left} steps are") };
-        match next - first {
-            0 => format!("no step is known to be as in {name}, {steps} still to be written"),
-            1 => format!("step {first} is as in {name}; behind it, {steps} still to be written"),
-            _ => format!("steps {first} to {} are as in {name}; behind them, {steps} still to be written", next - 1),
-        }
-    }
-
-    fn hint(&self) -> String {
-        format!(
-            "--resume={} goes on; without it all steps are compared again, and only what differs is written",
-            self.next
-        )
-    }
-
-    /// A failure that says how far it got.
-    fn told(&mut self, failure: Failure) -> Failure {
-        let hint = failure.hint.iter().cloned().chain([self.hint()]).collect::<Vec<_>>().join("\n");
-        let told = Failure { message: format!("{}; {}", failure.message, self.state()), ..failure }.hint(hint);
-        self.left = 0;
-        told
-    }
-}
-
-impl Drop for Journal<'_> {
-    /// Ctrl-C.
-    fn drop(&mut self) {
-        if self.left > 0 {
-            self.screen.note(&format!("{}; {}", self.state(), self.hint()));
-        }
-    }
+/// The failure that ended the writing at a step, with what is as in the file and how to go on.
+fn account(failure: Failure, name: &str, first: u16, next: u16, left: usize) -> Failure {
+    let rest = if left == 1 { "1 step is".to_owned() } else { format!("{left} steps are") };
+    let state = match next - first {
+        0 => format!("no step is known to be as in {name}, {rest} still to be written"),
+        1 => format!("step {first} is as in {name}; {rest} still to be written"),
+        _ => format!("steps {first} to {} are as in {name}; {rest} still to be written", next - 1),
+    };
+    let again = format!("--resume={next} goes on there; without it, all is compared again and what differs is written");
+    let hint = failure.hint.as_ref().map_or(again.clone(), |hint| format!("{hint}; then {again}"));
+    Failure { message: format!("{}; {state}", failure.message.trim_end_matches('.')), ..failure }.hint(hint)
 }
 
 /// A program that is on the controller now.
