@@ -33,6 +33,7 @@ mod refusal;
 mod robot_type;
 mod rows;
 mod run;
+mod sim;
 pub mod simulated;
 mod status;
 mod stores;
@@ -117,5 +118,7 @@ commands! {
         Ports(AtDesk<ports::Ports>),
         /// Sequential programs: read, write, edit, check
         Program(Verbs<program::Program>),
+        /// Programs at the desk, without any controller
+        Sim(Verbs<sim::Sim>),
     }
 }

@@ -47,6 +47,13 @@ impl Place {
         Self { x_mm: mm("x"), y_mm: mm("y"), z_mm: mm("z"), r_mm: mm("r") }
     }
 
+    /// Coordinates of the four axes in mm, to the hundredth as a controller tells them.
+    pub fn at(mm: [f64; 4]) -> Self {
+        // A tiny negative one is 0.
+        let [x_mm, y_mm, z_mm, r_mm] = mm.map(|mm| (mm * 100.0).round() / 100.0 + 0.0);
+        Self { x_mm, y_mm, z_mm, r_mm }
+    }
+
     /// With names, in a line.
     pub fn in_a_line(&self) -> String {
         let Self { x_mm, y_mm, z_mm, r_mm } = self;

@@ -12,7 +12,7 @@ mod show;
 mod steps;
 #[cfg(test)]
 mod tests;
-mod text;
+pub mod text;
 
 use super::Family;
 use crate::command::{AtDesk, commands};

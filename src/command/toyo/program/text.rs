@@ -37,23 +37,25 @@ pub fn shown(path: &Path) -> String {
 
 /// The program in a text that was checked; warnings go to stderr, errors are a failure.
 pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program, Failure> {
-    let Some(program) = checked.program else { return Err(faulty(name, &checked)) };
+    let Some(program) = checked.program else {
+        let errors: Vec<Finding> = checked.errors().cloned().collect();
+        return Err(faulty(name, &errors).hint(format!("`toyo program check {name}` shows what is wrong and where")));
+    };
     for finding in checked.findings.iter().filter(|finding| finding.severity == Severity::Warning) {
         screen.note(&in_a_line(name, finding));
     }
     Ok(program)
 }
 
-fn faulty(name: &str, checked: &Checked) -> Failure {
-    let mut errors = checked.errors();
-    let first = errors.next().map(|finding| in_a_line(name, finding)).unwrap_or_default();
-    let more = match errors.count() {
-        0 => String::new(),
-        1 => "; there is 1 more error".to_owned(),
-        more => format!("; there are {more} more errors"),
+/// The first mistake of a file, and how many more there are.
+pub fn faulty(name: &str, errors: &[Finding]) -> Failure {
+    let first = errors.first().map(|finding| in_a_line(name, finding)).unwrap_or_default();
+    let more = match errors.len() {
+        0 | 1 => String::new(),
+        2 => "; there is 1 more error".to_owned(),
+        all => format!("; there are {} more errors", all - 1),
     };
     Failure::usage(format!("{first}{more}"))
-        .hint(format!("nothing was sent; `toyo program check {name}` shows what is wrong and where"))
 }
 
 /// `pick.txt:3:9: error: there is no label 'pikc' (did you mean pick?)`.

@@ -1,0 +1,237 @@
+//! `toyo sim run`.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use clap::Args;
+
+use super::trace::{End, Recorder, Source, Trace};
+use crate::command::Desk;
+use crate::command::toyo::program::text;
+use crate::controller::toyo::bulk::{self, Placed};
+use crate::controller::toyo::findings::Finding;
+use crate::controller::toyo::program::{MOST_STEPS, check};
+use crate::controller::toyo::simulator::{Simulator, Start, What};
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::settings::duration;
+
+/// Runs a program in the simulator, in virtual time, and prints steps, outputs and positions as they come.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The controller is a fresh one that knows its origin and stands at 0, with servo power on; --state, \
+                  --params and --points say what else is in it. Task 1 has the program and is started.\n\nThe run ends \
+                  at END or a STOP of task 1 (exit code 0), with an error of the controller, when every task waits for \
+                  something that never comes, or when --for is over (8). A faulty file is a wrong argument (2).\n\n  \
+                  armctl toyo sim run pick.txt --points points.csv --input 'at 2s 0/01/3 on'"
+)]
+pub struct Run {
+    /// Program of task 1; - is stdin
+    file: PathBuf,
+    /// Program of another task, such as 2=gate.txt; a TSTR starts it (repeatable)
+    #[arg(long, value_name = "TASK=FILE", value_parser = other_task)]
+    task: Vec<(usize, PathBuf)>,
+    /// Points (CSV), as `point list -o csv` prints them
+    #[arg(long, value_name = "FILE")]
+    points: Option<PathBuf>,
+    /// Parameters and tables (TOML), as `param dump` writes them
+    #[arg(long, value_name = "FILE")]
+    params: Option<PathBuf>,
+    /// Start state of the simulator (TOML), as for `armctl sim toyo`
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
+    /// Something that somebody does: "at 2s 0/01/3 on" sets a bit of an input port, "at 2s 0/01 00000100" all eight
+    /// (repeatable)
+    #[arg(long, value_name = "EVENT", value_parser = input)]
+    input: Vec<Input>,
+    /// Step to start at
+    #[arg(long, value_name = "STEP", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=5000))]
+    from: u16,
+    /// End after so much time of the program, instead of 10 minutes
+    #[arg(long = "for", value_name = "TIME", value_parser = duration::parse)]
+    within: Option<Duration>,
+    /// Print the position every so often as well
+    #[arg(long = "trace-every", value_name = "TIME", value_parser = every)]
+    every: Option<Duration>,
+    /// Most rows that are kept, the last ones
+    #[arg(long, value_name = "N", default_value_t = 10_000)]
+    rows: usize,
+}
+
+/// A change of an input.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Input {
+    at: Duration,
+    /// As the console of the simulator takes it: `0/01/3 on`.
+    what: String,
+}
+
+/// Longest run if nobody says otherwise.
+const WITHIN: Duration = Duration::from_secs(600);
+/// Less than this between two positions is too much to print.
+const FINEST: Duration = Duration::from_millis(1);
+
+fn every(text: &str) -> Result<Duration, String> {
+    let every = duration::parse(text)?;
+    if every < FINEST { Err("it is at least 1ms".to_owned()) } else { Ok(every) }
+}
+
+fn other_task(text: &str) -> Result<(usize, PathBuf), String> {
+    let parts = text.split_once('=').and_then(|(task, file)| Some((task.parse().ok()?, file)));
+    match parts {
+        Some((task, file)) if (2..=4).contains(&task) && !file.is_empty() => Ok((task, file.into())),
+        _ => Err("write a task from 2 to 4 and a file, such as 2=gate.txt".to_owned()),
+    }
+}
+
+fn input(text: &str) -> Result<Input, String> {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let (at, rest) = match words.as_slice() {
+        ["at", at, rest @ ..] => (duration::parse(at)?, rest),
+        rest => (Duration::ZERO, rest),
+    };
+    let input = Input { at, what: rest.join(" ") };
+    // A controller with all ports tries it.
+    let tried = Simulator::new(Start::default()).console(Duration::ZERO, &input.line());
+    tried.map(|_| input).map_err(|why| format!("{why}; write it like \"at 2s 0/01/3 on\""))
+}
+
+impl Input {
+    fn line(&self) -> String {
+        format!("input {}", self.what)
+    }
+}
+
+impl Desk for Run {
+    type Report = Trace;
+    const ID: &'static str = "toyo.sim.run";
+
+    fn run(&self, screen: &Screen) -> Result<Trace, Failure> {
+        let mut sources = vec![self.source(screen, 1, &self.file)?];
+        for (task, file) in &self.task {
+            if sources.iter().any(|source| source.task == *task) {
+                return Err(Failure::usage(format!("--task {task}= is there twice")));
+            }
+            sources.push(self.source(screen, *task, file)?);
+        }
+        let start = self.start(&sources)?;
+        let mut simulator = Simulator::new(start);
+        simulator.record_trace(true);
+        simulator
+            .console(Duration::ZERO, &format!("start {}", self.from))
+            .map_err(|why| Failure::usage(format!("the program cannot be started: {why}")))?;
+        let trace = self.watch(&mut simulator, Recorder::new(sources, self.rows));
+        screen.note(&trace.summary());
+        Ok(trace)
+    }
+}
+
+impl Run {
+    fn source(&self, screen: &Screen, task: usize, file: &Path) -> Result<Source, Failure> {
+        let name = text::shown(file);
+        let bytes = text::read(file)?;
+        Ok(Source { task, program: text::program(&name, check(&bytes, MOST_STEPS), screen)?, file: name })
+    }
+
+    /// The controller, with the programs in it.
+    fn start(&self, sources: &[Source]) -> Result<Start, Failure> {
+        let state = match &self.state {
+            Some(path) => {
+                let bytes = text::read(path)?;
+                let text = String::from_utf8(bytes)
+                    .map_err(|_| Failure::usage(format!("{}: this is no text in UTF-8", path.display())))?;
+                Start::parse(&text).map_err(|error| {
+                    Failure::usage(format!("{}: {error}", path.display()))
+                        .hint("`armctl help simulator` shows the form of the file")
+                })?;
+                text
+            }
+            None => "origin = true\n".to_owned(),
+        };
+        let mut written = Vec::new();
+        if let Some(path) = &self.params {
+            written.extend(writes(path, bulk::parameters::read(&text::read(path)?))?);
+        }
+        if let Some(path) = &self.points {
+            written.extend(writes(path, bulk::points::read(&text::read(path)?, 4))?);
+        }
+        // As what was there before power came on, so that parameter 2 is in force.
+        let mut document: toml::Table = state.parse().map_err(|error| Failure::usage(format!("{error}")))?;
+        if let toml::Value::Array(list) = document.entry("write").or_insert_with(|| toml::Value::Array(Vec::new())) {
+            list.extend(written.into_iter().map(toml::Value::String));
+        }
+        if let toml::Value::Table(steps) = document.entry("steps").or_insert_with(|| toml::Table::new().into()) {
+            for Source { task, program, .. } in sources {
+                let texts = program.steps.iter().map(|step| toml::Value::String(step.text()));
+                steps.insert(task.to_string(), toml::Value::Array(texts.collect()));
+            }
+        }
+        Start::parse(&document.to_string()).map_err(Failure::usage)
+    }
+
+    /// Lets the program run, and writes down what happens.
+    fn watch(&self, simulator: &mut Simulator, mut recorder: Recorder) -> Trace {
+        let mut inputs: Vec<&Input> = self.input.iter().collect();
+        inputs.sort_by_key(|input| input.at);
+        let mut inputs = inputs.into_iter().peekable();
+        let mut sample = self.every.map(|_| Duration::ZERO);
+        let limit = self.within.unwrap_or(WITHIN);
+        let mut now = Duration::ZERO;
+        loop {
+            let mut end = None;
+            for event in simulator.take_trace() {
+                recorder.event(&event);
+                end = match event.what {
+                    What::Error(code) => Some(End::Error(code)),
+                    What::Stopped => Some(End::Stopped),
+                    What::Ended(_) if !simulator.state().executing => Some(End::Ended),
+                    _ => end,
+                };
+            }
+            let due = [simulator.wake(), inputs.peek().map(|input| input.at)].into_iter().flatten().min();
+            let outcome = match (end, due) {
+                (Some(end), _) => Some(end),
+                (None, None) => Some(End::Waits),
+                (None, Some(due)) if due > limit => Some(End::TimeUp),
+                _ => None,
+            };
+            if let Some(outcome) = outcome {
+                if outcome == End::TimeUp {
+                    now = limit;
+                    simulator.advance(now);
+                }
+                return recorder.ended(outcome, now, &simulator.state());
+            }
+            let due = due.unwrap_or(limit);
+            now = sample.map_or(due, |sample| sample.min(due));
+            simulator.advance(now);
+            if let Some((at, every)) = sample.zip(self.every).filter(|(at, _)| *at == now) {
+                recorder.position(now, simulator.state().position);
+                sample = Some(at + every);
+            }
+            while let Some(input) = inputs.next_if(|input| input.at <= now) {
+                let line = input.line();
+                recorder.input(now, simulator.state().position, &line);
+                // The port was tried before.
+                if let Err(why) = simulator.console(now, &line) {
+                    recorder.input(now, simulator.state().position, &why);
+                }
+            }
+        }
+    }
+}
+
+/// The commands that write the settings of a file, without `@`.
+fn writes(path: &Path, read: Result<Vec<Placed>, Vec<Finding>>) -> Result<Vec<String>, Failure> {
+    let name = text::shown(path);
+    let settings = read.map_err(|errors| text::faulty(&name, &errors))?;
+    let mut start = Start::default();
+    let mut commands = Vec::with_capacity(settings.len());
+    for (setting, line) in settings {
+        let request = setting.write().map_err(|error| Failure::usage(format!("{name}:{line}: {error}")))?;
+        let command = request.text().trim_start_matches('@').to_owned();
+        start = start.with_written(&command).map_err(|why| Failure::usage(format!("{name}:{line}: {why}")))?;
+        commands.push(command);
+    }
+    Ok(commands)
+}

@@ -1,0 +1,352 @@
+//! What happened in the simulator, as a report.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::time::Duration;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::Report;
+use crate::command::toyo::position::Place;
+use crate::command::toyo::status::ErrorCode;
+use crate::controller::toyo::errors;
+use crate::controller::toyo::program::Program;
+use crate::controller::toyo::request::instruction;
+use crate::controller::toyo::simulator::{Event, State, What};
+use crate::controller::toyo::table::{Instruction, Op};
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Table, Tone, View};
+
+/// The program of a task, with its file.
+#[derive(Debug)]
+pub struct Source {
+    /// 1 to 4.
+    pub task: usize,
+    /// What the file is called.
+    pub file: String,
+    /// What is in it.
+    pub program: Program,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// At the END of every task that was started.
+    Ended,
+    /// At a STOP.
+    Stopped,
+    /// With an error of the controller.
+    Error(u8),
+    /// Every task waits for something that never comes.
+    Waits,
+    /// When the time was over.
+    TimeUp,
+}
+
+/// Writes down what happens.
+#[derive(Debug)]
+pub struct Recorder {
+    sources: Vec<Source>,
+    rows: VecDeque<Row>,
+    most: usize,
+    left_out: usize,
+    /// The step of each task that runs.
+    at: BTreeMap<usize, usize>,
+    ports: BTreeMap<(usize, usize), u8>,
+}
+
+/// What happened, and how it ended.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Trace {
+    /// `ended`, `stopped`, `error`, `waits` or `time_up`.
+    end: &'static str,
+    /// The error, if it ended with one.
+    error: Option<ErrorCode>,
+    /// Time of the program until then.
+    elapsed_s: f64,
+    /// Where the axes were then.
+    position: Place,
+    /// Output ports of which a bit was on then.
+    outputs: Vec<Port>,
+    /// The steps at which tasks were then; of one that has ended, none.
+    steps: Vec<At>,
+    /// What happened, in its order.
+    trace: VecDeque<Row>,
+    /// Rows before these that were left out.
+    rows_left_out: usize,
+    #[serde(skip)]
+    failure: Option<Failure>,
+}
+
+/// A port of outputs.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+struct Port {
+    /// 0 to 4.
+    station: usize,
+    port: usize,
+    /// Bits 8 to 1.
+    bits: String,
+}
+
+/// A step of a task, and where it stands in its file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+struct At {
+    task: usize,
+    step: usize,
+    file: String,
+    /// Line of the file, from 1.
+    line: usize,
+    /// The label that is this step, or that it names.
+    label: Option<String>,
+    instruction: String,
+}
+
+/// Something that happened.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+struct Row {
+    time_s: f64,
+    /// `step`, `output`, `input`, `position`, `origin`, `stopped`, `error` or `ended`.
+    event: &'static str,
+    /// In words.
+    what: String,
+    /// The step that begins or ends.
+    at: Option<At>,
+    /// The port of outputs that changed.
+    port: Option<Port>,
+    #[serde(flatten)]
+    place: Place,
+}
+
+impl Recorder {
+    /// With the programs, and the number of rows that are kept.
+    pub fn new(sources: Vec<Source>, most: usize) -> Self {
+        let (rows, at, ports) = (VecDeque::new(), BTreeMap::new(), BTreeMap::new());
+        Self { sources, rows, most, left_out: 0, at, ports }
+    }
+
+    /// What the simulator tells.
+    pub fn event(&mut self, event: &Event) {
+        let mut row = Row::new(event.at, event.position, "step", String::new());
+        match &event.what {
+            What::Step { task, step } => {
+                self.at.insert(*task, *step);
+                row.at = self.find(*task, *step);
+                row.what = row.at.as_ref().map(At::in_words).unwrap_or_else(|| format!("step {step} of task {task}"));
+            }
+            What::Output { station, port, bits } => {
+                self.ports.insert((*station, *port), *bits);
+                let port = Port::new(*station, *port, *bits);
+                (row.event, row.what, row.port) = ("output", port.in_words(), Some(port));
+            }
+            What::Error(code) => {
+                (row.event, row.what) = ("error", format!("error {}", errors::explain(*code).in_a_line()));
+            }
+            What::Stopped => (row.event, row.what) = ("stopped", "stopped".to_owned()),
+            What::Ended(task) => {
+                row.at = self.at.remove(task).and_then(|step| self.find(*task, step));
+                (row.event, row.what) = ("ended", format!("task {task} has ended"));
+            }
+            What::Origin => (row.event, row.what) = ("origin", "the origin is known".to_owned()),
+            What::Console(text) => (row.event, row.what) = ("input", text.clone()),
+        }
+        self.add(row);
+    }
+
+    /// What somebody does.
+    pub fn input(&mut self, at: Duration, position: [f64; 4], what: &str) {
+        self.add(Row::new(at, position, "input", what.to_owned()));
+    }
+
+    /// Where the axes are.
+    pub fn position(&mut self, at: Duration, position: [f64; 4]) {
+        self.add(Row::new(at, position, "position", "position".to_owned()));
+    }
+
+    /// How it ended.
+    pub fn ended(self, end: End, at: Duration, state: &State) -> Trace {
+        let steps: Vec<At> = self.at.iter().filter_map(|(task, step)| self.find(*task, *step)).collect();
+        let ports = self.ports.iter().filter(|(_, bits)| **bits != 0);
+        Trace {
+            end: end.name(),
+            error: if let End::Error(code) = end { Some(ErrorCode::of(code)) } else { None },
+            elapsed_s: at.as_secs_f64(),
+            position: Place::at(state.position),
+            outputs: ports.map(|((station, port), bits)| Port::new(*station, *port, *bits)).collect(),
+            failure: end.failure(at, &steps),
+            steps,
+            trace: self.rows,
+            rows_left_out: self.left_out,
+        }
+    }
+
+    fn add(&mut self, row: Row) {
+        self.rows.push_back(row);
+        if self.rows.len() > self.most {
+            self.rows.pop_front();
+            self.left_out += 1;
+        }
+    }
+
+    fn find(&self, task: usize, step: usize) -> Option<At> {
+        let Source { file, program, .. } = self.sources.iter().find(|source| source.task == task)?;
+        let found = program.steps.get(step.checked_sub(1)?)?;
+        let tag = ["tag", "then"].into_iter().find_map(|name| found.record.number(name));
+        let label = program.labels.iter().find(|label| Some(label.tag) == tag);
+        Some(At {
+            task,
+            step,
+            file: file.clone(),
+            line: found.line,
+            label: label.map(|label| label.name.clone()),
+            instruction: found.text(),
+        })
+    }
+}
+
+impl End {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Ended => "ended",
+            Self::Stopped => "stopped",
+            Self::Error(_) => "error",
+            Self::Waits => "waits",
+            Self::TimeUp => "time_up",
+        }
+    }
+
+    /// Why that is no success.
+    fn failure(self, at: Duration, steps: &[At]) -> Option<Failure> {
+        let places: Vec<String> = steps.iter().map(At::in_a_line).collect();
+        let places = places.join("; ");
+        let failed = |what: String| Failure::new(Kind::ConditionNotMet, what);
+        let after = at.as_secs_f64();
+        Some(match self {
+            Self::Ended | Self::Stopped => return None,
+            Self::Error(code) => {
+                let error = errors::explain(code);
+                failed(format!("after {after:.3} s, error {}: {places}", error.in_a_line()))
+                    .hint(error.remedy)
+                    .code(format!("{code:02X}"))
+            }
+            Self::Waits => {
+                let what = steps.iter().find_map(At::wanted).unwrap_or("something");
+                let hint =
+                    steps.iter().find_map(At::help).unwrap_or_else(|| "nothing else runs that could do it".into());
+                failed(format!("after {after:.3} s, everything waits for {what} that never comes: {places}")).hint(hint)
+            }
+            Self::TimeUp => {
+                failed(format!("after {after:.3} s, it still runs: {places}")).hint("--for lets it run longer")
+            }
+        })
+    }
+}
+
+impl At {
+    /// `next: TAG TAG=001`, `JMP TAG=001 (next)`.
+    fn in_words(&self) -> String {
+        match &self.label {
+            Some(label) if self.instruction.starts_with("TAG ") => format!("{label}: {}", self.instruction),
+            Some(label) => format!("{} ({label})", self.instruction),
+            None => self.instruction.clone(),
+        }
+    }
+
+    /// `pick.txt:7, task 1, step 5: IN STN=0 PN01=.......1 AND`.
+    fn in_a_line(&self) -> String {
+        let Self { task, step, file, line, .. } = self;
+        format!("{file}:{line}, task {task}, step {step}: {}", self.in_words())
+    }
+
+    fn op(&self) -> Option<Op> {
+        Instruction::named(self.instruction.split(' ').next()?).map(|row| row.op)
+    }
+
+    /// What it waits for.
+    fn wanted(&self) -> Option<&'static str> {
+        Some(match self.op()? {
+            Op::In => "an input",
+            Op::Insp => "an internal port",
+            Op::Cwit => "a count",
+            Op::Rsmv => "coordinates of the host",
+            _ => return None,
+        })
+    }
+
+    /// What gives it that.
+    fn help(&self) -> Option<String> {
+        let record = instruction(&self.instruction).ok().filter(|_| self.op() == Some(Op::In))?;
+        let (station, port, mask) = (record.number("station")?, record.number("port")?, record.mask("data")?);
+        let bit = (0..8).find(|bit| mask.care >> bit & 1 == 1)?;
+        let state = if mask.bits >> bit & 1 == 1 { "on" } else { "off" };
+        Some(format!("--input \"at 2s {station}/{port:02}/{} {state}\" gives it", bit + 1))
+    }
+}
+
+impl Port {
+    fn new(station: usize, port: usize, bits: u8) -> Self {
+        Self { station, port, bits: format!("{bits:08b}") }
+    }
+
+    fn in_words(&self) -> String {
+        let Self { station, port, bits } = self;
+        format!("output {station}/{port:02} = {bits}")
+    }
+}
+
+impl Row {
+    fn new(at: Duration, position: [f64; 4], event: &'static str, what: String) -> Self {
+        Self { time_s: at.as_secs_f64(), event, what, at: None, port: None, place: Place::at(position) }
+    }
+}
+
+impl Trace {
+    /// The end in a line.
+    pub fn summary(&self) -> String {
+        let outputs: Vec<String> = self.outputs.iter().map(Port::in_words).collect();
+        let outputs = if outputs.is_empty() { "no output on".to_owned() } else { outputs.join(", ") };
+        let more = match self.rows_left_out {
+            0 => String::new(),
+            rows => format!("; {rows} rows before these were left out, --rows keeps more"),
+        };
+        let end = match self.end {
+            "ended" | "stopped" => format!("{} after {:.3} s: ", self.end, self.elapsed_s),
+            _ => String::new(),
+        };
+        format!("{end}{}; {outputs}{more}", self.position.in_a_line())
+    }
+}
+
+impl Report for Trace {
+    /// Axes that stay at 0 have no column, nor has the task where there is one only.
+    fn view(&self) -> View {
+        let axes: [(&'static str, fn(&Place) -> f64); 4] =
+            [("x (mm)", |p| p.x_mm), ("y (mm)", |p| p.y_mm), ("z (mm)", |p| p.z_mm), ("r (mm)", |p| p.r_mm)];
+        let has_tasks = self.trace.iter().any(|row| row.at.as_ref().is_some_and(|at| at.task > 1));
+        let moves = |of: fn(&Place) -> f64| self.trace.iter().any(|row| of(&row.place) != 0.0);
+        let axes: Vec<_> = axes.into_iter().filter(|(name, of)| *name == "x (mm)" || moves(*of)).collect();
+        let mut columns = vec!["time (s)"];
+        columns.extend(has_tasks.then_some("task"));
+        columns.extend(["step", "line", "what"]);
+        columns.extend(axes.iter().map(|(name, _)| *name));
+        let mut table = Table::new(&columns, "nothing happened");
+        for row in &self.trace {
+            let number = |of: fn(&At) -> usize| row.at.as_ref().map_or_else(|| Cell::number(""), |at| of(at).into());
+            let tone = match row.event {
+                "error" => Tone::Bad,
+                "output" | "ended" => Tone::Good,
+                "input" | "stopped" => Tone::Warning,
+                _ => Tone::Plain,
+            };
+            let mut cells = vec![Cell::number(format!("{:.3}", row.time_s))];
+            cells.extend(has_tasks.then(|| number(|at| at.task)));
+            cells.extend([number(|at| at.step), number(|at| at.line), Cell::from(row.what.as_str()).tone(tone)]);
+            cells.extend(axes.iter().map(|(_, of)| Cell::number(format!("{:.2}", of(&row.place)))));
+            table.rows.push(cells);
+        }
+        View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.failure.clone()
+    }
+}
