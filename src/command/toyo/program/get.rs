@@ -25,6 +25,7 @@ use crate::output::view::View;
     after_help = "All steps are read, as subroutines may stand behind END; NOPs up to the end of the task are left out of the text. A step takes about 35 ms at 9600 baud. To read another task than the current one, that task is \
                         made the current one for a while, which is a change: a read-only robot refuses it."
 )]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag")]
 pub struct Get {
     /// A new file; without one, the text goes to stdout
     file: Option<PathBuf>,

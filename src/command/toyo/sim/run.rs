@@ -107,12 +107,12 @@ impl Desk for Run {
     const ID: &'static str = "toyo.sim.run";
 
     fn run(&self, screen: &Screen) -> Result<Trace, Failure> {
-        let mut sources = vec![self.source(screen, 1, &self.file)?];
+        let mut sources = vec![source(screen, 1, &self.file)?];
         for (task, file) in &self.task {
             if sources.iter().any(|source| source.task == *task) {
                 return Err(Failure::usage(format!("--task {task}= is there twice")));
             }
-            sources.push(self.source(screen, *task, file)?);
+            sources.push(source(screen, *task, file)?);
         }
         let start = self.start(&sources)?;
         let mut simulator = Simulator::new(start);
@@ -127,12 +127,6 @@ impl Desk for Run {
 }
 
 impl Run {
-    fn source(&self, screen: &Screen, task: usize, file: &Path) -> Result<Source, Failure> {
-        let name = text::shown(file);
-        let bytes = text::read(file)?;
-        Ok(Source { task, program: text::program(&name, check(&bytes, MOST_STEPS), screen)?, file: name })
-    }
-
     /// The controller, with the programs in it.
     fn start(&self, sources: &[Source]) -> Result<Start, Failure> {
         let state = match &self.state {
@@ -234,4 +228,11 @@ fn writes(path: &Path, read: Result<Vec<Placed>, Vec<Finding>>) -> Result<Vec<St
         commands.push(command);
     }
     Ok(commands)
+}
+
+/// The program in a file.
+fn source(screen: &Screen, task: usize, file: &Path) -> Result<Source, Failure> {
+    let name = text::shown(file);
+    let bytes = text::read(file)?;
+    Ok(Source { task, program: text::program(&name, check(&bytes, MOST_STEPS), screen)?, file: name })
 }

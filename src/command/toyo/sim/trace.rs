@@ -131,7 +131,7 @@ impl Recorder {
             What::Step { task, step } => {
                 self.at.insert(*task, *step);
                 row.at = self.find(*task, *step);
-                row.what = row.at.as_ref().map(At::in_words).unwrap_or_else(|| format!("step {step} of task {task}"));
+                row.what = row.at.as_ref().map_or_else(|| format!("step {step} of task {task}"), At::in_words);
             }
             What::Output { station, port, bits } => {
                 self.ports.insert((*station, *port), *bits);
@@ -316,10 +316,13 @@ impl Trace {
     }
 }
 
+/// A column, and what stands there.
+type Axis = (&'static str, fn(&Place) -> f64);
+
 impl Report for Trace {
     /// Axes that stay at 0 have no column, nor has the task where there is one only.
     fn view(&self) -> View {
-        let axes: [(&'static str, fn(&Place) -> f64); 4] =
+        let axes: [Axis; 4] =
             [("x (mm)", |p| p.x_mm), ("y (mm)", |p| p.y_mm), ("z (mm)", |p| p.z_mm), ("r (mm)", |p| p.r_mm)];
         let has_tasks = self.trace.iter().any(|row| row.at.as_ref().is_some_and(|at| at.task > 1));
         let moves = |of: fn(&Place) -> f64| self.trace.iter().any(|row| of(&row.place) != 0.0);
