@@ -4,9 +4,14 @@ mod bus;
 mod card;
 mod cells;
 mod coordinate;
+mod copies;
+mod counter;
 mod counter;
 #[cfg(test)]
 mod coverage;
+#[cfg(test)]
+mod coverage;
+mod easy;
 mod error;
 mod files;
 mod home;
@@ -22,6 +27,7 @@ mod offset;
 mod orders;
 mod overrides;
 mod overview;
+mod palletizing;
 mod param;
 mod point;
 mod ports;
@@ -88,6 +94,10 @@ commands! {
         Mvm(Verbs<mvm::Mvm>),
         /// Torque limits that programs name by their row
         TorqueTable(Verbs<rows::TorqueTable>),
+        /// Palletizing programs
+        Palletizing(Verbs<palletizing::Palletizing>),
+        /// Easy programs
+        Easy(Verbs<easy::Easy>),
         /// Input, output and internal ports
         Io(Verbs<io::Io>),
         /// Counters

@@ -1,0 +1,131 @@
+//! `toyo easy`: the eight easy programs, each a part of the sequential program that is repeated.
+
+mod get;
+mod orders;
+mod progress;
+mod set;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::cells::Cell;
+use super::link::wrong;
+use crate::command::commands;
+use crate::controller::toyo::field::{Field, Value};
+use crate::controller::toyo::layout::{Layout, Record};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table::Command;
+use crate::failure::Failure;
+use crate::output::view::Table;
+
+commands! {
+    /// What can be done with easy programs.
+    pub enum Easy of Family {
+        /// Read programs: 1-3; without any, all 8
+        Get(get::Get),
+        /// Write a program: 1 START LOOP END
+        Set(set::Set),
+        /// Copy a program to another place
+        Copy(orders::Copy),
+        /// Choose the program that run easy starts
+        Select(orders::Select),
+        /// How far the program is that runs
+        Progress(progress::Progress),
+    }
+}
+
+/// The number of a program, 1 to 8.
+fn field() -> &'static Field {
+    &Command::Resy.row().requests[0].fields[0]
+}
+
+/// The values of a program, behind its number and what is always 0.
+fn values() -> Layout {
+    Layout::new("START={} LOOP={} END={}", &Command::Wesy.row().requests[0].fields[2..])
+}
+
+fn read(program: i32) -> Result<Request, Failure> {
+    Request::new(Command::Resy, vec![Value::Number(program), Value::Number(0)]).map_err(|error| wrong(&error))
+}
+
+/// A program with its values.
+fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+    let all: Vec<Value> = [Value::Number(program), Value::Number(0)].into_iter().chain(values).collect();
+    let write = Request::new(Command::Wesy, all.clone()).map_err(|error| wrong(&error))?;
+    let wanted = Command::Resy.row().answers[0].record(all).map_err(|error| wrong(&error))?;
+    Ok(Cell { read: read(program)?, write, wanted })
+}
+
+/// An easy program.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Program {
+    /// 1 to 8.
+    program: i32,
+    /// Tag of the sequential program where it begins.
+    start_tag: i32,
+    /// How often it is repeated.
+    loops: i32,
+    /// Tag where it ends.
+    end_tag: i32,
+}
+
+impl Program {
+    fn of(record: &Record) -> Self {
+        let number = |name| record.number(name).unwrap_or_default();
+        Self { program: number("program"), start_tag: number("start"), loops: number("loop"), end_tag: number("end") }
+    }
+
+    fn table(programs: &[Self]) -> Table {
+        let mut table = Table::new(&["program", "start tag", "loops", "end tag"], "no programs");
+        for Self { program, start_tag, loops, end_tag } in programs {
+            table.row([(*program).into(), (*start_tag).into(), (*loops).into(), (*end_tag).into()]);
+        }
+        table
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{Bench, blocks, objection};
+
+    #[test]
+    fn programs_are_read_alone_or_all() {
+        assert_eq!(blocks(&["easy", "get", "2"]).unwrap(), ["@RESY PNO=02 ST=000"]);
+        assert_eq!(blocks(&["easy", "get"]).unwrap().len(), 8);
+        assert_eq!(blocks(&["easy", "progress"]).unwrap(), ["@RESD"]);
+        assert_eq!(blocks(&["easy", "select", "3"]).unwrap(), ["@SESN PR=03"]);
+        assert!(objection(&["easy", "get", "9"]).contains("9 is out of range"));
+    }
+
+    #[test]
+    fn a_program_is_compared_before_it_is_written() {
+        let read = "@RESY PNO=01 ST=000";
+        assert_eq!(
+            blocks(&["easy", "set", "1", "10", "5", "20"]).unwrap(),
+            [read, "@WESY PNO=01 ST=000 START=010 LOOP=0005 END=020"]
+        );
+        assert_eq!(blocks(&["easy", "set", "1", "loop=7"]).unwrap(), [read]);
+        assert_eq!(
+            blocks(&["easy", "set", "1", "10", "5", "1000"]).unwrap_err().message,
+            "easy program 1: end: 1000 is out of range (a number, 0 to 999)"
+        );
+    }
+
+    #[test]
+    fn a_copy_is_made_once() {
+        let mut bench = Bench::new("sim:");
+        bench.data(&["easy", "set", "1", "10", "5", "20"]);
+        assert_eq!(bench.data(&["easy", "set", "1", "loop=6"])["loops"], 6);
+        let copied = |bench: &mut Bench| bench.data(&["easy", "copy", "1", "8"])["cells_written"].clone();
+        assert_eq!((copied(&mut bench), copied(&mut bench)), (1.into(), 0.into()));
+        let read = bench.data(&["easy", "get", "8"]);
+        assert_eq!(
+            read["programs"][0],
+            serde_json::json!({ "program": 8, "start_tag": 10, "loops": 6, "end_tag": 20 })
+        );
+        assert_eq!(bench.run(&["easy", "copy", "1", "1"]).unwrap_err().kind.exit(), 2);
+        bench.data(&["easy", "select", "8"]);
+        assert_eq!(bench.data(&["easy", "progress"])["program"], 8);
+    }
+}

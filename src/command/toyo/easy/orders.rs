@@ -1,0 +1,68 @@
+//! `toyo easy copy` and `toyo easy select`.
+
+use clap::Args;
+
+use super::{field, read};
+use crate::command::orders::Done;
+use crate::command::toyo::copies::{self, Copied};
+use crate::command::toyo::numbers::number;
+use crate::command::toyo::{Family, link};
+use crate::command::{Command, Context};
+use crate::controller::Risk;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+
+/// Copies a program over another one, unless they are the same already.
+#[derive(Debug, Args)]
+pub struct Copy {
+    /// Program to copy, 1 to 8
+    #[arg(value_name = "FROM", value_parser = |text: &str| number(field(), text))]
+    from: i32,
+    /// Program to replace, 1 to 8
+    #[arg(value_name = "TO", value_parser = |text: &str| number(field(), text))]
+    to: i32,
+}
+
+/// Chooses the program that `toyo run easy` starts.
+#[derive(Debug, Args)]
+pub struct Select {
+    /// Program, 1 to 8
+    #[arg(value_name = "PROGRAM", value_parser = |text: &str| number(field(), text))]
+    program: i32,
+}
+
+impl Command for Copy {
+    type Family = Family;
+    type Report = Copied;
+    const ID: &'static str = "toyo.easy.copy";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Copied, Failure> {
+        let Self { from, to } = *self;
+        let order = Request::new(table::Command::Cesy, vec![Value::Number(from), Value::Number(to)]);
+        let order = order.map_err(|error| link::wrong(&error))?;
+        let reads = [vec![read(from)?], vec![read(to)?]];
+        let copy = copies::Copy { what: "easy program", from, to, order, reads };
+        copy.make(context.link, context.screen).await
+    }
+}
+
+impl Command for Select {
+    type Family = Family;
+    type Report = Done;
+    const ID: &'static str = "toyo.easy.select";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+        context.link.order(&Request::of(table::Command::Sesn, [Value::Number(self.program)])).await?;
+        Ok(Done::new(format!("easy program {} is chosen; `toyo run easy` starts it", self.program)))
+    }
+}

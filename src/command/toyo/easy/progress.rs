@@ -1,0 +1,61 @@
+//! `toyo easy progress`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::toyo::Family;
+use crate::command::{Command, Context, Report};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// How far the easy program is that runs, or that is chosen.
+#[derive(Debug, Args)]
+pub struct Progress {}
+
+impl Command for Progress {
+    type Family = Family;
+    type Report = Far;
+    const ID: &'static str = "toyo.easy.progress";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Far, Failure> {
+        let answer = context.link.read(&Request::bare(table::Command::Resd)).await?;
+        let number = |name| answer.number(name).unwrap_or_default();
+        Ok(Far {
+            program: number("program"),
+            step: number("step"),
+            sequential_step: number("sequential"),
+            hand_tag: number("tag"),
+            loops: number("loop"),
+        })
+    }
+}
+
+/// Where an easy program is.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Far {
+    /// 1 to 8.
+    program: i32,
+    /// Step of the easy program that is executed.
+    step: i32,
+    /// Step of the sequential program that is executed.
+    sequential_step: i32,
+    /// Tag of the hand program that is executed.
+    hand_tag: i32,
+    /// Repetitions.
+    loops: i32,
+}
+
+impl Report for Far {
+    fn view(&self) -> View {
+        View::fields([
+            ("program", self.program.into()),
+            ("step", self.step.into()),
+            ("sequential step", self.sequential_step.into()),
+            ("hand program tag", self.hand_tag.into()),
+            ("loops", self.loops.into()),
+        ])
+    }
+}

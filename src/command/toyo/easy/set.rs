@@ -1,0 +1,67 @@
+//! `toyo easy set`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::{Program, cell, field, read, values};
+use crate::command::toyo::Family;
+use crate::command::toyo::cells::Cells;
+use crate::command::toyo::numbers::number;
+use crate::command::toyo::values::Changes;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// A program, and what it shall be.
+#[derive(Debug, Args)]
+#[command(after_help = "What the controller holds already is not written: its EEPROM takes about a million rewrites.")]
+pub struct Set {
+    /// Program, 1 to 8
+    #[arg(value_name = "PROGRAM", value_parser = |text: &str| number(field(), text))]
+    program: i32,
+    /// Start tag, repetitions and end tag, or some by name, such as loop=5, which keeps the others
+    #[arg(required = true, value_name = "VALUE")]
+    values: Vec<String>,
+}
+
+impl Command for Set {
+    type Family = Family;
+    type Report = Stored;
+    const ID: &'static str = "toyo.easy.set";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
+        let Context { link, screen, .. } = context;
+        let changes = Changes::read(&format!("easy program {}", self.program), &values(), &self.values)?;
+        let values = match changes.whole() {
+            Some(values) => values,
+            None => changes.applied(&link.read(&read(self.program)?).await?.values()[2..]),
+        };
+        let cell = cell(self.program, values)?;
+        let mut cells = Cells::default();
+        link.store(screen, &cell, &mut cells).await?;
+        Ok(Stored { program: Program::of(&cell.wanted), cells })
+    }
+}
+
+/// What a program is now.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Stored {
+    #[serde(flatten)]
+    program: Program,
+    #[serde(flatten)]
+    cells: Cells,
+}
+
+impl Report for Stored {
+    fn view(&self) -> View {
+        let Program { program, start_tag, loops, end_tag } = self.program;
+        let words = format!("easy program {program}: start tag {start_tag}, {loops} loops, end tag {end_tag}");
+        View::text(format!("{words}\n{}", self.cells.in_words()))
+    }
+}

@@ -1,0 +1,88 @@
+//! `toyo palletizing get`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::{Entry, parse_program, parse_record, reads};
+use crate::command::local::Target;
+use crate::command::toyo::Family;
+use crate::command::toyo::numbers::read_contents;
+use crate::command::{Command, Context, Report};
+use crate::controller::toyo::bulk::pallets;
+use crate::controller::toyo::table::Pallet;
+use crate::controller::toyo::table::palletizing::RECORDS;
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// Which program, and which records of it.
+///
+/// The file of --toml is whole or is not written; `palletizing set --from` reads it.
+#[derive(Debug, Args)]
+pub struct Get {
+    /// Program, 1 to 16
+    #[arg(value_parser = parse_program)]
+    program: i32,
+    /// Records by name or number: start source-p0 6; without any, all 16
+    #[arg(value_name = "RECORD", value_parser = parse_record)]
+    records: Vec<&'static Pallet>,
+    /// Write them into this new file
+    #[arg(long, value_name = "FILE")]
+    toml: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long, requires = "toml")]
+    force: bool,
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Program;
+    const ID: &'static str = "toyo.palletizing.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Program, Failure> {
+        let Context { link, screen, several, .. } = context;
+        if let Some(file) = self.toml.as_ref().filter(|_| several) {
+            return Err(Failure::usage(format!("{} is for the program of one robot", file.display()))
+                .hint("run the command once for each robot, with a file each"));
+        }
+        let target = self.toml.clone().map(|file| Target::new(file, self.force)).transpose()?;
+        let wanted = if self.records.is_empty() { RECORDS.iter().collect() } else { self.records.clone() };
+        let contents = read_contents(link, screen, "reading records", &reads(self.program, &wanted)?).await?;
+        let records: Vec<_> = wanted.into_iter().zip(contents).collect();
+        if let Some(target) = &target {
+            let mut draft = target.begin()?;
+            draft.write(pallets::write(&records).as_bytes())?;
+            draft.commit()?;
+        }
+        Ok(Program {
+            program: self.program,
+            records: records.iter().map(|(pallet, record)| Entry::of(pallet, record)).collect(),
+            file: target.map(|target| target.path().display().to_string()),
+        })
+    }
+}
+
+/// A palletizing program.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Program {
+    /// 1 to 16.
+    program: i32,
+    records: Vec<Entry>,
+    /// Where they went; null without `--toml`.
+    file: Option<String>,
+}
+
+impl Report for Program {
+    fn view(&self) -> View {
+        match &self.file {
+            Some(file) => View::fields([
+                ("file", file.as_str().into()),
+                ("program", self.program.into()),
+                ("records", self.records.len().into()),
+            ]),
+            None => View::table(Entry::table(&self.records)),
+        }
+    }
+}

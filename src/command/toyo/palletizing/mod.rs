@@ -1,0 +1,160 @@
+//! `toyo palletizing`: the sixteen palletizing programs, of sixteen records each.
+
+mod get;
+mod orders;
+mod progress;
+mod set;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::link::wrong;
+use super::values::{self, Shown};
+use super::{Family, numbers};
+use crate::command::commands;
+use crate::controller::toyo::field::Field;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::nearest::nearest;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table::palletizing::RECORDS;
+use crate::controller::toyo::table::{Command, Pallet};
+use crate::failure::Failure;
+use crate::output::view::Table;
+
+commands! {
+    /// What can be done with palletizing programs.
+    pub enum Palletizing of Family {
+        /// Read the records of a program, also into a TOML file
+        Get(get::Get),
+        /// Write a record, or those of a TOML file: 1 source-p1 x=100
+        Set(set::Set),
+        /// Copy a program to another place
+        Copy(orders::Copy),
+        /// Choose the program that run palletizing starts
+        Select(orders::Select),
+        /// How far the program is that runs
+        Progress(progress::Progress),
+    }
+}
+
+/// The number of a program, 1 to 16.
+fn field() -> &'static Field {
+    &Command::Rplt.row().requests[0].fields[0]
+}
+
+/// A program on a command line.
+fn parse_program(text: &str) -> Result<i32, String> {
+    numbers::number(field(), text)
+}
+
+/// A record by its name or number.
+fn parse_record(text: &str) -> Result<&'static Pallet, String> {
+    Pallet::named(&text.to_lowercase()).ok_or_else(|| {
+        let near = nearest(text, RECORDS.iter().map(|record| record.name));
+        let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+        format!("there is no such record{near}")
+    })
+}
+
+/// What reads records of a program.
+fn reads(program: i32, records: &[&Pallet]) -> Result<Vec<Request>, Failure> {
+    let read = |record: &&Pallet| Request::read_pallet(program, record);
+    records.iter().map(read).collect::<Result<_, _>>().map_err(|error| wrong(&error))
+}
+
+/// A record of a program.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Entry {
+    /// 1 to 16.
+    record: u8,
+    /// `source-p0`.
+    name: &'static str,
+    /// What it holds.
+    about: &'static str,
+    values: Vec<Shown>,
+}
+
+impl Entry {
+    fn of(pallet: &'static Pallet, record: &Record) -> Self {
+        Self { record: pallet.number, name: pallet.name, about: pallet.about, values: values::shown(record) }
+    }
+
+    fn table(entries: &[Self]) -> Table {
+        let mut table = Table::new(&["record", "name", "value"], "no records");
+        for Self { record, name, values, .. } in entries {
+            table.row([(*record).into(), (*name).into(), values::in_a_line(values).into()]);
+        }
+        table
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{Bench, blocks, objection};
+
+    #[test]
+    fn a_program_is_sixteen_records() {
+        let blocks = |words: &[&str]| blocks(words).unwrap();
+        assert_eq!(blocks(&["palletizing", "get", "3"]).len(), 16);
+        assert_eq!(blocks(&["palletizing", "get", "3", "source-p1", "16"]), ["@RPLT 03 SNO=03", "@RPLT 03 SNO=16"]);
+        assert_eq!(blocks(&["palletizing", "progress"]), ["@RPLD"]);
+        assert_eq!(blocks(&["palletizing", "select", "16"]), ["@SPLN PR=16"]);
+        let copied = blocks(&["palletizing", "copy", "1", "2"]);
+        assert_eq!((copied.len(), &copied[32][..]), (33, "@CPPL STA=01 TOP=02"));
+        assert!(objection(&["palletizing", "get", "17"]).contains("17 is out of range (a number, 1 to 16)"));
+        let error = objection(&["palletizing", "get", "1", "sorce-p1"]);
+        assert!(error.contains("there is no such record; did you mean source-p1?"), "{error}");
+    }
+
+    #[test]
+    fn a_record_is_compared_before_it_is_written() {
+        assert_eq!(
+            blocks(&["palletizing", "set", "1", "Source-P1", "1.5", "-2", "0"]).unwrap(),
+            ["@RPLT 01 SNO=03", "@WPLT 01 SNO=03 X=+0001.50 Y=-0002.00 Z=+0000.00"]
+        );
+        assert_eq!(
+            blocks(&["palletizing", "set", "1", "1", "5", "m-m"]).unwrap()[1],
+            "@WPLT 01 SNO=01 TAG=005 MOD=M-M"
+        );
+        assert_eq!(blocks(&["palletizing", "set", "1", "7", "aim=incremental"]).unwrap(), ["@RPLT 01 SNO=07"]);
+        assert_eq!(
+            blocks(&["palletizing", "set", "1", "7", "aim=x"]).unwrap_err().message,
+            "source-approach: aim: 'x' is not a (absolute) or i (incremental)"
+        );
+    }
+
+    #[test]
+    fn a_program_goes_through_a_file_and_is_copied() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+        let (first, second) = (path("first.toml"), path("second.toml"));
+        std::fs::write(
+            &first,
+            "16 = 7\nstart = { tag = 5, mode = '1-M' }\nsource-pieces = { p1 = 3, p2 = 0, p3 = 0 }\n",
+        )
+        .unwrap();
+        let mut bench = Bench::new("sim:");
+        let stored = bench.data(&["palletizing", "set", "2", "--from", &first]);
+        let names: Vec<_> = stored["records"].as_array().unwrap().iter().map(|record| &record["name"]).collect();
+        assert_eq!(names, ["start", "source-pieces", "end"]);
+        assert_eq!(stored["cells_written"], 3);
+        assert_eq!(bench.data(&["palletizing", "set", "2", "--from", &first])["cells_unchanged"], 3);
+        let copied = bench.data(&["palletizing", "copy", "2", "9"]);
+        assert_eq!((&copied["cells_written"], &copied["cells_unchanged"]), (&3.into(), &13.into()));
+        bench.data(&["palletizing", "get", "2", "--toml", &first, "--force"]);
+        bench.data(&["palletizing", "get", "9", "--toml", &second]);
+        let text = std::fs::read_to_string(&first).unwrap();
+        assert_eq!(text, std::fs::read_to_string(&second).unwrap());
+        assert!(text.contains("start = { tag = 5, mode = \"1-M\" }"), "{text}");
+        assert_eq!(bench.data(&["palletizing", "set", "1", "--from", &second])["cells_written"], 3);
+        assert_eq!(bench.run(&["palletizing", "get", "9", "--toml", &second]).unwrap_err().kind.exit(), 1);
+    }
+
+    #[test]
+    fn progress_tells_the_program_that_was_chosen() {
+        let mut bench = Bench::new("sim:");
+        bench.data(&["palletizing", "select", "4"]);
+        let progress = bench.data(&["palletizing", "progress"]);
+        assert_eq!((&progress["program"], &progress["directions"][0]["done"]), (&4.into(), &0.into()), "{progress}");
+    }
+}

@@ -1,0 +1,97 @@
+//! `toyo palletizing progress`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::toyo::Family;
+use crate::command::{Command, Context, Report};
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// How far the palletizing program is that runs, or that is chosen.
+#[derive(Debug, Args)]
+pub struct Progress {}
+
+impl Command for Progress {
+    type Family = Family;
+    type Report = Far;
+    const ID: &'static str = "toyo.palletizing.progress";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Far, Failure> {
+        Ok(Far::of(&context.link.read(&Request::bare(table::Command::Rpld)).await?))
+    }
+}
+
+/// Where a palletizing program is.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Far {
+    /// 1 to 16.
+    program: i32,
+    /// Which side is a matrix: `M-1`, `1-M` or `M-M`.
+    mode: &'static str,
+    /// The same in words.
+    mode_meaning: String,
+    /// What is executed: `START`, `SOURCE`, `DESTI` or `END`.
+    state: &'static str,
+    /// The same in words.
+    state_meaning: String,
+    /// Pieces in the three directions.
+    directions: [Pieces; 3],
+    /// Tag of the hand program that is executed.
+    hand_tag: i32,
+    /// Step of the sequential program that is executed.
+    sequential_step: i32,
+}
+
+/// Pieces in one direction.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Pieces {
+    /// The one under way.
+    done: i32,
+    /// How many there are.
+    pieces: i32,
+}
+
+impl Far {
+    fn of(record: &Record) -> Self {
+        let number = |name| record.number(name).unwrap_or_default();
+        let meaning = |name| {
+            let pair = record.pairs().find(|(field, _)| field.name == name);
+            pair.map_or_else(String::new, |(field, value)| field.meaning(value).into_owned())
+        };
+        let pieces = |done, pieces| Pieces { done: number(done), pieces: number(pieces) };
+        Self {
+            program: number("program"),
+            mode: record.word("mode").unwrap_or_default(),
+            mode_meaning: meaning("mode"),
+            state: record.word("state").unwrap_or_default(),
+            state_meaning: meaning("state"),
+            directions: [pieces("done1", "pieces1"), pieces("done2", "pieces2"), pieces("done3", "pieces3")],
+            hand_tag: number("tag"),
+            sequential_step: number("step"),
+        }
+    }
+}
+
+impl Report for Far {
+    fn view(&self) -> View {
+        let pieces = |index: usize| {
+            let Pieces { done, pieces } = self.directions[index];
+            format!("{done} of {pieces}")
+        };
+        View::fields([
+            ("program", self.program.into()),
+            ("mode", format!("{}: {}", self.mode, self.mode_meaning).into()),
+            ("executes", self.state_meaning.as_str().into()),
+            ("direction 1", pieces(0).into()),
+            ("direction 2", pieces(1).into()),
+            ("direction 3", pieces(2).into()),
+            ("hand program tag", self.hand_tag.into()),
+            ("sequential step", self.sequential_step.into()),
+        ])
+    }
+}

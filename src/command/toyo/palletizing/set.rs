@@ -1,0 +1,142 @@
+//! `toyo palletizing set`.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::{Entry, parse_program, parse_record};
+use crate::command::toyo::cells::{Cell, Cells};
+use crate::command::toyo::link::{Link, wrong};
+use crate::command::toyo::stores::{self, Fate, Store, Work};
+use crate::command::toyo::values::Changes;
+use crate::command::toyo::{Family, files};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::bulk::pallets::{self, Filled};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table::Pallet;
+use crate::failure::Failure;
+use crate::output::view::{Section, View};
+
+/// Writes a record of a program, or those that a TOML file has.
+///
+/// The whole file is checked before anything is sent; records that it does not have stay as they are. What the
+/// controller holds already is not written: its EEPROM takes about a million rewrites.
+#[derive(Debug, Args)]
+#[command(after_help = "All values of a record in their order, or some by name, which keeps the others: `palletizing \
+                        set 1 source-p1 100 0 0`, `palletizing set 1 start mode=M-M`. `palletizing get 1` shows the \
+                        names.")]
+pub struct Set {
+    /// Program, 1 to 16
+    #[arg(value_parser = parse_program)]
+    program: i32,
+    /// Record by name or number: source-p1, 3
+    #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "RECORD", value_parser = parse_record)]
+    record: Option<&'static Pallet>,
+    /// All values in their order, or some as name=value
+    #[arg(
+        required_unless_present = "from",
+        conflicts_with = "from",
+        value_name = "VALUE",
+        allow_negative_numbers = true
+    )]
+    values: Vec<String>,
+    /// Write the records of this TOML file; - is stdin
+    #[arg(long, value_name = "FILE")]
+    from: Option<PathBuf>,
+}
+
+const WORK: Work = Work { doing: "storing records", noun: "", resumes: false };
+
+impl Command for Set {
+    type Family = Family;
+    type Report = Stored;
+    const ID: &'static str = "toyo.palletizing.set";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
+        let Context { link, screen, .. } = context;
+        let records = match (&self.from, self.record) {
+            (Some(file), _) => from_file(file)?,
+            (None, Some(record)) => vec![(record, self.typed(link, record).await?)],
+            (None, None) => Vec::new(),
+        };
+        let mut entries = Vec::with_capacity(records.len());
+        let mut stores = Vec::with_capacity(records.len());
+        for (record, values) in records {
+            let cell = Cell {
+                read: Request::read_pallet(self.program, record).map_err(|error| wrong(&error))?,
+                write: Request::write_pallet(self.program, record, &values).map_err(|error| wrong(&error))?,
+                wanted: record.layout.record(values).map_err(|error| wrong(&error))?,
+            };
+            entries.push(Entry::of(record, &cell.wanted));
+            stores.push(Store { key: record.name.to_owned(), cell, is_optional: false });
+        }
+        let fates = stores::store_all(link, screen, WORK, &stores, 0).await?;
+        let records = entries.into_iter().zip(&fates).map(|(entry, fate)| StoredRecord { entry, result: *fate });
+        Ok(Stored { program: self.program, records: records.collect(), cells: stores::sum(&fates) })
+    }
+}
+
+impl Set {
+    /// The values of a record as typed, with those that are kept from the controller.
+    async fn typed(
+        &self,
+        link: &mut Link,
+        record: &'static Pallet,
+    ) -> Result<Vec<crate::controller::toyo::field::Value>, Failure> {
+        let changes = Changes::read(record.name, &record.layout, &self.values)?;
+        match changes.whole() {
+            Some(values) => Ok(values),
+            None => {
+                let read = Request::read_pallet(self.program, record).map_err(|error| wrong(&error))?;
+                Ok(changes.applied(link.read_content(&read).await?.values()))
+            }
+        }
+    }
+}
+
+fn from_file(file: &Path) -> Result<Vec<Filled>, Failure> {
+    let name = files::shown(file);
+    let records = pallets::read(&files::read(file)?).map_err(|errors| files::faulty(&name, &errors))?;
+    if records.is_empty() {
+        return Err(Failure::usage(format!("{name} has no records")));
+    }
+    Ok(records)
+}
+
+/// What became of records of a program.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Stored {
+    /// 1 to 16.
+    program: i32,
+    records: Vec<StoredRecord>,
+    #[serde(flatten)]
+    cells: Cells,
+}
+
+/// A record, and what became of it.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct StoredRecord {
+    #[serde(flatten)]
+    entry: Entry,
+    result: Fate,
+}
+
+impl Report for Stored {
+    fn view(&self) -> View {
+        let mut table = Entry::table(&[]);
+        table.columns.push("result");
+        for StoredRecord { entry, result } in &self.records {
+            let result = if *result == Fate::Written { "written" } else { "unchanged" };
+            let row = Entry::table(std::slice::from_ref(entry)).rows.concat();
+            table.rows.push([row, vec![result.into()]].concat());
+        }
+        View::table(table).and(Section::Text(self.cells.in_words()))
+    }
+}
