@@ -121,3 +121,40 @@ impl Report for Transferred {
         ])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks};
+    use crate::failure::Kind;
+
+    #[test]
+    fn a_transfer_is_one_order_and_looks() {
+        assert_eq!(
+            all_blocks(&["card", "write"]).unwrap(),
+            ["@STAS SNO=2", "@HSON", "@WMCA", "@STAS SNO=3", "@STAS SNO=0", "@STAS SNO=1", "@HSOF"]
+        );
+        assert_eq!(blocks(&["card", "read", "--no-wait"]).unwrap(), ["@RMCA"]);
+    }
+
+    #[test]
+    fn a_transfer_is_waited_for() {
+        let (mut bench, _) = Bench::spoilt("card = \"empty\"\n", |_, _| Fate::Pass);
+        let failure = bench.run(&["card", "read"]).unwrap_err();
+        assert!(failure.hint.unwrap().contains("nothing on the card"));
+        let data = bench.data(&["card", "write"]);
+        let elapsed = data["elapsed_ms"].as_u64().unwrap();
+        assert!((1800..2300).contains(&elapsed), "{elapsed}");
+        assert_eq!(data["needs_power_cycle"], false);
+        assert_eq!(bench.data(&["card", "read"])["accepted"], true);
+    }
+
+    #[test]
+    fn a_card_that_is_absent_or_taken_out_is_told() {
+        let failure = Bench::spoilt("", |_, _| Fate::Pass).0.run(&["card", "write"]).unwrap_err();
+        assert_eq!(failure.message, "the controller refused WMCA (@NG): there is no memory card");
+        let state = "card = \"written\"\n[[event]]\nat_ms = 1000\ndo = \"card out\"\n";
+        let failure = Bench::spoilt(state, |_, _| Fate::Pass).0.run(&["card", "read"]).unwrap_err();
+        assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("E0")));
+        assert!(failure.message.starts_with("reading the card was accepted, but error E0"), "{}", failure.message);
+    }
+}

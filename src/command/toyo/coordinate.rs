@@ -88,3 +88,32 @@ impl Command for Set {
         Ok(Done::new(format!("task {} has {}", field("task").meaning(task), self.aim())))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{Bench, Fate, blocks, intent, objection};
+
+    #[test]
+    fn the_order_is_in_form_and_in_range() {
+        let line = ["coordinate", "set", "100", "-20.5", "0", "0", "--task", "2", "--speed", "5"];
+        assert_eq!(blocks(&line).unwrap(), ["@MRSS TASK=02 X=+0100.00 Y=-0020.50 Z=+0000.00 R=+0000.00 V=05"]);
+        assert_eq!(
+            intent(&line),
+            "have the next RSMV of task 2 move to X 100.00 mm, Y -20.50 mm, Z 0.00 mm, R 0.00 mm at the speed of row 5"
+        );
+        assert!(objection(&["coordinate", "set", "1", "2", "3"]).contains("<R>"));
+        assert!(objection(&["coordinate", "set", "8000.01", "0", "0", "0"]).contains("-8000.00 to 8000.00 mm"));
+        assert!(objection(&["coordinate", "set", "0.001", "0", "0", "0"]).contains("is not a number"));
+        assert!(objection(&["coordinate", "set", "0", "0", "0", "0", "--speed", "11"]).contains("0 to 10"));
+    }
+
+    #[test]
+    fn a_waiting_move_goes_there() {
+        let state = "origin = true\nsteps = { 1 = [\"RSMV a X=+0000.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 PASS\", \"END\"] }\n";
+        let (mut bench, _) = Bench::spoilt(state, |_, _| Fate::Pass);
+        bench.data(&["run", "sequential", "1", "--no-wait"]);
+        bench.data(&["coordinate", "set", "50", "20", "0", "0"]);
+        bench.wait(std::time::Duration::from_secs(5));
+        assert_eq!(bench.data(&["position"])["x_mm"], 50.0);
+    }
+}

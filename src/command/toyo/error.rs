@@ -290,3 +290,62 @@ impl Report for PointReport {
         View::text(self.point.as_deref().map_or("no point", |point| point).to_owned())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::toyo::testing::{Bench, Fate, blocks, objection};
+
+    #[test]
+    fn what_is_asked() {
+        assert_eq!(blocks(&["error", "show"]).unwrap(), ["@STAS SNO=0", "@STAS SNO=1"]);
+        assert_eq!(blocks(&["error", "cancel"]).unwrap(), ["@CERR", "@STAS SNO=0", "@STAS SNO=1"]);
+        assert_eq!(blocks(&["error", "point"]).unwrap(), ["@MERP"]);
+        assert_eq!(blocks(&["error", "history", "--limit", "2"]).unwrap(), ["@EHTR NO=01", "@EHTR NO=02"]);
+        assert_eq!(blocks(&["error", "history"]).unwrap().len(), 20);
+        assert!(objection(&["error", "history", "--limit", "100"]).contains("1..=99"));
+    }
+
+    #[test]
+    fn an_error_is_shown_and_cancelled() {
+        let (mut bench, _) = Bench::spoilt("error = \"28\"\n", |_, _| Fate::Pass);
+        let error = &bench.data(&["error", "show"])["error"];
+        assert_eq!((&error["code"], &error["axis"]), (&"28".into(), &1.into()));
+        assert!(error["remedy"].as_str().unwrap().contains("toyo param get"));
+        assert_eq!(bench.data(&["error", "cancel"])["error"], serde_json::Value::Null);
+        assert_eq!(bench.data(&["error", "show"])["error"], serde_json::Value::Null);
+        assert_eq!(bench.data(&["error", "point"])["point"], serde_json::Value::Null);
+    }
+
+    #[test]
+    fn an_error_that_stays_is_a_failure() {
+        let stays = |block: &str, _| if block == "@CERR" { Fate::Answered("@OK") } else { Fate::Pass };
+        let (data, failure) = Bench::spoilt("error = \"24\"\n", stays).0.run(&["error", "cancel"]).unwrap();
+        assert_eq!(data["error"]["code"], "24");
+        let failure = failure.unwrap();
+        assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("24")));
+    }
+
+    #[test]
+    fn the_history_ends_where_it_is_empty() {
+        let state = "history = [{ code = \"13\", after_seconds = 3723 }, { power_cut = true }, { code = \"A1\" }]\n";
+        let (mut bench, heard) = Bench::spoilt(state, |_, _| Fate::Pass);
+        let data = bench.data(&["error", "history"]);
+        let entries = data["entries"].as_array().unwrap();
+        assert_eq!(entries.len(), 3, "{data}");
+        assert_eq!(
+            (&entries[0]["error"]["code"], &entries[0]["hours"], &entries[0]["minutes"]),
+            (&"13".into(), &1.into(), &2.into())
+        );
+        assert_eq!((&entries[1]["power_off"], &entries[1]["error"]), (&true.into(), &serde_json::Value::Null));
+        assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@EHTR")).count(), 4);
+        assert_eq!(bench.data(&["error", "history", "--limit", "1"])["entries"].as_array().unwrap().len(), 1);
+    }
+
+    #[test]
+    fn a_controller_without_history_says_so() {
+        let failure = Bench::spoilt("model = \"other\"\n", |_, _| Fate::Pass).0.run(&["error", "history"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::Refused);
+        assert!(failure.hint.unwrap().contains("KCA-25"));
+    }
+}

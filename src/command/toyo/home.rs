@@ -93,3 +93,49 @@ impl Report for Homed {
         ])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, intent, objection};
+    use crate::failure::Kind;
+
+    #[test]
+    fn a_dry_run_shows_the_order_and_what_is_asked_meanwhile() {
+        assert_eq!(
+            all_blocks(&["home"]).unwrap(),
+            ["@STAS SNO=2", "@HSON", "@HOME", "@STAS SNO=0", "@MPST", "@STAS SNO=1", "@HSOF"]
+        );
+        assert_eq!(blocks(&["home", "--no-wait"]).unwrap(), ["@HOME"]);
+        assert_eq!(blocks(&["home", "--sync", "2", "--no-wait"]).unwrap(), ["@SORG 2"]);
+        assert!(objection(&["home", "--sync", "4"]).contains("1..=3"));
+        assert_eq!(intent(&["home"]), "move all axes to their origin");
+    }
+
+    #[test]
+    fn the_axes_are_at_their_origin_when_it_is_told() {
+        let (mut bench, heard) = Bench::spoilt("position = [50.0, 20.0, 0.0, 0.0]\n", |_, _| Fate::Pass);
+        let data = bench.data(&["home"]);
+        assert!(data["elapsed_ms"].as_u64().unwrap() > 1000, "{data}");
+        assert_eq!(data["position"]["x_mm"], 0.0);
+        let status = bench.data(&["status"]);
+        assert_eq!((&status["homed"], &status["executing"]), (&true.into(), &false.into()));
+        assert_eq!(heard.borrow().iter().filter(|block| *block == "@HOME").count(), 1);
+    }
+
+    #[test]
+    fn a_return_that_is_stopped_is_a_failure() {
+        let state = "position = [300.0, 0.0, 0.0, 0.0]\n[[event]]\nat_ms = 1000\ndo = \"stop\"\n";
+        let failure = Bench::spoilt(state, |_, _| Fate::Pass).0.run(&["home"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::ConditionNotMet);
+        assert!(failure.message.contains("but it ended without the origin; it stands at X "), "{}", failure.message);
+    }
+
+    #[test]
+    fn nobody_waits_who_does_not_want_to() {
+        let (mut bench, _) = Bench::spoilt("position = [300.0, 0.0, 0.0, 0.0]\n", |_, _| Fate::Pass);
+        assert_eq!(bench.data(&["home", "--no-wait"])["position"], serde_json::Value::Null);
+        assert_eq!(bench.data(&["status"])["homing"], true);
+        let failure = bench.run(&["home"]).unwrap_err();
+        assert_eq!(failure.message, "the controller refused HOME (@NG): the axes are returning to the origin");
+    }
+}

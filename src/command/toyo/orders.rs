@@ -198,3 +198,96 @@ impl Report for Stopped {
         View::text(format!("the axes stand at {}", self.position.in_a_line()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, intent, objection};
+    use crate::failure::Kind;
+
+    #[test]
+    fn each_order_is_one_block_and_a_look_at_what_it_did() {
+        assert_eq!(all_blocks(&["servo", "on"]).unwrap(), ["@STAS SNO=2", "@HSON", "@SVON", "@STAS SNO=3", "@HSOF"]);
+        assert_eq!(blocks(&["servo", "off"]).unwrap(), ["@SVOF", "@STAS SNO=3"]);
+        for (mode, block) in [
+            ("program", "@MPRO"),
+            ("step", "@MSTP"),
+            ("auto", "@MAUT"),
+            ("automatic", "@MAUT"),
+            ("sequential", "@MSEQ"),
+            ("palletizing", "@MPLE"),
+        ] {
+            let all = all_blocks(&["mode", mode]).unwrap();
+            assert_eq!(all, ["@STAS SNO=2", "@HSON", block, "@STAS SNO=2", "@HSOF"]);
+        }
+        assert_eq!(blocks(&["reset"]).unwrap(), ["@REST"]);
+        assert!(objection(&["mode", "easy"]).contains("palletizing"));
+        assert!(intent(&["servo", "off"]).contains("may sink"));
+    }
+
+    #[test]
+    fn a_stop_waits_for_nothing_and_takes_no_host() {
+        assert_eq!(all_blocks(&["stop"]).unwrap(), ["@STOP", "@STAS SNO=0", "@MPST", "@JGST X=SP Y=SP Z=SP R=SP"]);
+        assert_eq!(all_blocks(&["stop", "--jog"]).unwrap(), ["@JGST X=SP Y=SP Z=SP R=SP", "@STAS SNO=0", "@MPST"]);
+    }
+
+    #[test]
+    fn what_was_ordered_is_so_when_it_is_told() {
+        let (mut bench, _) = Bench::spoilt("", |_, _| Fate::Pass);
+        for (words, field, value) in [
+            (["servo", "off"], "servo_on", false.into()),
+            (["servo", "on"], "servo_on", true.into()),
+            (["mode", "program"], "mode", "program".into()),
+            (["mode", "auto"], "mode", "automatic".into()),
+            (["mode", "palletizing"], "program_kind", "palletizing".into()),
+            (["mode", "sequential"], "program_kind", serde_json::Value::from("sequential")),
+        ] {
+            bench.data(&words);
+            assert_eq!(bench.data(&["status"])[field], value, "{words:?}");
+        }
+    }
+
+    #[test]
+    fn what_was_accepted_and_is_not_so_is_told() {
+        let (mut bench, _) =
+            Bench::spoilt("", |block, _| if block == "@MPLE" { Fate::Answered("@OK") } else { Fate::Pass });
+        let failure = bench.run(&["mode", "palletizing"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::ConditionNotMet);
+        assert_eq!(failure.message, "the order was accepted, but the mode has not changed within 1s");
+        assert!(failure.hint.unwrap().contains("M10"));
+    }
+
+    #[test]
+    fn a_stop_finds_what_moves() {
+        let (mut bench, heard) = Bench::spoilt("position = [300.0, 0.0, 0.0, 0.0]\n", |_, _| Fate::Pass);
+        bench.data(&["home", "--no-wait"]);
+        bench.wait(std::time::Duration::from_secs(2));
+        assert!(bench.data(&["stop"])["position"]["x_mm"].as_f64().unwrap() < -10.0);
+        assert_eq!(bench.data(&["status"])["executing"], false);
+        assert!(!heard.borrow().iter().any(|block| block.starts_with("@JGST")));
+    }
+
+    #[test]
+    fn a_stop_of_a_jog_that_was_left_takes_the_host_if_it_must() {
+        let (mut bench, heard) = Bench::spoilt("host = true\n", |_, _| Fate::Pass);
+        bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
+        bench.data(&["stop", "--jog"]);
+        assert_eq!(bench.data(&["status"])["executing"], false);
+        assert!(!heard.borrow().iter().any(|block| block == "@HSON"));
+
+        // Somebody else's jog, on a controller whose JOG wants the host and does not stop without it.
+        let (mut bench, heard) = Bench::spoilt("", |block, count| {
+            if block.starts_with("@JGST") && count == 1 { Fate::Answered("@NG") } else { Fate::Pass }
+        });
+        bench.data(&["stop", "--jog"]);
+        assert_eq!(heard.borrow().iter().filter(|block| *block == "@HSON").count(), 1);
+    }
+
+    #[test]
+    fn a_stop_that_stops_no_jog_is_followed_by_one_that_does() {
+        let deaf = |block: &str, _| if block == "@STOP" { Fate::Answered("@OK") } else { Fate::Pass };
+        let (mut bench, _) = Bench::spoilt("host = true\n", deaf);
+        bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
+        bench.data(&["stop"]);
+        assert_eq!(bench.data(&["status"])["executing"], false);
+    }
+}

@@ -124,8 +124,9 @@ impl Accepted {
         Ok((Status { inputs: teller.inputs, ..status }, place))
     }
 
+    /// Errors are asked for last: one that ends the work is not missed.
     const fn pages(self) -> &'static [u8] {
-        if matches!(self.work, Work::Card) { &[0, 3] } else { &[0] }
+        if matches!(self.work, Work::Card) { &[3, 0] } else { &[0] }
     }
 
     fn foresee(self, link: &mut Link) {

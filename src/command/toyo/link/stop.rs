@@ -14,6 +14,8 @@ use crate::failure::{Failure, Kind};
 /// How long a stop is tried, how often it is sent again after silence, and the pause between two looks.
 const WITHIN: Duration = Duration::from_secs(5);
 const REPETITIONS: u32 = 3;
+/// What has not come to rest by then is no program.
+const SLOW: Duration = Duration::from_secs(1);
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 impl Moving {
@@ -45,7 +47,7 @@ impl Link {
             self.foresee(&status_page(0), "whether it stands");
             self.foresee(&Request::bare(Command::Mpst), "where it stands");
             if moving == Moving::Program {
-                self.foresee(&Moving::Jog.stop(), "if an axis moves although nothing is executed");
+                self.foresee(&Moving::Jog.stop(), "if an axis moves on: it may be jogged");
             }
             return std::future::pending().await;
         }
@@ -70,13 +72,14 @@ impl Link {
     }
 
     async fn stop_until_it_stands(&mut self, moving: Moving) -> Result<Record, Failure> {
-        let until = Instant::now() + WITHIN;
+        let began = Instant::now();
         let stop = moving.stop();
+        // Where it was at the last look, if nothing was executed then.
         let mut last = None;
         loop {
             let attempt = self.try_stop(&stop).await;
-            let is_late = Instant::now() >= until;
-            match attempt {
+            let (is_slow, is_late) = (began.elapsed() >= SLOW, began.elapsed() >= WITHIN);
+            last = match attempt {
                 Ok(Attempt { is_busy: false, place, .. }) if last.as_ref() == Some(&place) => return Ok(place),
                 Ok(Attempt { is_refused, .. }) if is_late => {
                     let how = if is_refused { "refuses to stop (@NG)" } else { "moves on although it said @OK" };
@@ -86,19 +89,19 @@ impl Link {
                     let message = format!("nothing tells that it stands: {}", failure.message);
                     return Err(unstopped(Kind::OutcomeUnknown, message));
                 }
-                Ok(Attempt { is_refused: true, place, .. }) if moving == Moving::Jog => {
-                    // To stop a JOG takes the host, too. If it cannot be had, the next attempt tells.
-                    self.take_host().await.unwrap_or_default();
-                    last = Some(place);
+                Ok(Attempt { is_refused, is_busy, place }) => {
+                    // What goes wrong here shows in the next attempt.
+                    if is_refused && moving == Moving::Jog {
+                        // To stop a JOG takes the host, too.
+                        self.take_host().await.unwrap_or_default();
+                    } else if moving == Moving::Program && (is_slow || (!is_busy && last.is_some())) {
+                        // It moves on, maybe although nothing is executed: somebody left an axis jogging.
+                        self.converse(&Moving::Jog.stop(), true).await.map(|_| ()).unwrap_or_default();
+                    }
+                    (!is_busy).then_some(place)
                 }
-                Ok(Attempt { is_busy: false, place, .. }) if moving == Moving::Program && last.is_some() => {
-                    // Nothing is executed, and yet it moves: somebody left an axis jogging.
-                    self.converse(&Moving::Jog.stop(), true).await.map(|_| ()).unwrap_or_default();
-                    last = Some(place);
-                }
-                Ok(Attempt { place, .. }) => last = Some(place),
-                Err(_) => last = None,
-            }
+                Err(_) => None,
+            };
             tokio::time::sleep(LOOK_EVERY).await;
         }
     }

@@ -1,0 +1,291 @@
+//! What must not happen to a machine behind a Toyo controller, tried with the program itself against a controller of the
+//! test's own: an axis that is left jogging, a program that Ctrl-C does not stop, an order that leaves twice.
+
+#![cfg(unix)]
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::net::{Shutdown, TcpListener};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// What is done with a block beside what it says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Peculiar {
+    No,
+    Silence,
+    HangUp,
+}
+
+/// A controller with its origin and servo power, whose axis 1 moves while it is jogged or a program runs.
+#[derive(Default)]
+struct Machine {
+    host: bool,
+    jogs: bool,
+    runs: bool,
+    x: i32,
+}
+
+impl Machine {
+    fn answer(&mut self, block: &str) -> String {
+        let ok = |()| "@OK".to_owned();
+        match &block[1..5] {
+            "HSON" => ok(self.host = true),
+            "HSOF" => ok(self.host = false),
+            "SPST" | "HOME" => ok(self.runs = true),
+            "STOP" => ok(self.runs = false),
+            "JGST" => ok(self.jogs = !block.contains("X=SP") && !block.contains("X=RS")),
+            "MPST" => {
+                self.x += i32::from(self.jogs || self.runs);
+                format!("@MPST X=+{:04}.{:02} Y=+0000.00 Z=+0000.00 R=+0000.00", self.x / 100, self.x % 100)
+            }
+            "STAS" => {
+                let page = match &block[10..] {
+                    "0" => 0x30 | u8::from(self.jogs || self.runs) << 1,
+                    "2" => u8::from(self.host) << 7,
+                    "3" => 0x11,
+                    _ => 0,
+                };
+                format!("{block} ST1={page:02X} ST2=00")
+            }
+            "RSTX" => "@RSTX 0001 NOP".to_owned(),
+            _ => "@NG".to_owned(),
+        }
+    }
+}
+
+/// A controller behind a device server, and what it hears.
+struct Controller {
+    url: String,
+    news: Receiver<String>,
+    heard: Vec<String>,
+    server: JoinHandle<Machine>,
+}
+
+impl Controller {
+    /// Serves one connection.
+    fn new(mut peculiar: impl FnMut(&str) -> Peculiar + Send + 'static) -> Self {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let url = format!("tcp://{}", listener.local_addr().unwrap());
+        let (tell, news): (Sender<String>, _) = channel();
+        let server = std::thread::spawn(move || {
+            let mut machine = Machine::default();
+            let (mut stream, _) = listener.accept().unwrap();
+            for block in BufReader::new(stream.try_clone().unwrap()).lines().map_while(Result::ok) {
+                let _gone = tell.send(block.clone());
+                match peculiar(&block) {
+                    Peculiar::Silence => continue,
+                    Peculiar::HangUp => drop(stream.shutdown(Shutdown::Both)),
+                    Peculiar::No => {}
+                }
+                let answer = machine.answer(&block);
+                if stream.write_all(format!("{answer}\r\n").as_bytes()).is_err() {
+                    break;
+                }
+            }
+            machine
+        });
+        Self { url, news, heard: Vec::new(), server }
+    }
+
+    fn command(&self, words: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.args(["-t", &self.url, "--yes", "toyo"]).args(words.split_ascii_whitespace());
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+
+    /// Waits for so many blocks of a kind.
+    fn wait_for(&mut self, block: &str, count: usize) {
+        for _ in 0..count {
+            while let heard = self.news.recv_timeout(Duration::from_secs(30)).expect("the block comes")
+                && heard != block
+            {
+                self.heard.push(heard);
+            }
+            self.heard.push(block.to_owned());
+        }
+    }
+
+    /// All that was heard, and the machine as it was left.
+    fn end(mut self) -> (Vec<String>, Machine) {
+        let machine = self.server.join().unwrap();
+        self.heard.extend(self.news.try_iter());
+        (self.heard, machine)
+    }
+}
+
+const JOG: &str = "jog X + low --for 60s";
+const GO: &str = "@JGST X=+L Y=SP Z=SP R=SP";
+const STOP: &str = "@JGST X=SP Y=SP Z=SP R=SP";
+
+fn signal(child: &Child, name: &str) {
+    assert!(Command::new("kill").args(["-s", name, &child.id().to_string()]).status().unwrap().success());
+}
+
+fn errors(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn count(heard: &[String], block: &str) -> usize {
+    heard.iter().filter(|heard| *heard == block).count()
+}
+
+#[track_caller]
+fn stands(controller: Controller) -> Vec<String> {
+    let (heard, machine) = controller.end();
+    assert_eq!(count(&heard, GO), 1, "{heard:?}");
+    assert!(heard.iter().rposition(|block| block == STOP) > heard.iter().position(|block| block == GO), "{heard:?}");
+    assert!(!machine.jogs, "the axis is left jogging");
+    heard
+}
+
+/// Every way of ending a process that can be heard stops the axis, also that of keys that would suspend it.
+#[test]
+fn an_axis_is_not_left_jogging_whatever_ends_the_process() {
+    // A test that is run under nohup hears no SIGHUP.
+    let ignored = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = ignored.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
+    for (name, said) in [
+        ("INT", "the robot was stopped (@JGST X=SP"),
+        ("TERM", "the robot was stopped (@JGST X=SP"),
+        ("HUP", "the robot was stopped (@JGST X=SP"),
+        ("QUIT", "Ctrl-\\; the axis was stopped and stands at X "),
+        ("TSTP", "Ctrl-Z; the axis was stopped and stands at X "),
+    ] {
+        if name == "HUP" && ignored.is_none_or(|mask| mask & 1 != 0) {
+            continue;
+        }
+        for flags in ["", " --on-interrupt leave"] {
+            let mut controller = Controller::new(|_| Peculiar::No);
+            let child = controller.command(&format!("{JOG}{flags}")).spawn().unwrap();
+            controller.wait_for(GO, 1);
+            controller.wait_for("@MPST", 3);
+            signal(&child, name);
+            let output = child.wait_with_output().unwrap();
+            assert_eq!(output.status.code(), Some(130), "{name}{flags}: {}", errors(&output));
+            assert!(errors(&output).contains(said), "{name}{flags}: {}", errors(&output));
+            assert_eq!(stands(controller).last().unwrap(), "@HSOF", "the host is given back");
+        }
+    }
+}
+
+/// Ctrl-C in every phase: before an answer came, and while a look is not answered.
+#[test]
+fn a_jog_is_stopped_when_ctrl_c_meets_a_silence() {
+    for silent in [GO, "@STAS SNO=0", "@MPST"] {
+        let (mut goes, mut was_silent) = (false, false);
+        let mut controller = Controller::new(move |block| {
+            goes |= block == GO;
+            if goes && !was_silent && block == silent {
+                was_silent = true;
+                return Peculiar::Silence;
+            }
+            Peculiar::No
+        });
+        let child = controller.command(JOG).spawn().unwrap();
+        controller.wait_for(GO, 1);
+        if silent != GO {
+            controller.wait_for(silent, 1);
+        }
+        signal(&child, "INT");
+        let output = child.wait_with_output().unwrap();
+        // The silence may be noticed before the signal is.
+        assert!(matches!(output.status.code(), Some(130 | 4 | 6)), "{silent}: {}", errors(&output));
+        let (heard, machine) = controller.end();
+        assert!(!machine.jogs && count(&heard, STOP) > 0, "{silent}: {heard:?}");
+    }
+}
+
+#[test]
+fn a_reader_that_went_away_does_not_keep_the_stop_from_going_out() {
+    let controller = Controller::new(|_| Peculiar::No);
+    let mut child = controller.command("jog X + low --for 200ms").spawn().unwrap();
+    drop(child.stdout.take());
+    drop(child.stderr.take());
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    stands(controller);
+}
+
+#[test]
+fn a_line_that_is_cut_while_an_axis_moves_says_what_to_do() {
+    let mut goes = false;
+    let controller = Controller::new(move |block| {
+        let cut = goes;
+        goes |= block == GO;
+        if cut { Peculiar::HangUp } else { Peculiar::No }
+    });
+    let output = controller.command(JOG).output().unwrap();
+    assert_eq!(output.status.code(), Some(6), "{}", errors(&output));
+    let told = errors(&output);
+    assert!(told.contains("the axis may still move"), "{told}");
+    assert!(told.contains("press the emergency stop") && told.contains("`toyo stop --jog`"), "{told}");
+}
+
+/// From the moment the order is on the line: unanswered, accepted, under way.
+#[test]
+fn ctrl_c_stops_what_runs() {
+    for (words, order) in [("run sequential 1", "@SPST 0001"), ("home", "@HOME")] {
+        for (is_answered, looks) in [(false, 0), (true, 0), (true, 3)] {
+            let mut controller =
+                Controller::new(
+                    move |block| {
+                        if block == order && !is_answered { Peculiar::Silence } else { Peculiar::No }
+                    },
+                );
+            let child = controller.command(&format!("{words} --timeout 20s")).spawn().unwrap();
+            controller.wait_for(order, 1);
+            controller.wait_for("@STAS SNO=0", looks);
+            signal(&child, "INT");
+            let output = child.wait_with_output().unwrap();
+            assert_eq!(output.status.code(), Some(130), "{words}: {}", errors(&output));
+            assert!(errors(&output).contains("the robot was stopped (@STOP)"), "{words}: {}", errors(&output));
+            let (heard, machine) = controller.end();
+            assert_eq!((count(&heard, order), machine.runs), (1, false), "{heard:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_to_be_left_is_left() {
+    let mut controller = Controller::new(|_| Peculiar::No);
+    let child = controller.command("run sequential 1 --on-interrupt leave").spawn().unwrap();
+    controller.wait_for("@SPST 0001", 1);
+    controller.wait_for("@STAS SNO=0", 2);
+    signal(&child, "INT");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    assert!(errors(&output).contains("what was started goes on"), "{}", errors(&output));
+    let (heard, machine) = controller.end();
+    assert!(machine.runs && count(&heard, "@STOP") == 0, "{heard:?}");
+}
+
+/// An order whose answer is lost leaves once, and the outcome is told as unknown.
+#[test]
+fn no_order_leaves_twice() {
+    for (words, order) in [
+        ("home", "@HOME"),
+        ("home --sync 1", "@SORG 1"),
+        ("run sequential 1", "@SPST 0001"),
+        ("run palletizing --program 2", "@SPLN PR=02"),
+        ("run palletizing", "@PPST"),
+        ("run easy", "@SESY"),
+        ("run point 7", "@EXTP PT=007"),
+        ("servo on", "@SVON"),
+        ("mode auto", "@MAUT"),
+        ("reset", "@REST"),
+        ("error cancel", "@CERR"),
+        ("coordinate set 1 2 3 4", "@MRSS TASK=01 X=+0001.00 Y=+0002.00 Z=+0003.00 R=+0004.00 V=00"),
+        ("card write", "@WMCA"),
+        ("card read", "@RMCA"),
+    ] {
+        let controller = Controller::new(move |block| if block == order { Peculiar::Silence } else { Peculiar::No });
+        let output = controller.command(&format!("{words} --timeout 100ms")).output().unwrap();
+        assert_eq!(output.status.code(), Some(6), "{words}: {}", errors(&output));
+        assert!(errors(&output).contains("hint: "), "{words}: {}", errors(&output));
+        let (heard, _) = controller.end();
+        assert_eq!(count(&heard, order), 1, "{words}: {heard:?}");
+    }
+}
