@@ -35,9 +35,7 @@ impl World {
         if !self.is_running() {
             return;
         }
-        let mut order: [usize; TASKS] = std::array::from_fn(|index| index);
-        order.sort_by_key(|&index| self.machine.priority[index]);
-        for index in order {
+        for index in self.machine.order {
             if self.is_held() || self.tasks[index].due().is_none_or(|at| at > self.now) {
                 continue;
             }

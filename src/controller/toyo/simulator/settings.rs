@@ -71,7 +71,8 @@ pub(super) struct Machine {
     /// mm of position error that count as overflow.
     pub(super) overflow: Place,
     pub(super) absolute: bool,
-    pub(super) priority: [i32; TASKS],
+    /// Tasks in the order in which they do what is due at the same time (E20).
+    pub(super) order: [usize; TASKS],
     /// The axis that drives each driven one.
     pub(super) driver: [Option<usize>; AXES],
     /// Whether the roles of synchronized axes make no sense.
@@ -164,7 +165,7 @@ impl Machine {
             upwards: words("E24").map(|word| word == "1"),
             overflow: std::array::from_fn(|axis| pulses[axis] * lead[axis] / (division[axis] * multiplier[axis])),
             absolute: words("E17")[0] == "a",
-            priority: numbers(content.single("E20")),
+            order: order(numbers(content.single("E20"))),
             bad_roles: (0..AXES).any(|axis| match roles[axis] {
                 "S" => driver[axis].is_none(),
                 "M" => axis + 1 >= AXES || roles[axis + 1] != "S",
@@ -173,6 +174,13 @@ impl Machine {
             driver,
         }
     }
+}
+
+/// Tasks by their priority, the least number first.
+fn order(priority: [i32; TASKS]) -> [usize; TASKS] {
+    let mut order = std::array::from_fn(|task| task);
+    order.sort_by_key(|&task| priority[task]);
+    order
 }
 
 /// The axes of each task: a digit a task, axes in their order (TO 2-4, E19).
@@ -220,6 +228,12 @@ mod tests {
         assert_eq!(axes, [vec![0], vec![1, 2], vec![3], vec![]]);
         assert_eq!(tasks("5000")[0], Axes { axes: vec![0, 1, 2, 3], space: 3 });
         assert_eq!(tasks("1300")[1], Axes { axes: vec![1, 2, 3], space: 2 });
+    }
+
+    #[test]
+    fn tasks_have_their_turn_by_priority() {
+        assert_eq!(order([1, 1, 1, 1]), [0, 1, 2, 3]);
+        assert_eq!(order([3, 1, 0, 1]), [2, 1, 3, 0]);
     }
 
     #[test]
