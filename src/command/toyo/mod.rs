@@ -6,9 +6,6 @@ mod cells;
 mod coordinate;
 mod copies;
 mod counter;
-mod counter;
-#[cfg(test)]
-mod coverage;
 #[cfg(test)]
 mod coverage;
 mod easy;
