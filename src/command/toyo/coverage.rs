@@ -40,6 +40,12 @@ const LINES: &[(&str, &[&str])] = &[
     ("easy copy 1 2", &["CESY"]),
     ("easy select 1", &["SESN"]),
     ("easy progress", &["RESD"]),
+    ("program get", &["RSTX"]),
+    ("program insert 1 END", &["ISTX", "WSTX"]),
+    ("program delete 1", &["DSTX"]),
+    ("program delete 1 --to 2", &["DSTL"]),
+    ("program copy 1 2 --at 5", &["CPSS"]),
+    ("program search 1", &["SSTG"]),
     ("io in", &["MINP"]),
     ("io out", &["MOUT"]),
     ("io internal", &["MNIN"]),
@@ -62,10 +68,6 @@ const LINES: &[(&str, &[&str])] = &[
     ("info", &["SYSP", "CVER", "MTSK", "ROVR"]),
 ];
 
-/// Commands that have no line above yet.
-#[rustfmt::skip]
-const TO_COME: &[&str] = &[];
-
 #[test]
 fn every_command_has_a_command_line() {
     let mut reached = BTreeSet::new();
@@ -78,6 +80,6 @@ fn every_command_has_a_command_line() {
             reached.insert(*command);
         }
     }
-    let missing: BTreeSet<&str> = ROWS.iter().map(|row| row.word).filter(|word| !reached.contains(word)).collect();
-    assert_eq!(missing, TO_COME.iter().copied().collect());
+    let missing: Vec<&str> = ROWS.iter().map(|row| row.word).filter(|word| !reached.contains(word)).collect();
+    assert!(missing.is_empty(), "no command line sends {missing:?}");
 }
