@@ -35,7 +35,7 @@ struct Effort {
     trips: u32,
 }
 
-const FULL: Effort = Effort { time: Duration::from_secs(10), rounds: 5, many: Duration::from_secs(30), trips: 200 };
+const FULL: Effort = Effort { time: Duration::from_secs(5), rounds: 11, many: Duration::from_secs(30), trips: 200 };
 const QUICK: Effort =
     Effort { time: Duration::from_millis(300), rounds: 1, many: Duration::from_millis(500), trips: 3 };
 
@@ -61,8 +61,9 @@ fn spread(effort: &Effort) -> anyhow::Result<()> {
         let runtime = runtime()?;
         let server = Server::start(setup(1), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
         let sent = Arc::new(Mutex::new(Vec::new()));
+        let images = SocketAddrV4::new(Ipv4Addr::LOCALHOST, server.io_port());
         let tap = {
-            let (sent, images) = (Arc::clone(&sent), SocketAddrV4::new(Ipv4Addr::LOCALHOST, server.io_port()));
+            let sent = Arc::clone(&sent);
             Tap::new(move |passed| {
                 if passed.to == images {
                     sent.lock().expect("nobody panics with it").push(Instant::now());
@@ -72,8 +73,8 @@ fn spread(effort: &Effort) -> anyhow::Result<()> {
         let scanner = Scanner::start(Ipv4Addr::LOCALHOST, tap)?;
         let connection = runtime.block_on(scanner.open(server.address(), settings()))?;
         let time = effort.time;
-        let bare = thread::spawn(move || bare(time));
-        let tokio = thread::spawn(move || runtime_loop(time));
+        let bare = thread::spawn(move || bare(images, time));
+        let tokio = thread::spawn(move || runtime_loop(images, time));
         let bare = bare.join().expect("the loop does not panic")?;
         let tokio = tokio.join().expect("the loop does not panic")?;
         runtime.block_on(connection.close())?;
@@ -179,8 +180,8 @@ fn hold(name: &str, target: SocketAddrV4, effort: &Effort) -> anyhow::Result<()>
 }
 
 /// The least that sends an image every 10 ms.
-fn bare(time: Duration) -> anyhow::Result<Vec<Instant>> {
-    let (socket, image) = bare_image()?;
+fn bare(to: SocketAddrV4, time: Duration) -> anyhow::Result<Vec<Instant>> {
+    let (socket, image) = bare_image(to)?;
     let start = Instant::now();
     let mut due = start;
     let mut sent = Vec::new();
@@ -194,8 +195,8 @@ fn bare(time: Duration) -> anyhow::Result<Vec<Instant>> {
 }
 
 /// The same with tokio's timer.
-fn runtime_loop(time: Duration) -> anyhow::Result<Vec<Instant>> {
-    let (socket, image) = bare_image()?;
+fn runtime_loop(to: SocketAddrV4, time: Duration) -> anyhow::Result<Vec<Instant>> {
+    let (socket, image) = bare_image(to)?;
     runtime()?.block_on(async {
         let start = Instant::now();
         let mut due = tokio::time::Instant::now();
@@ -210,14 +211,11 @@ fn runtime_loop(time: Duration) -> anyhow::Result<Vec<Instant>> {
     })
 }
 
-/// A socket to a port that nobody reads, and an image for it.
-fn bare_image() -> anyhow::Result<(UdpSocket, Vec<u8>)> {
-    let sink = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
+/// A socket to the adapter, and an image for it that belongs to no connection.
+fn bare_image(to: SocketAddrV4) -> anyhow::Result<(UdpSocket, Vec<u8>)> {
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
-    socket.connect(sink.local_addr()?)?;
-    // The sink must last as long as the socket; the loop has no other use for it.
-    std::mem::forget(sink);
-    Ok((socket, Cyclic { id: 1, sequence: 1, count: 1, body: &[0; SIZE as usize] }.emit(Some(1))))
+    socket.connect(to)?;
+    Ok((socket, Cyclic { id: 0, sequence: 1, count: 1, body: &[0; SIZE as usize] }.emit(Some(1))))
 }
 
 /// How far intervals are from 10 ms, in microseconds.

@@ -44,8 +44,8 @@ fn images_travel_both_ways() {
 #[test]
 fn images_keep_their_time() {
     let mut world = World::open(setup(), settings(), "delay=0..3ms,seed=4");
-    let first = world.images_out[0].0;
     world.run(10_000 * MS);
+    let first = world.images_out[0].0;
     for (sent, index) in world.images_out.iter().zip(0u32..) {
         assert_eq!(sent.0, first + 20 * MS * index);
     }

@@ -45,7 +45,7 @@ impl Message {
         let Self { service, path, data } = self;
         if data.len() > MOST_DATA || path.emit().len() > MOST_PATH {
             let text = format!("a message has {MOST_DATA} bytes of data and {MOST_PATH} of path at most");
-            return Err(Trouble::Settings(text));
+            return Err(Trouble::Impossible(text));
         }
         Ok(RrData::new(&Request { service: *service, path: path.clone(), data }.emit()).emit())
     }

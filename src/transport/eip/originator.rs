@@ -8,7 +8,6 @@
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 use std::time::Duration;
 
 use super::class1::{Consumer, Producer, Verdict};
@@ -17,7 +16,13 @@ use super::session::{Ask, Session, Step, Token};
 use super::settings::{Role, Settings};
 use super::trouble::Trouble;
 use super::wire::{Close, Command, Cyclic, Net, Open, Opened, RUN, RrData, Triad};
-use super::{IO_PORT, Now, UNREGISTERED_VENDOR};
+use super::{IO_PORT, Now};
+
+mod numbers;
+mod view;
+
+pub use numbers::Numbers;
+pub use view::{Input, State, Statistics, View};
 
 const OPEN: Token = Token(0);
 const CLOSE: Token = Token(1);
@@ -35,119 +40,6 @@ const BACKOFF: [Duration; 5] = [
     Duration::from_secs(2),
     Duration::from_secs(5),
 ];
-
-/// Numbers that are unique in a process, and very likely elsewhere.
-#[derive(Debug)]
-pub struct Numbers {
-    originator: u32,
-    serial: AtomicU16,
-    id: AtomicU32,
-}
-
-impl Numbers {
-    /// Begins anywhere, so that what an earlier process left open is not hit.
-    pub fn random() -> Self {
-        Self::new(fastrand::u32(..), fastrand::u16(..), fastrand::u32(..))
-    }
-
-    /// Serial number of the originator, and where the numbers of connections and their ids begin.
-    pub const fn new(originator: u32, serial: u16, id: u32) -> Self {
-        Self { originator, serial: AtomicU16::new(serial), id: AtomicU32::new(id) }
-    }
-
-    fn triad(&self) -> Triad {
-        let serial = self.serial.fetch_add(1, Ordering::Relaxed);
-        Triad { serial, vendor: UNREGISTERED_VENDOR, originator: self.originator }
-    }
-
-    fn id(&self) -> u32 {
-        // 0 is no id.
-        match self.id.fetch_add(1, Ordering::Relaxed) {
-            0 => self.id.fetch_add(1, Ordering::Relaxed),
-            id => id,
-        }
-    }
-}
-
-/// How a connection is doing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum State {
-    /// Being opened for the first time.
-    Opening,
-    /// Images travel.
-    Open,
-    /// Lost, and being opened again.
-    Lost,
-    /// Being closed.
-    Closing,
-    /// At its end: closed, or never opened.
-    Closed,
-}
-
-/// An image from the device.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Input {
-    /// The bytes.
-    pub image: Arc<[u8]>,
-    /// The number of its datagram.
-    pub sequence: u32,
-    /// When it came.
-    pub at: Now,
-    /// In which generation.
-    pub generation: u32,
-}
-
-/// What was counted, over all generations.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Statistics {
-    /// Datagrams sent.
-    pub sent: u64,
-    /// Moments to send that were missed by a whole interval, as by a machine that is too busy.
-    pub skipped: u64,
-    /// Datagrams that were good.
-    pub received: u64,
-    /// Numbers that never came.
-    pub lost: u64,
-    /// Datagrams that came more than half an interval late.
-    pub late: u64,
-    /// Datagrams that were old or came again, and were passed over.
-    pub stale: u64,
-    /// Datagrams of a wrong size, which were passed over.
-    pub misfit: u64,
-}
-
-impl Statistics {
-    fn add(&mut self, io: &Io) {
-        self.sent += io.producer.sent;
-        self.skipped += io.producer.skipped;
-        self.received += io.consumer.received;
-        self.lost += io.consumer.lost;
-        self.late += io.consumer.late;
-        self.stale += io.consumer.stale;
-        self.misfit += io.consumer.misfit;
-    }
-}
-
-/// All that can be seen of a connection.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct View {
-    /// How it is doing.
-    pub state: State,
-    /// Counts the openings; 0 before the first.
-    pub generation: u32,
-    /// The newest image of the device. It stays when the connection is lost: compare the generation.
-    pub input: Option<Input>,
-    /// The newest change of what is sent that went out at least once.
-    pub sent: u64,
-    /// Whether the device is told to run.
-    pub run: bool,
-    /// Why it was lost, or not opened, the last time; while it is open, what went wrong on a socket here.
-    pub trouble: Option<Trouble>,
-    /// The intervals that the device keeps: to it, from it.
-    pub intervals: Option<(Duration, Duration)>,
-    /// What was counted.
-    pub statistics: Statistics,
-}
 
 /// What is to be done.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -267,7 +159,7 @@ impl Originator {
         let mut view = self.view.clone();
         view.statistics = self.before;
         if let Some(io) = &self.io {
-            view.statistics.add(io);
+            view.statistics.add(&io.producer, &io.consumer);
         }
         view
     }
@@ -291,7 +183,7 @@ impl Originator {
         self.is_current(generation)?;
         if image.len() != self.image.len() {
             let (len, size) = (image.len(), self.image.len());
-            return Err(Trouble::Settings(format!("the output image has {size} bytes, not {len}")));
+            return Err(Trouble::Impossible(format!("the output image has {size} bytes, not {len}")));
         }
         self.image.copy_from_slice(image);
         self.revision += 1;
@@ -360,7 +252,8 @@ impl Originator {
 
     /// Whether datagrams of this id, from this address, are for this connection.
     pub fn expects(&self, from: Ipv4Addr, id: u32) -> bool {
-        from == *self.target.ip() && self.io.as_ref().is_some_and(|io| io.consumer.id() == id)
+        let hosts = |io: &Io| from == *self.target.ip() || from == *io.destination.ip();
+        self.io.as_ref().is_some_and(|io| io.consumer.id() == id && hosts(io))
     }
 
     /// A datagram for this connection arrived.
@@ -457,7 +350,7 @@ impl Originator {
             o_t: self.settings.o_t(),
             t_o: self.settings.t_o(),
             transport: TRANSPORT,
-            path: self.settings.path(),
+            path: self.settings.opening_path(),
         };
         // A group has its port from the device; else this is where we listen.
         let own = (open.t_o.net == Net::PointToPoint).then(|| SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, self.port));
@@ -519,7 +412,9 @@ impl Originator {
         let intervals = self.settings.multiplier.intervals();
         let size = usize::from(self.settings.input_size);
         self.io = Some(Io {
-            producer: Producer::new(opened.o_t_id, to, now),
+            // Devices begin to send when they answer. Half an interval later, what they make of an image goes back with
+            // the next one instead of just missing it.
+            producer: Producer::new(opened.o_t_id, to, now.saturating_add(to / 2)),
             consumer: Consumer::new(opened.t_o_id, size, false, from, intervals, now),
             destination,
             group,
@@ -590,7 +485,7 @@ impl Originator {
     /// Ends the streams, and keeps what they counted.
     fn stop(&mut self) {
         if let Some(io) = self.io.take() {
-            self.before.add(&io);
+            self.before.add(&io.producer, &io.consumer);
             self.actions.extend(io.group.map(Action::Leave));
         }
     }

@@ -119,7 +119,7 @@ impl Scanner {
         let inner = &self.owner.inner;
         if settings.multicast && self.port() != IO_PORT {
             let text = format!("images to a group come on UDP port {IO_PORT}, which another program here has");
-            return Err(Trouble::Settings(text));
+            return Err(Trouble::Impossible(text));
         }
         let core = Originator::new(target, self.port(), settings, Arc::clone(&inner.numbers))?;
         let (view, views) = watch::channel(core.view());

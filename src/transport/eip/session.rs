@@ -94,7 +94,7 @@ impl Session {
     pub fn ask(&mut self, ask: Ask) {
         if self.waiting.len() >= MOST_WAITING {
             let why = "too many requests wait already";
-            self.answer(ask.token, false, Err(Trouble::Settings(why.to_owned())));
+            self.answer(ask.token, false, Err(Trouble::Impossible(why.to_owned())));
         } else {
             self.waiting.push_back(ask);
         }

@@ -114,7 +114,7 @@ impl Default for Settings {
 impl Settings {
     /// Whether a connection can be so.
     pub fn check(&self) -> Result<(), Trouble> {
-        let wrong = |text: String| Err(Trouble::Settings(text));
+        let wrong = |text: String| Err(Trouble::Impossible(text));
         if self.output_size.max(self.input_size) > MOST_IMAGE {
             return wrong(format!("an image has {MOST_IMAGE} bytes at most"));
         }
@@ -134,16 +134,22 @@ impl Settings {
         Ok(())
     }
 
-    /// The connection path: key, assembly class, configuration, output, input, configuration data.
+    /// The connection path: key, assembly class, configuration, output, input.
     pub fn path(&self) -> Path {
         let mut segments: Vec<Segment> = self.key.map(Segment::Key).into_iter().collect();
         segments.push(Segment::Class(super::ASSEMBLY));
         segments.extend(self.configuration.map(Segment::Instance));
         segments.extend([Segment::Point(self.output), Segment::Point(self.input)]);
-        if !self.configuration_data.is_empty() {
-            segments.push(Segment::Data(self.configuration_data.clone()));
-        }
         Path(segments)
+    }
+
+    /// The path with configuration data behind it, which goes with the opening only.
+    pub fn opening_path(&self) -> Path {
+        let mut path = self.path();
+        if !self.configuration_data.is_empty() {
+            path.0.push(Segment::Data(self.configuration_data.clone()));
+        }
+        path
     }
 
     /// To the device: count, and for an owner header and image.
@@ -191,7 +197,7 @@ mod tests {
             Settings { role: Role::InputOnly, output_size: 1, resting: vec![0], ..Settings::default() },
         ];
         for settings in cases {
-            assert!(matches!(settings.check(), Err(Trouble::Settings(_))), "{settings:?}");
+            assert!(matches!(settings.check(), Err(Trouble::Impossible(_))), "{settings:?}");
         }
     }
 

@@ -87,10 +87,10 @@ pub enum Trouble {
         /// In its words.
         text: String,
     },
-    /// Settings that no connection can have.
+    /// Something that cannot be, such as settings that no connection can have; nothing was sent.
     #[error("{0}")]
-    Settings(
-        /// What is wrong with them.
+    Impossible(
+        /// Why it cannot be.
         String,
     ),
 }

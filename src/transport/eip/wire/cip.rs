@@ -14,8 +14,6 @@ pub mod service {
     pub const SET_ATTRIBUTE_SINGLE: u8 = 0x10;
     /// Closes a connection.
     pub const FORWARD_CLOSE: u8 = 0x4E;
-    /// A message for somebody behind the device.
-    pub const UNCONNECTED_SEND: u8 = 0x52;
     /// Opens a connection with up to 511 bytes each way.
     pub const FORWARD_OPEN: u8 = 0x54;
     /// Opens a connection with up to 65,535 bytes each way.
