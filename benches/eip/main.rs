@@ -70,8 +70,8 @@ fn spread(effort: &Effort) -> anyhow::Result<()> {
                 }
             })
         };
-        let scanner = Scanner::start(Ipv4Addr::LOCALHOST, tap)?;
-        let connection = runtime.block_on(scanner.open(server.address(), settings()))?;
+        let scanner = Scanner::start(Ipv4Addr::LOCALHOST)?;
+        let connection = runtime.block_on(scanner.open(server.address(), settings(), tap))?;
         let time = effort.time;
         let bare = thread::spawn(move || bare(images, time));
         let tokio = thread::spawn(move || runtime_loop(images, time));
@@ -99,8 +99,9 @@ fn trips(effort: &Effort) -> anyhow::Result<()> {
     for rpi in [5, 10, 20].map(Duration::from_millis) {
         let runtime = runtime()?;
         let server = Server::start(setup(1), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
-        let scanner = Scanner::start(Ipv4Addr::LOCALHOST, Tap::default())?;
-        let mut connection = runtime.block_on(scanner.open(server.address(), Settings { rpi, ..settings() }))?;
+        let scanner = Scanner::start(Ipv4Addr::LOCALHOST)?;
+        let mut connection =
+            runtime.block_on(scanner.open(server.address(), Settings { rpi, ..settings() }, Tap::default()))?;
         let mut times = Vec::new();
         for trip in 1..=effort.trips {
             let mark = u8::try_from(trip % 251)?;
@@ -155,11 +156,11 @@ fn many(effort: &Effort) -> anyhow::Result<()> {
 /// Holds fifty connections for a while.
 fn hold(name: &str, target: SocketAddrV4, effort: &Effort) -> anyhow::Result<()> {
     let runtime = runtime()?;
-    let scanner = Scanner::start(Ipv4Addr::LOCALHOST, Tap::default())?;
+    let scanner = Scanner::start(Ipv4Addr::LOCALHOST)?;
     let mut connections: Vec<Connection> = Vec::new();
     for index in 0..MANY {
         let settings = Settings { output: output(index), ..settings() };
-        connections.push(runtime.block_on(scanner.open(target, settings))?);
+        connections.push(runtime.block_on(scanner.open(target, settings, Tap::default()))?);
     }
     thread::sleep(effort.many);
     let (mut sent, mut received, mut lost, mut skipped) = (0, 0, 0, 0);

@@ -20,15 +20,16 @@ use world::{Mirror, settings, setup};
 
 #[tokio::test]
 async fn a_group_is_heard_by_all_who_asked_for_it() {
-    let scanner = Scanner::start(Ipv4Addr::UNSPECIFIED, Tap::default()).unwrap();
+    let scanner = Scanner::shared().unwrap();
     if scanner.port() != IO_PORT {
         return println!("skipped: another program has UDP port {IO_PORT}");
     }
+    assert_eq!(Scanner::shared().unwrap().port(), IO_PORT, "it is the same one");
     let server = Server::start(setup(), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None).unwrap();
     let owner = Settings { multicast: true, ..settings() };
     let listener = Settings { role: Role::ListenOnly, output: 237, output_size: 0, resting: vec![], ..owner.clone() };
-    let mut owner = scanner.open(server.address(), owner).await.unwrap();
-    let mut listener = scanner.open(server.address(), listener).await.unwrap();
+    let mut owner = scanner.open(server.address(), owner, Tap::default()).await.unwrap();
+    let mut listener = scanner.open(server.address(), listener, Tap::default()).await.unwrap();
     owner.set_image(1, &[0x5A; 48]).unwrap();
     for connection in [&mut owner, &mut listener] {
         let is_back = |image: &[u8]| image == [0xA5; 48];

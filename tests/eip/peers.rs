@@ -60,8 +60,9 @@ fn v4(address: SocketAddr) -> SocketAddrV4 {
 async fn ciplink_is_owned_by_our_scanner() {
     let Some(address) = address(1) else { return println!("{NO_ADDRESS}") };
     let adapter = ciplink(address);
-    let scanner = Scanner::start(Ipv4Addr::LOCALHOST, Tap::default()).unwrap();
-    let mut connection = scanner.open(v4(adapter.addr()), Settings { rpi: 10 * MS, ..settings() }).await.unwrap();
+    let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
+    let mut connection =
+        scanner.open(v4(adapter.addr()), Settings { rpi: 10 * MS, ..settings() }, Tap::default()).await.unwrap();
     let info = adapter.connections().pop().unwrap();
     assert_eq!((info.input, info.output, info.multicast), (100, Some(150), false));
     assert_eq!((info.o_t_rpi, info.t_o_rpi), (10 * MS, 10 * MS));
@@ -97,9 +98,9 @@ async fn ciplink_is_listened_to() {
     let Some(address) = address(2) else { return println!("{NO_ADDRESS}") };
     let adapter = ciplink(address);
     adapter.set_input(100, &[9; 48]).unwrap();
-    let scanner = Scanner::start(Ipv4Addr::LOCALHOST, Tap::default()).unwrap();
+    let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
     let inputs = Settings { role: Role::InputOnly, output: 238, output_size: 0, resting: vec![], ..settings() };
-    let mut connection = scanner.open(v4(adapter.addr()), inputs).await.unwrap();
+    let mut connection = scanner.open(v4(adapter.addr()), inputs, Tap::default()).await.unwrap();
     let view = connection.until(|view| view.input.is_some()).await;
     assert_eq!(*view.input.unwrap().image, [9; 48]);
     connection.close().await.unwrap();
@@ -109,7 +110,7 @@ async fn ciplink_is_listened_to() {
 async fn ciplink_refuses_what_does_not_fit() {
     let Some(address) = address(3) else { return println!("{NO_ADDRESS}") };
     let adapter = ciplink(address);
-    let scanner = Scanner::start(Ipv4Addr::LOCALHOST, Tap::default()).unwrap();
+    let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
     let cases = [
         (Settings { output_size: 40, resting: vec![0; 40], ..settings() }, "(0x01/0x0109), the right one is 54 bytes"),
         (Settings { input_size: 600, ..settings() }, "(0x01/0x0109), the right one is 50 bytes"),
@@ -117,7 +118,7 @@ async fn ciplink_refuses_what_does_not_fit() {
         (Settings { rpi: MS, ..settings() }, "(0x01/0x0111)"),
     ];
     for (settings, end) in cases {
-        let trouble = scanner.open(v4(adapter.addr()), settings).await.unwrap_err().to_string();
+        let trouble = scanner.open(v4(adapter.addr()), settings, Tap::default()).await.unwrap_err().to_string();
         assert!(trouble.ends_with(end), "{trouble}");
     }
 }
@@ -195,14 +196,14 @@ async fn tshark_reads_what_passes() {
         let passed = Arc::clone(&passed);
         Tap::new(move |packet| passed.lock().unwrap().add(packet))
     };
-    let scanner = Scanner::start(Ipv4Addr::LOCALHOST, tap.clone()).unwrap();
-    let mut connection = scanner.open(server.address(), settings()).await.unwrap();
+    let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
+    let mut connection = scanner.open(server.address(), settings(), tap.clone()).await.unwrap();
     connection.set_run(1, true).unwrap();
     connection.until(|view| view.statistics.received >= 3).await;
     connection.ask("the size", &Message::get(4, 150, 4)).await.unwrap();
     connection.close().await.unwrap();
     let large = Settings { input_size: 600, ..settings() };
-    scanner.open(server.address(), large).await.unwrap_err();
+    scanner.open(server.address(), large, tap.clone()).await.unwrap_err();
     list_identity(&[server.address()], Duration::from_secs(20), &tap).await.unwrap();
 
     let folder = tempfile::tempdir().unwrap();

@@ -12,10 +12,11 @@ use armctl::transport::eip::explicit::{Answer, Message};
 use armctl::transport::eip::originator::State;
 use armctl::transport::eip::probe::{self, Connectable, Instances, probe};
 use armctl::transport::eip::scanner::Scanner;
-use armctl::transport::eip::settings::Settings;
+use armctl::transport::eip::settings::{Multiplier, Settings};
 use armctl::transport::eip::tap::Tap;
 use armctl::transport::eip::trouble::Trouble;
 use armctl::transport::eip::wire::Status;
+use armctl::transport::fault::{FaultSpec, Faults};
 
 use crate::world::{MS, Mirror, identity, resting, settings, setup};
 
@@ -32,8 +33,8 @@ fn quick() -> Settings {
 #[tokio::test]
 async fn images_and_messages_travel() {
     let server = serve(setup());
-    let scanner = Scanner::start(LOOPBACK, Tap::default()).unwrap();
-    let mut connection = scanner.open(server.address(), quick()).await.unwrap();
+    let scanner = Scanner::start(LOOPBACK).unwrap();
+    let mut connection = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
     let generation = connection.view().generation;
     connection.set_image(generation, &[0x5A; 48]).unwrap();
     let change = connection.set_run(generation, true).unwrap();
@@ -55,10 +56,10 @@ async fn images_and_messages_travel() {
 #[tokio::test]
 async fn many_connections_share_a_socket() {
     let servers: Vec<_> = (0..20).map(|_| serve(setup())).collect();
-    let scanner = Scanner::start(LOOPBACK, Tap::default()).unwrap();
+    let scanner = Scanner::start(LOOPBACK).unwrap();
     let mut connections = Vec::new();
     for (server, mark) in servers.iter().zip(1u8..) {
-        let connection = scanner.open(server.address(), quick()).await.unwrap();
+        let connection = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
         connection.set_image(1, &[mark; 48]).unwrap();
         connections.push(connection);
     }
@@ -70,30 +71,46 @@ async fn many_connections_share_a_socket() {
 }
 
 #[tokio::test]
+async fn a_bad_network_is_survived() {
+    let faults: FaultSpec = "drop=10%,dup=5%,delay=0..20ms,reorder=2%,seed=5".parse().unwrap();
+    let listen = Listen::anywhere(LOOPBACK);
+    let server = Server::start(setup(), Mirror::default(), listen, Some(Faults::pair(faults))).unwrap();
+    let scanner = Scanner::start(LOOPBACK).unwrap();
+    let patient = Settings { multiplier: Multiplier::of(512).unwrap(), ..quick() };
+    let mut connection = scanner.open(server.address(), patient, Tap::default()).await.unwrap();
+    for mark in 1..20 {
+        connection.set_image(1, &[mark; 48]).unwrap();
+        connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!mark; 48])).await;
+    }
+    let view = connection.until(|view| view.statistics.lost > 0 && view.statistics.stale > 0).await;
+    assert_eq!((view.state, view.generation), (State::Open, 1));
+}
+
+#[tokio::test]
 async fn refusals_come_back_from_open() {
     let server = serve(setup());
-    let scanner = Scanner::start(LOOPBACK, Tap::default()).unwrap();
+    let scanner = Scanner::start(LOOPBACK).unwrap();
     let wrong = Settings { input_size: 46, ..quick() };
-    let refused = scanner.open(server.address(), wrong).await.unwrap_err();
+    let refused = scanner.open(server.address(), wrong, Tap::default()).await.unwrap_err();
     assert_eq!(
         refused.to_string(),
         "ForwardOpen was refused: invalid connection size (0x01/0x0109), the right one is 50 bytes"
     );
-    let first = scanner.open(server.address(), quick()).await.unwrap();
-    let second = scanner.open(server.address(), quick()).await.unwrap_err();
+    let first = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
+    let second = scanner.open(server.address(), quick(), Tap::default()).await.unwrap_err();
     assert_eq!(second, Trouble::Refused { what: "ForwardOpen", status: Status::connection(0x0106, &[]) });
     first.close().await.unwrap();
-    let third = scanner.open(server.address(), quick()).await.unwrap();
+    let third = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
     third.close().await.unwrap();
 }
 
 #[tokio::test]
 async fn a_dropped_connection_is_closed() {
     let server = serve(setup());
-    let scanner = Scanner::start(LOOPBACK, Tap::default()).unwrap();
-    drop(scanner.open(server.address(), quick()).await.unwrap());
+    let scanner = Scanner::start(LOOPBACK).unwrap();
+    drop(scanner.open(server.address(), quick(), Tap::default()).await.unwrap());
     // The device is free for the next owner, which may have to wait for the close to arrive.
-    while let Err(trouble) = scanner.open(server.address(), quick()).await {
+    while let Err(trouble) = scanner.open(server.address(), quick(), Tap::default()).await {
         assert_eq!(trouble.code().unwrap().code, 0x0106, "{trouble}");
     }
 }
@@ -101,8 +118,8 @@ async fn a_dropped_connection_is_closed() {
 #[tokio::test]
 async fn a_lost_link_is_opened_again() {
     let server = serve(setup());
-    let scanner = Scanner::start(LOOPBACK, Tap::default()).unwrap();
-    let mut connection = scanner.open(server.address(), quick()).await.unwrap();
+    let scanner = Scanner::start(LOOPBACK).unwrap();
+    let mut connection = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
     connection.set_image(1, &[7; 48]).unwrap();
     connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!7; 48])).await;
     server.with(|adapter, _| adapter.misbehave(Some(Mischief::Stall)));
@@ -120,8 +137,8 @@ async fn nobody_there_is_told() {
     let server = serve(setup());
     let address = server.address();
     drop(server);
-    let scanner = Scanner::start(LOOPBACK, Tap::default()).unwrap();
-    assert!(matches!(scanner.open(address, quick()).await, Err(Trouble::Unreachable { .. })));
+    let scanner = Scanner::start(LOOPBACK).unwrap();
+    assert!(matches!(scanner.open(address, quick(), Tap::default()).await, Err(Trouble::Unreachable { .. })));
     let mut client = Client::new(address, Duration::from_secs(3), Tap::default());
     assert!(matches!(client.identity().await, Err(Trouble::Unreachable { .. })));
 }
@@ -162,8 +179,8 @@ async fn a_tap_sees_all_that_passes() {
         let seen = Arc::clone(&seen);
         Tap::new(move |passed| seen.lock().unwrap().push((passed.is_tcp, passed.from, passed.to)))
     };
-    let scanner = Scanner::start(LOOPBACK, tap).unwrap();
-    let mut connection = scanner.open(server.address(), quick()).await.unwrap();
+    let scanner = Scanner::start(LOOPBACK).unwrap();
+    let mut connection = scanner.open(server.address(), quick(), tap).await.unwrap();
     connection.until(|view| view.input.is_some()).await;
     connection.close().await.unwrap();
     let seen = seen.lock().unwrap();

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::Instant;
 
 use tokio::runtime::Handle;
@@ -52,7 +52,6 @@ struct Inner {
     socket: UdpSocket,
     local: SocketAddrV4,
     numbers: Arc<Numbers>,
-    tap: Tap,
     slots: Mutex<BTreeMap<u64, Slot>>,
     last: AtomicU64,
     /// Groups with the interface they are heard on, and by how many connections.
@@ -63,6 +62,7 @@ struct Inner {
 #[derive(Debug)]
 struct Slot {
     core: Originator,
+    tap: Tap,
     line: Option<Line>,
     /// Our address on the way to the device, once it is known.
     here: Ipv4Addr,
@@ -71,17 +71,29 @@ struct Slot {
 }
 
 impl Scanner {
+    /// The one of this process, on all its addresses: started when there is none, so that all connections share a socket.
+    pub fn shared() -> Result<Self, Trouble> {
+        static SHARED: Mutex<Weak<Owner>> = Mutex::new(Weak::new());
+        let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(owner) = shared.upgrade() {
+            return Ok(Self { owner });
+        }
+        let scanner = Self::start(Ipv4Addr::UNSPECIFIED)?;
+        *shared = Arc::downgrade(&scanner.owner);
+        Ok(scanner)
+    }
+
     /// Listens for images on UDP port 2222 of this address, or on any port if another program has that one.
-    pub fn start(address: Ipv4Addr, tap: Tap) -> Result<Self, Trouble> {
+    pub fn start(address: Ipv4Addr) -> Result<Self, Trouble> {
         let failed = |error: &io::Error| Trouble::local("UDP socket for images", error);
         let socket = match UdpSocket::bind((address, IO_PORT)) {
             Err(error) if error.kind() == io::ErrorKind::AddrInUse => UdpSocket::bind((address, 0)),
             bound => bound,
         };
-        Self::on(socket.map_err(|error| failed(&error))?, tap).map_err(|error| failed(&error))
+        Self::on(socket.map_err(|error| failed(&error))?).map_err(|error| failed(&error))
     }
 
-    fn on(socket: UdpSocket, tap: Tap) -> io::Result<Self> {
+    fn on(socket: UdpSocket) -> io::Result<Self> {
         socket.set_nonblocking(true)?;
         let SocketAddr::V4(local) = socket.local_addr()? else { return Err(io::ErrorKind::Unsupported.into()) };
         let engine = Prepared::new()?;
@@ -98,7 +110,6 @@ impl Scanner {
             socket,
             local,
             numbers: Arc::new(Numbers::random()),
-            tap,
             slots: Mutex::default(),
             last: AtomicU64::new(0),
             groups: Mutex::default(),
@@ -115,7 +126,11 @@ impl Scanner {
     }
 
     /// Opens a connection to the device whose TCP address this is, and holds it until it is closed or dropped.
-    pub async fn open(&self, target: SocketAddrV4, settings: Settings) -> Result<Connection, Trouble> {
+    ///
+    /// # Errors
+    /// When the device is not there, does not answer, or refuses: nothing is tried twice. Later losses are not errors
+    /// but states of the view.
+    pub async fn open(&self, target: SocketAddrV4, settings: Settings, tap: Tap) -> Result<Connection, Trouble> {
         let inner = &self.owner.inner;
         if settings.multicast && self.port() != IO_PORT {
             let text = format!("images to a group come on UDP port {IO_PORT}, which another program here has");
@@ -123,7 +138,7 @@ impl Scanner {
         }
         let core = Originator::new(target, self.port(), settings, Arc::clone(&inner.numbers))?;
         let (view, views) = watch::channel(core.view());
-        let slot = Slot { core, line: None, here: *inner.local.ip(), view, answers: HashMap::new() };
+        let slot = Slot { core, tap, line: None, here: *inner.local.ip(), view, answers: HashMap::new() };
         let id = inner.last.fetch_add(1, Ordering::Relaxed);
         inner.slots().insert(id, slot);
         inner.with(id, |_, _| ());
@@ -269,7 +284,10 @@ impl Inner {
             match action {
                 Action::Connect => {
                     let (line, orders) = Line::new();
-                    spawn(&self.handle, tcp::run(Arc::clone(self), id, line.number, slot.core.target(), orders));
+                    spawn(
+                        &self.handle,
+                        tcp::run(Arc::clone(self), id, line.number, slot.core.target(), slot.tap.clone(), orders),
+                    );
                     slot.line = Some(line);
                 }
                 Action::Send(bytes) => {
@@ -279,7 +297,7 @@ impl Inner {
                 }
                 Action::Disconnect => slot.line = None,
                 Action::Datagram(to, bytes) => match self.socket.send_to(&bytes, to) {
-                    Ok(_) => self.tap.pass(false, SocketAddrV4::new(slot.here, self.local.port()), to, &bytes),
+                    Ok(_) => slot.tap.pass(false, SocketAddrV4::new(slot.here, self.local.port()), to, &bytes),
                     Err(error) => slot.core.failed(Trouble::local("sending an image", &error)),
                 },
                 Action::Join(group) => {
@@ -308,7 +326,7 @@ impl Inner {
         let mut slots = self.slots();
         // Connections to one device may share a group.
         for slot in slots.values_mut().filter(|slot| slot.core.expects(*from.ip(), datagram.id)) {
-            self.tap.pass(false, from, SocketAddrV4::new(slot.here, self.local.port()), bytes);
+            slot.tap.pass(false, from, SocketAddrV4::new(slot.here, self.local.port()), bytes);
             slot.core.hear(now, &datagram);
             if slot.core.take_changed() {
                 slot.view.send_replace(slot.core.view());

@@ -9,7 +9,7 @@ use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpSocket, TcpStream};
 use tokio::sync::mpsc::UnboundedReceiver;
 
-use super::{Inner, Slot, Trouble, mpsc};
+use super::{Inner, Slot, Tap, Trouble, mpsc};
 
 /// Room for what is read at once.
 const BUFFER: usize = 4096;
@@ -41,6 +41,7 @@ pub(super) async fn run(
     id: u64,
     number: u64,
     target: SocketAddrV4,
+    tap: Tap,
     mut orders: UnboundedReceiver<Vec<u8>>,
 ) {
     // A slot that has another line by now does not want to hear of this one.
@@ -74,7 +75,7 @@ pub(super) async fn run(
             biased;
             order = orders.recv() => {
                 let Some(bytes) = order else { return };
-                inner.tap.pass(true, here, target, &bytes);
+                tap.pass(true, here, target, &bytes);
                 if to.write_all(&bytes).await.is_err() {
                     break;
                 }
@@ -82,7 +83,7 @@ pub(super) async fn run(
             read = from.read(&mut buffer) => match read {
                 Ok(len @ 1..) => {
                     let bytes = &buffer[..len];
-                    inner.tap.pass(true, target, here, bytes);
+                    tap.pass(true, target, here, bytes);
                     tell(&mut |slot, now| slot.core.received(now, bytes));
                 }
                 Ok(0) | Err(_) => break,
