@@ -1,6 +1,7 @@
 //! How well images keep their time, beside a bare timer loop, and how many connections one process holds.
 //!
-//! `cargo bench --bench eip` measures; `-- --quick`, and `cargo test --benches`, only show that all of it works.
+//! `cargo bench --bench eip` measures everything, with `-- spread trips many` only that; `-- --quick`, and
+//! `cargo test --benches`, only show that all of it works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -39,14 +40,23 @@ const FULL: Effort = Effort { time: Duration::from_secs(5), rounds: 11, many: Du
 const QUICK: Effort =
     Effort { time: Duration::from_millis(300), rounds: 1, many: Duration::from_millis(500), trips: 3 };
 
+/// Measures and prints.
+type Measure = fn(&Effort) -> anyhow::Result<()>;
+
+/// What is measured, by the word that chooses it.
+const MEASUREMENTS: [(&str, Measure); 3] = [("spread", spread), ("trips", trips), ("many", many)];
+
 fn main() -> anyhow::Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     // `cargo bench` says so; `cargo test` says nothing.
     let is_quick = args.iter().any(|arg| arg == "--quick") || !args.iter().any(|arg| arg == "--bench");
     let effort = if is_quick { QUICK } else { FULL };
-    spread(&effort).context("spread")?;
-    trips(&effort).context("trips")?;
-    many(&effort).context("many")?;
+    let chosen: Vec<&String> = args.iter().filter(|arg| !arg.starts_with('-')).collect();
+    for (name, measure) in MEASUREMENTS {
+        if chosen.is_empty() || chosen.iter().any(|chosen| *chosen == name) {
+            measure(&effort).context(name)?;
+        }
+    }
     if is_quick || cfg!(debug_assertions) {
         println!("A short or unoptimized run: it shows that all of it works, the figures mean nothing.");
     }
@@ -189,8 +199,8 @@ fn bare(to: SocketAddrV4, time: Duration) -> anyhow::Result<Vec<Instant>> {
     while start.elapsed() < time {
         due += RPI;
         thread::sleep(due.saturating_duration_since(Instant::now()));
-        socket.send(&image)?;
         sent.push(Instant::now());
+        socket.send(&image)?;
     }
     Ok(sent)
 }
@@ -205,8 +215,8 @@ fn runtime_loop(to: SocketAddrV4, time: Duration) -> anyhow::Result<Vec<Instant>
         while start.elapsed() < time {
             due += RPI;
             tokio::time::sleep_until(due).await;
-            socket.send(&image)?;
             sent.push(Instant::now());
+            socket.send(&image)?;
         }
         Ok(sent)
     })

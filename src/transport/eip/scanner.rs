@@ -296,10 +296,13 @@ impl Inner {
                     }
                 }
                 Action::Disconnect => slot.line = None,
-                Action::Datagram(to, bytes) => match self.socket.send_to(&bytes, to) {
-                    Ok(_) => slot.tap.pass(false, SocketAddrV4::new(slot.here, self.local.port()), to, &bytes),
-                    Err(error) => slot.core.failed(Trouble::local("sending an image", &error)),
-                },
+                Action::Datagram(to, bytes) => {
+                    // First, so that no record has an answer before what it answers.
+                    slot.tap.pass(false, SocketAddrV4::new(slot.here, self.local.port()), to, &bytes);
+                    if let Err(error) = self.socket.send_to(&bytes, to) {
+                        slot.core.failed(Trouble::local("sending an image", &error));
+                    }
+                }
                 Action::Join(group) => {
                     if let Err(error) = self.join(group, slot.here) {
                         slot.core.failed(Trouble::local("joining the group", &error));
