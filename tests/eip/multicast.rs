@@ -16,7 +16,7 @@ use armctl::transport::eip::scanner::Scanner;
 use armctl::transport::eip::settings::{Role, Settings};
 use armctl::transport::eip::tap::Tap;
 
-use world::{Mirror, settings, setup};
+use world::{Mirror, patient, setup};
 
 #[tokio::test]
 async fn a_group_is_heard_by_all_who_asked_for_it() {
@@ -26,7 +26,7 @@ async fn a_group_is_heard_by_all_who_asked_for_it() {
     }
     assert_eq!(Scanner::shared().unwrap().port(), IO_PORT, "it is the same one");
     let server = Server::start(setup(), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None).unwrap();
-    let owner = Settings { multicast: true, ..settings() };
+    let owner = Settings { multicast: true, ..patient() };
     let listener = Settings { role: Role::ListenOnly, output: 237, output_size: 0, resting: vec![], ..owner.clone() };
     let mut owner = scanner.open(server.address(), owner, Tap::default()).await.unwrap();
     let mut listener = scanner.open(server.address(), listener, Tap::default()).await.unwrap();

@@ -22,7 +22,7 @@ use armctl::transport::eip::{IO_PORT, PORT};
 use ciplink::adapter::{Adapter, AdapterConfig, Assembly, Event};
 
 use crate::pcap;
-use crate::world::{MS, Mirror, settings, setup};
+use crate::world::{MS, Mirror, patient, setup};
 
 /// An address of the loopback whose port 2222 is free; the tests run side by side, so each has one.
 fn address(last: u8) -> Option<Ipv4Addr> {
@@ -62,7 +62,7 @@ async fn ciplink_is_owned_by_our_scanner() {
     let adapter = ciplink(address);
     let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
     let mut connection =
-        scanner.open(v4(adapter.addr()), Settings { rpi: 10 * MS, ..settings() }, Tap::default()).await.unwrap();
+        scanner.open(v4(adapter.addr()), Settings { rpi: 10 * MS, ..patient() }, Tap::default()).await.unwrap();
     let info = adapter.connections().pop().unwrap();
     assert_eq!((info.input, info.output, info.multicast), (100, Some(150), false));
     assert_eq!((info.o_t_rpi, info.t_o_rpi), (10 * MS, 10 * MS));
@@ -99,7 +99,7 @@ async fn ciplink_is_listened_to() {
     let adapter = ciplink(address);
     adapter.set_input(100, &[9; 48]).unwrap();
     let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
-    let inputs = Settings { role: Role::InputOnly, output: 238, output_size: 0, resting: vec![], ..settings() };
+    let inputs = Settings { role: Role::InputOnly, output: 238, output_size: 0, resting: vec![], ..patient() };
     let mut connection = scanner.open(v4(adapter.addr()), inputs, Tap::default()).await.unwrap();
     let view = connection.until(|view| view.input.is_some()).await;
     assert_eq!(*view.input.unwrap().image, [9; 48]);
@@ -112,10 +112,10 @@ async fn ciplink_refuses_what_does_not_fit() {
     let adapter = ciplink(address);
     let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
     let cases = [
-        (Settings { output_size: 40, resting: vec![0; 40], ..settings() }, "(0x01/0x0109), the right one is 54 bytes"),
-        (Settings { input_size: 600, ..settings() }, "(0x01/0x0109), the right one is 50 bytes"),
-        (Settings { output: 100, input: 150, ..settings() }, "(0x01/0x0117)"),
-        (Settings { rpi: MS, ..settings() }, "(0x01/0x0111)"),
+        (Settings { output_size: 40, resting: vec![0; 40], ..patient() }, "(0x01/0x0109), the right one is 54 bytes"),
+        (Settings { input_size: 600, ..patient() }, "(0x01/0x0109), the right one is 50 bytes"),
+        (Settings { output: 100, input: 150, ..patient() }, "(0x01/0x0117)"),
+        (Settings { rpi: MS, ..patient() }, "(0x01/0x0111)"),
     ];
     for (settings, end) in cases {
         let trouble = scanner.open(v4(adapter.addr()), settings, Tap::default()).await.unwrap_err().to_string();
@@ -197,12 +197,12 @@ async fn tshark_reads_what_passes() {
         Tap::new(move |packet| passed.lock().unwrap().add(packet))
     };
     let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
-    let mut connection = scanner.open(server.address(), settings(), tap.clone()).await.unwrap();
+    let mut connection = scanner.open(server.address(), patient(), tap.clone()).await.unwrap();
     connection.set_run(1, true).unwrap();
     connection.until(|view| view.statistics.received >= 3).await;
     connection.ask("the size", &Message::get(4, 150, 4)).await.unwrap();
     connection.close().await.unwrap();
-    let large = Settings { input_size: 600, ..settings() };
+    let large = Settings { input_size: 600, ..patient() };
     scanner.open(server.address(), large, tap.clone()).await.unwrap_err();
     list_identity(&[server.address()], Duration::from_secs(20), &tap).await.unwrap();
 
@@ -230,7 +230,7 @@ async fn tshark_reads_what_passes() {
             .collect::<Vec<u32>>()
     };
     let open = "cip.cm.sc == 0x54 && cip.rr == 0";
-    assert_eq!(numbers(open, &["cip.cm.otrpi", "cip.cm.torpi", "cip.cm.timeout_multiplier"]), [20_000, 20_000, 2]);
+    assert_eq!(numbers(open, &["cip.cm.otrpi", "cip.cm.torpi", "cip.cm.timeout_multiplier"]), [20_000, 20_000, 7]);
     assert_eq!(numbers(open, &["cip.cm.fwo.consize", "cip.cm.fwo.type", "cip.cm.fwo.f_v"]), [54, 50, 2, 2, 0, 0]);
     assert_eq!(numbers(open, &["cip.cm.fwo.prio", "cip.cm.fwo.transport"]), [2, 2, 1]);
     assert_eq!(numbers(open, &["cip.connpoint"]), [150, 100]);

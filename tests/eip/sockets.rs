@@ -18,7 +18,7 @@ use armctl::transport::eip::trouble::Trouble;
 use armctl::transport::eip::wire::Status;
 use armctl::transport::fault::{FaultSpec, Faults};
 
-use crate::world::{MS, Mirror, identity, resting, settings, setup};
+use crate::world::{MS, Mirror, identity, patient, resting, setup};
 
 const LOOPBACK: Ipv4Addr = Ipv4Addr::LOCALHOST;
 
@@ -27,7 +27,7 @@ fn serve(setup: Setup) -> Server<Mirror> {
 }
 
 fn quick() -> Settings {
-    Settings { rpi: 10 * MS, ..settings() }
+    Settings { rpi: 10 * MS, ..patient() }
 }
 
 #[tokio::test]
@@ -76,8 +76,7 @@ async fn a_bad_network_is_survived() {
     let listen = Listen::anywhere(LOOPBACK);
     let server = Server::start(setup(), Mirror::default(), listen, Some(Faults::pair(faults))).unwrap();
     let scanner = Scanner::start(LOOPBACK).unwrap();
-    let patient = Settings { multiplier: Multiplier::of(512).unwrap(), ..quick() };
-    let mut connection = scanner.open(server.address(), patient, Tap::default()).await.unwrap();
+    let mut connection = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
     for mark in 1..20 {
         connection.set_image(1, &[mark; 48]).unwrap();
         connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!mark; 48])).await;
@@ -119,15 +118,16 @@ async fn a_dropped_connection_is_closed() {
 async fn a_lost_link_is_opened_again() {
     let server = serve(setup());
     let scanner = Scanner::start(LOOPBACK).unwrap();
-    let mut connection = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
+    let settings = Settings { multiplier: Multiplier::of(64).unwrap(), ..quick() };
+    let mut connection = scanner.open(server.address(), settings, Tap::default()).await.unwrap();
     connection.set_image(1, &[7; 48]).unwrap();
     connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!7; 48])).await;
     server.with(|adapter, _| adapter.misbehave(Some(Mischief::Stall)));
     let view = connection.until(|view| view.state == State::Lost).await;
-    assert_eq!(view.trouble, Some(Trouble::Silent { after: 160 * MS }));
+    assert_eq!(view.trouble, Some(Trouble::Silent { after: 640 * MS }));
     assert_eq!(connection.set_image(1, &[8; 48]), Err(Trouble::Outdated));
     server.with(|adapter, _| adapter.misbehave(None));
-    connection.until(|view| view.generation == 2).await;
+    connection.until(|view| view.generation == 2 && view.state == State::Open).await;
     let rest: Vec<u8> = resting().iter().map(|byte| !byte).collect();
     connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *rest)).await;
 }

@@ -9,7 +9,7 @@ use std::time::Duration;
 use armctl::transport::eip::adapter::{Adapter, Application, Event, Output, Setup};
 use armctl::transport::eip::originator::{Action, Numbers, Originator, State, View};
 use armctl::transport::eip::session::{Ask, Token};
-use armctl::transport::eip::settings::Settings;
+use armctl::transport::eip::settings::{Multiplier, Settings};
 use armctl::transport::eip::trouble::Trouble;
 use armctl::transport::eip::wire::{Command, Cyclic, Identity, Revision};
 use armctl::transport::eip::{IO_PORT, Now, PORT};
@@ -71,6 +71,11 @@ pub fn setup() -> Setup {
 
 pub fn settings() -> Settings {
     Settings { output_size: 48, input_size: 48, resting: resting(), ..Settings::default() }
+}
+
+/// The same with the longest time-out, for real time: a busy machine must not lose a connection.
+pub fn patient() -> Settings {
+    Settings { multiplier: Multiplier::of(512).unwrap(), ..settings() }
 }
 
 /// An image that does nothing, and is not all zeros.
