@@ -2,8 +2,8 @@
 //!
 //! The blocks below one `##` heading are one shell session, in a folder of its own, with a home of its own and no
 //! `ARMCTL_…` variables. `...` on a line of its own stands for any lines, `[..]` for any text within a line. A command
-//! may only fail where the next one is `echo $?`. Sections that speak of `127.0.0.1:10040` get a simulator of their own,
-//! on ports that the system chooses. TOML blocks that begin with `# NAME.toml` lie in the folders of that page's sessions
+//! may only fail where the next one is `echo $?`. Sections that speak of `udp://127.0.0.1:10040` or
+//! `tcp://127.0.0.1:4001` get a simulator of their own, on ports that the system chooses. TOML blocks that begin with `# NAME.toml` lie in the folders of that page's sessions
 //! as files of that name. Blocks marked `sh` are not run: installation, real controllers.
 //!
 //! `ARMCTL_BLESS=1 cargo test --test readme` writes what was printed into the blocks that differ.
@@ -17,12 +17,12 @@ use std::process::{Child, Command, Stdio};
 
 use snapbox::IntoData as _;
 
-/// Where blocks find the simulator, as a reader starts it without arguments.
-const DOCUMENTED: &str = "127.0.0.1:10040";
+/// Families, and where blocks find the simulator of each, as a reader starts it without arguments.
+const DOCUMENTED: [(&str, &str); 2] = [("yerc", "udp://127.0.0.1:10040"), ("toyo", "tcp://127.0.0.1:4001")];
 /// Separates the commands of a block in the output of its shell.
 const MARK: &str = "\u{1}--next--";
 /// Pages with blocks.
-const PAGES: [&str; 2] = ["README.md", "docs/yerc.md"];
+const PAGES: [&str; 3] = ["README.md", "docs/yerc.md", "docs/toyo.md"];
 
 #[test]
 fn console_blocks_print_what_they_show() {
@@ -115,15 +115,16 @@ fn run(blocks: &[String], files: &[(String, String)]) -> Result<Vec<String>, Str
     for (name, content) in files {
         std::fs::write(folder.path().join(name), content).map_err(|error| format!("{name}: {error}"))?;
     }
-    let simulator = blocks.iter().any(|block| block.contains(DOCUMENTED)).then(Simulator::start);
+    let wanted = DOCUMENTED.iter().filter(|(_, target)| blocks.iter().any(|block| block.contains(target)));
+    let simulators: Vec<Simulator> = wanted.map(|(family, target)| Simulator::start(family, target)).collect();
     let blocks: Vec<Vec<String>> = blocks.iter().map(|block| commands(block)).collect();
     let mut script = String::from("exec 2>&1\n");
     for command in blocks.iter().flatten() {
-        let command = simulator.as_ref().map_or_else(|| command.clone(), |simulator| simulator.reached(command));
+        let command = simulators.iter().fold(command.clone(), |command, simulator| simulator.reached(&command));
         writeln!(script, "{command}\nlast=$?\nprintf '{MARK} %s\\n' $last\n(exit $last)").expect("strings take text");
     }
     let output = shell(&script, folder.path())?;
-    let output = simulator.as_ref().map_or_else(|| output.clone(), |simulator| simulator.documented(&output));
+    let output = simulators.iter().fold(output, |output, simulator| simulator.documented(&output));
     // What a command printed stands before its mark, its exit code behind it.
     let mut rest = output.as_str();
     let mut pages = Vec::new();
@@ -178,12 +179,13 @@ fn shell(script: &str, folder: &Path) -> Result<String, String> {
 struct Simulator {
     process: Child,
     target: String,
+    documented: &'static str,
 }
 
 impl Simulator {
-    fn start() -> Self {
+    fn start(family: &str, documented: &'static str) -> Self {
         let mut process = Command::new(env!("CARGO_BIN_EXE_armctl"))
-            .args(["sim", "yerc", "--bind", "127.0.0.1:0", "--jq", ".data.target"])
+            .args(["sim", family, "--bind", "127.0.0.1:0", "--jq", ".data.target"])
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
@@ -192,15 +194,15 @@ impl Simulator {
         let mut target = String::new();
         let stdout = process.stdout.take().expect("stdout is a pipe");
         BufReader::new(stdout).read_line(&mut target).expect("the simulator says where it is");
-        Self { process, target: target.trim_end().to_owned() }
+        Self { process, target: target.trim_end().to_owned(), documented }
     }
 
     fn reached(&self, command: &str) -> String {
-        command.replace(&format!("udp://{DOCUMENTED}"), &format!("'{}'", self.target))
+        command.replace(self.documented, &format!("'{}'", self.target))
     }
 
     fn documented(&self, output: &str) -> String {
-        output.replace(&self.target, &format!("udp://{DOCUMENTED}"))
+        output.replace(&self.target, self.documented)
     }
 }
 
