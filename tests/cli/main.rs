@@ -42,6 +42,7 @@ transcripts! {
     simulator
     status
     toyo_io
+    toyo_motion
     toyo_registers
     toyo_system
     usage

@@ -113,10 +113,11 @@ pub struct Transferred {
 impl Report for Transferred {
     fn view(&self) -> View {
         let Some(ms) = self.elapsed_ms else { return View::fields([("memory card", "started".into())]) };
-        let due = if self.needs_power_cycle == Some(true) { Cell::from("yes").tone(Tone::Bad) } else { "no".into() };
+        let due =
+            if self.needs_power_cycle == Some(true) { Cell::from("due").tone(Tone::Bad) } else { "not due".into() };
         View::fields([
             ("memory card", Cell::from("done").tone(Tone::Good)),
-            ("power cycle due", due),
+            ("power cycle", due),
             ("elapsed (ms)", ms.into()),
         ])
     }
@@ -155,6 +156,10 @@ mod tests {
         let state = "card = \"written\"\n[[event]]\nat_ms = 1000\ndo = \"card out\"\n";
         let failure = Bench::spoilt(state, |_, _| Fate::Pass).0.run(&["card", "read"]).unwrap_err();
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("E0")));
-        assert!(failure.message.starts_with("reading the card was accepted, but error E0"), "{}", failure.message);
+        assert!(
+            failure.message.starts_with("reading the card was accepted, but an error came up (E0"),
+            "{}",
+            failure.message
+        );
     }
 }

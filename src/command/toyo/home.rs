@@ -85,10 +85,10 @@ pub struct Homed {
 
 impl Report for Homed {
     fn view(&self) -> View {
-        let Some(place) = self.position else { return View::fields([("return to origin", "accepted".into())]) };
+        let Some(place) = self.position else { return View::fields([("origin", "on the way".into())]) };
         View::fields([
-            ("return to origin", Cell::from("done").tone(Tone::Good)),
-            ("position (mm)", place.in_a_line().into()),
+            ("origin", Cell::from("done").tone(Tone::Good)),
+            ("at (mm)", place.in_a_line().into()),
             ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
         ])
     }

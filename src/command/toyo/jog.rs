@@ -260,7 +260,10 @@ impl Command for Jog {
                 format!("move axis {axis} fast in {way} direction for {}", duration::display(time))
             }
             (_, Some(time)) => format!("move axis {axis} slowly in {way} direction for {}", duration::display(time)),
-            (_, None) => format!("move axis {axis} by {} small step(s) in {way} direction", self.steps.unwrap_or(1)),
+            (_, None) => match self.steps {
+                None | Some(1) => format!("move axis {axis} by a small step in {way} direction"),
+                Some(steps) => format!("move axis {axis} by {steps} small steps in {way} direction"),
+            },
         }
     }
 

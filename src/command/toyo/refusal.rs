@@ -75,7 +75,7 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     if status.executing() {
         return told("a program or command is being executed", "wait for the end, or `toyo stop`");
     }
-    if moves && !status.servo_on() && !matches!(row.command, Command::Svon | Command::Svof) {
+    if moves && !status.servo_on() && !matches!(row.command, Command::Svon | Command::Svof | Command::Mrss) {
         return told("servo power is off", "`toyo servo on`");
     }
     if let Some((kind, how)) = kind_of(row.command) {

@@ -193,7 +193,11 @@ async fn go(context: Context<'_, Family>, start: &Request, no_wait: bool) -> Res
 async fn wait(link: &mut Link, screen: &Screen, order: table::Command) -> Result<Ran, Failure> {
     let work = Accepted { work: Work::Program, order, done: DONE, doing: "running" };
     let End { place, elapsed_ms, is_paused } = work.wait(link, screen).await?;
-    let last = step(link).await.map_err(|failure| after(&failure))?;
+    // A move to a point runs no steps.
+    let last = match order {
+        table::Command::Extp => None,
+        _ => step(link).await.map_err(|failure| after(&failure))?,
+    };
     if is_paused && !is_at_a_stop(link, last.as_ref()).await.map_err(|failure| after(&failure))? {
         return Err(stopped(last.as_ref(), place));
     }
@@ -241,7 +245,7 @@ pub struct Ran {
     accepted: bool,
     /// Whether it stands at a STOP, or after a step in step mode, and can go on; null if nobody waited.
     stopped: Option<bool>,
-    /// The current step at the end; null if nobody waited, or if the controller does not tell.
+    /// The current step at the end; null if nobody waited, or if there is none.
     step: Option<i32>,
     /// The instruction of that step.
     instruction: Option<String>,
@@ -265,7 +269,7 @@ impl Report for Ran {
         View::fields([
             ("run", run),
             ("step", Cell::maybe(step)),
-            ("position (mm)", place.in_a_line().into()),
+            ("at (mm)", place.in_a_line().into()),
             ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
         ])
     }
@@ -352,7 +356,7 @@ mod tests {
         assert!(
             failure
                 .message
-                .starts_with("the start was accepted, but error 13: emergency stop came up; it stands at X "),
+                .starts_with("the start was accepted, but an error came up (13: emergency stop); it stands at X "),
             "{}",
             failure.message
         );

@@ -88,6 +88,8 @@ impl Accepted {
                     refused = 0;
                     let place = record.as_ref().map(Place::of);
                     match watch.look(began.elapsed(), status, record) {
+                        // Until it was seen, the status may be that of before.
+                        Look::Running if !watch.seen => {}
                         Look::Running => teller.tell(status, place),
                         Look::Ended => {
                             link.has_ended();
@@ -173,7 +175,7 @@ pub(super) async fn present_error(link: &mut Link, tell: &impl Fn(&str) -> Failu
         }
         Ok(Status { error: code, .. }) => {
             let error = errors::explain(code);
-            tell(&format!("error {} came up", error.in_a_line()))
+            tell(&format!("an error came up ({})", error.in_a_line()))
                 .hint(format!("{}; then `toyo error cancel`", error.remedy))
                 .code(format!("{code:02X}"))
         }

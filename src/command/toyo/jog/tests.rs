@@ -191,7 +191,9 @@ fn an_error_ends_a_jog() {
     let (mut bench, heard) = Bench::spoilt(state, |_, _| Fate::Pass);
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("28")));
-    assert!(failure.message.starts_with("error 28: axis 1: beyond the plus soft limit while moving came up; the axis"));
+    assert!(
+        failure.message.starts_with("an error came up (28: axis 1: beyond the plus soft limit while moving); the axis")
+    );
     ends_with_a_stop(&heard);
 }
 
