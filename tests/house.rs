@@ -84,8 +84,9 @@ const BORDERS: [(&str, &[&str]); 6] = [
     ("command/", &["crate::app", "tokio::net", "std::net::UdpSocket", "std::net::TcpStream", "std::process"]),
 ];
 
-/// Commands that touch a transport: the link of a family with its trace, the simulators' servers, the list of ports.
-const LINKS: [&str; 11] = [
+/// Commands that touch a transport: the link of a family with its trace, the simulators' servers, the list of ports, and
+/// the peer of tests.
+const LINKS: [&str; 12] = [
     "command/trace.rs",
     "command/yerc/link.rs",
     "command/yerc/simulated.rs",
@@ -94,6 +95,7 @@ const LINKS: [&str; 11] = [
     "command/toyo/ports.rs",
     "command/toyo/reach.rs",
     "command/toyo/simulated.rs",
+    "command/toyo/testing.rs",
     "command/toyo/trace.rs",
     "command/common/sim/toyo.rs",
     "command/common/sim/yerc.rs",
