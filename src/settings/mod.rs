@@ -158,16 +158,14 @@ impl Sources {
             return Ok(vec![self.unnamed(target.clone(), Origin::Environment, family)?]);
         }
         let default = self.inventory.default.as_ref();
-        match default.and_then(|name| self.inventory.robots.iter().find(|robot| robot.name == *name)) {
-            Some(entry) => Ok(vec![self.resolved(entry, family)?]),
-            None => {
-                let address = family.map_or("udp://HOST", Family::address);
-                Err(Failure::usage("no robot is named").hint(format!(
-                    "use --sim for the built-in simulator, -t {address} for an address, -r NAME for a robot of the \
-                     inventory, or set ARMCTL_TARGET"
-                )))
-            }
+        if let Some(entry) = default.and_then(|name| self.inventory.robots.iter().find(|robot| robot.name == *name)) {
+            return Ok(vec![self.resolved(entry, family)?]);
         }
+        let address = family.map_or("udp://HOST", Family::address);
+        Err(Failure::usage("no robot is named").hint(format!(
+            "use --sim for the built-in simulator, -t {address} for an address, -r NAME for a robot of the inventory, or \
+             set ARMCTL_TARGET"
+        )))
     }
 
     /// Where nothing is said about robots, takes all of the inventory instead of its default.
