@@ -36,8 +36,11 @@ impl Copy {
             return Err(Failure::usage(format!("{what} {from} cannot be copied to itself")));
         }
         if link.is_dry() {
-            source.iter().for_each(|read| link.foresee(read, "what is copied"));
-            target.iter().for_each(|read| link.foresee(read, "what it replaces"));
+            for (reads, about) in [(&source, "what is copied"), (&target, "what it replaces")] {
+                for read in reads {
+                    link.foresee(read, about);
+                }
+            }
             link.take_host().await?;
             link.foresee(&order, "if they differ");
             return std::future::pending().await;

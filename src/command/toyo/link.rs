@@ -240,7 +240,7 @@ impl Link {
         }
     }
 
-    /// Reads the content of a parameter, a step or a palletizing record; a refusal is a failure.
+    /// Reads the content of a parameter, a step or a palletizing record, of others the answer; a refusal is a failure.
     pub async fn read_content(&mut self, request: &Request) -> Result<Record, Failure> {
         match self.try_read_content(request).await? {
             Ok(content) => Ok(content),
@@ -248,7 +248,7 @@ impl Link {
         }
     }
 
-    /// Reads the content of a parameter, a step or a palletizing record; a refusal is an answer.
+    /// Reads the content of a parameter, a step or a palletizing record, of others the answer; a refusal is an answer.
     pub async fn try_read_content(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Failure> {
         let record = match self.try_read(request).await? {
             Ok(record) => record,
@@ -256,7 +256,7 @@ impl Link {
         };
         let content =
             request.answered(&record).map_err(|error| self.malformed(&record.written(), &error.to_string()))?;
-        content.map(Ok).ok_or_else(|| Failure::local(format!("{} has no content", request.text())))
+        Ok(Ok(content.unwrap_or(record)))
     }
 
     /// Gives an order; a refusal is a failure. Takes the host before, where that is needed. A dry run notes it and goes

@@ -195,13 +195,8 @@ impl<K: Kind> Command for Set<K> {
         let Context { link, screen, .. } = context;
         let table = table::<K>();
         let changes = Changes::read(&format!("row {}", self.row), &table.body(), &self.values)?;
-        let values = match changes.whole() {
-            Some(values) => values,
-            None => {
-                let read = Request::read_parameter(table, Some(self.row)).map_err(|error| link::wrong(&error))?;
-                changes.applied(&link.read_content(&read).await?.values()[1..])
-            }
-        };
+        let read = Request::read_parameter(table, Some(self.row)).map_err(|error| link::wrong(&error))?;
+        let values = changes.completed(link, &read).await?;
         let values = std::iter::once(Value::Number(self.row)).chain(values).collect();
         let cell = parameter_cell(table, values).map_err(|error| link::wrong(&error))?;
         let mut cells = Cells::default();

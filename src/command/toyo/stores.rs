@@ -15,7 +15,7 @@ use crate::output::Screen;
 pub struct Work {
     /// As progress tells it: `storing points`.
     pub doing: &'static str,
-    /// What stands before a key in messages: `point `; nothing where a key says enough.
+    /// What stands before a key in messages, for several with an s: `point`; nothing where a key says enough.
     pub noun: &'static str,
     /// Whether the command takes `--resume=KEY`.
     pub resumes: bool,
@@ -59,9 +59,9 @@ pub fn parameter_cell(parameter: &'static Parameter, values: Vec<Value>) -> Resu
     })
 }
 
-/// How many are left out by `--resume=KEY`: those before it.
+/// How many are left out by `--resume=KEY`: those before it. Without a key, none is.
 pub fn left_out(stores: &[Store], resume: Option<&str>) -> Result<usize, Failure> {
-    let Some(key) = resume else { return Ok(0) };
+    let Some(key) = resume.filter(|key| !key.is_empty()) else { return Ok(0) };
     stores.iter().position(|store| store.key.eq_ignore_ascii_case(key)).ok_or_else(|| {
         Failure::usage(format!("--resume={key}: the file does not have it"))
             .hint("--resume alone compares everything, and writes what differs")
@@ -160,9 +160,13 @@ fn account(failure: Failure, work: Work, stores: &[Store], fates: &[Fate]) -> Fa
 
 /// The first and the last of some.
 fn span(work: Work, stores: &[Store]) -> String {
+    let named = |plural: &str, keys: String| match work.noun {
+        "" => keys,
+        noun => format!("{noun}{plural} {keys}"),
+    };
     match stores {
-        [one] => format!("{}{}", work.noun, one.key),
-        [first, .., last] => format!("{}{} to {}", work.noun, first.key, last.key),
+        [one] => named("", one.key.clone()),
+        [first, .., last] => named("s", format!("{} to {}", first.key, last.key)),
         [] => String::new(),
     }
 }
@@ -171,7 +175,7 @@ fn span(work: Work, stores: &[Store]) -> String {
 mod tests {
     use super::*;
 
-    const WORK: Work = Work { doing: "storing points", noun: "point ", resumes: true };
+    const WORK: Work = Work { doing: "storing points", noun: "point", resumes: true };
 
     fn stores() -> Vec<Store> {
         let parameter = Parameter::named("T1").unwrap();
@@ -190,16 +194,16 @@ mod tests {
         };
         assert_eq!(
             told(Kind::Refused, &[Fate::Written, Fate::Unchanged]),
-            "no; done: point 1 to 2 (1 written, 1 unchanged); not written: point 3 to 5 | --resume=3 goes on there"
+            "no; done: points 1 to 2 (1 written, 1 unchanged); not written: points 3 to 5 | --resume=3 goes on there"
         );
         assert_eq!(
             told(Kind::OutcomeUnknown, &[Fate::Written]),
-            "no; done: point 1 (1 written, 0 unchanged); written or not: point 2; not written: point 3 to 5 | \
+            "no; done: point 1 (1 written, 0 unchanged); written or not: point 2; not written: points 3 to 5 | \
              --resume=2 goes on there"
         );
         assert_eq!(
             told(Kind::NoAnswer, &[]),
-            "no; nothing was written; not written: point 1 to 5 | --resume=1 goes on there"
+            "no; nothing was written; not written: points 1 to 5 | --resume=1 goes on there"
         );
     }
 

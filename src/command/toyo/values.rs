@@ -8,9 +8,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value as Json;
 
+use super::link::Link;
 use crate::controller::toyo::field::{Field, Form, Number, Value};
 use crate::controller::toyo::layout::{Layout, Record};
 use crate::controller::toyo::nearest::nearest;
+use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
 
 /// A place for one value that an operator types.
@@ -172,6 +174,17 @@ impl Changes {
     /// All values, if none is left as it is.
     pub fn whole(&self) -> Option<Vec<Value>> {
         self.0.iter().cloned().collect()
+    }
+
+    /// All values, with those that are left from what the controller answers to `read`, if any are.
+    pub async fn completed(&self, link: &mut Link, read: &Request) -> Result<Vec<Value>, Failure> {
+        if let Some(values) = self.whole() {
+            return Ok(values);
+        }
+        let found = link.read_content(read).await?;
+        // Numbers of rows and programs come first.
+        let keys = found.values().len().saturating_sub(self.0.len());
+        Ok(self.applied(&found.values()[keys..]))
     }
 
     /// All values, with those that are left from what is there.

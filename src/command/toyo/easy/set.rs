@@ -38,10 +38,7 @@ impl Command for Set {
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
         let Context { link, screen, .. } = context;
         let changes = Changes::read(&format!("easy program {}", self.program), &values(), &self.values)?;
-        let values = match changes.whole() {
-            Some(values) => values,
-            None => changes.applied(&link.read(&read(self.program)?).await?.values()[2..]),
-        };
+        let values = changes.completed(link, &read(self.program)?).await?;
         let cell = cell(self.program, values)?;
         let mut cells = Cells::default();
         link.store(screen, &cell, &mut cells).await?;

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::{Entry, parse_program, parse_record};
 use crate::command::toyo::cells::{Cell, Cells};
-use crate::command::toyo::link::{Link, wrong};
+use crate::command::toyo::link::wrong;
 use crate::command::toyo::stores::{self, Fate, Store, Work};
 use crate::command::toyo::values::Changes;
 use crate::command::toyo::{Family, files};
@@ -63,7 +63,11 @@ impl Command for Set {
         let Context { link, screen, .. } = context;
         let records = match (&self.from, self.record) {
             (Some(file), _) => from_file(file)?,
-            (None, Some(record)) => vec![(record, self.typed(link, record).await?)],
+            (None, Some(record)) => {
+                let changes = Changes::read(record.name, &record.layout, &self.values)?;
+                let read = Request::read_pallet(self.program, record).map_err(|error| wrong(&error))?;
+                vec![(record, changes.completed(link, &read).await?)]
+            }
             (None, None) => Vec::new(),
         };
         let mut entries = Vec::with_capacity(records.len());
@@ -80,24 +84,6 @@ impl Command for Set {
         let fates = stores::store_all(link, screen, WORK, &stores, 0).await?;
         let records = entries.into_iter().zip(&fates).map(|(entry, fate)| StoredRecord { entry, result: *fate });
         Ok(Stored { program: self.program, records: records.collect(), cells: stores::sum(&fates) })
-    }
-}
-
-impl Set {
-    /// The values of a record as typed, with those that are kept from the controller.
-    async fn typed(
-        &self,
-        link: &mut Link,
-        record: &'static Pallet,
-    ) -> Result<Vec<crate::controller::toyo::field::Value>, Failure> {
-        let changes = Changes::read(record.name, &record.layout, &self.values)?;
-        match changes.whole() {
-            Some(values) => Ok(values),
-            None => {
-                let read = Request::read_pallet(self.program, record).map_err(|error| wrong(&error))?;
-                Ok(changes.applied(link.read_content(&read).await?.values()))
-            }
-        }
     }
 }
 

@@ -11,10 +11,10 @@ use super::entry::{Key, read_keys};
 use super::singles;
 use crate::command::local::Target;
 use crate::command::toyo::Family;
+use crate::command::toyo::numbers::Numbers;
 use crate::command::toyo::values::{in_a_line, shown};
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::bulk::{Setting, parameters};
-use crate::controller::toyo::field::Form;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::table::parameters::PARAMETERS;
 use crate::failure::Failure;
@@ -80,14 +80,10 @@ impl Command for Dump {
 
 /// All parameters, and all rows of the tables but points.
 fn keys() -> Vec<Key> {
-    let tables = PARAMETERS.iter().filter(|parameter| parameter.row().is_some() && parameter.id != POINTS);
-    let rows = tables.flat_map(|table| {
-        let rows = match table.row().map(|field| field.form) {
-            Some(Form::Number(number)) => number.least..=number.most,
-            _ => 1..=0,
-        };
-        rows.map(move |row| (table, Some(row)))
-    });
+    let tables = PARAMETERS.iter().filter(|parameter| parameter.id != POINTS);
+    let rows = tables
+        .filter_map(|table| Some((table, table.row()?)))
+        .flat_map(|(table, field)| Numbers::of(&[], field).into_iter().map(move |row| (table, Some(row))));
     singles().map(|parameter| (parameter, None)).chain(rows).collect()
 }
 

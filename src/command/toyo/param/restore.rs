@@ -37,8 +37,8 @@ pub struct Restore {
     #[arg(long, value_name = "GROUP", value_delimiter = ',')]
     group: Vec<Part>,
     /// Go on with a file that was cut off; with a key, such as P05 or T2.7, those before it are not even compared
-    #[arg(long, value_name = "KEY", num_args = 0..=1, require_equals = true)]
-    resume: Option<Option<String>>,
+    #[arg(long, value_name = "KEY", num_args = 0..=1, require_equals = true, default_missing_value = "")]
+    resume: Option<String>,
 }
 
 /// A part of a file of parameters.
@@ -96,10 +96,11 @@ impl Command for Restore {
                 .hint("--group chooses the groups: mode, axis, table, special, machine"));
         }
         let stores = chosen.iter().map(store).collect::<Result<Vec<Store>, Failure>>()?;
-        let left_out = stores::left_out(&stores, self.resume.as_ref().and_then(|key| key.as_deref()))?;
+        let left_out = stores::left_out(&stores, self.resume.as_deref())?;
         let other_groups = left.iter().map(|setting| key_text((setting.parameter, setting.row()))).collect::<Vec<_>>();
         if self.group.is_empty() && !other_groups.is_empty() {
-            screen.note(&format!("left out: {} (--group machine,special writes them)", other_groups.join(", ")));
+            let count = other_groups.len();
+            screen.note(&format!("machine and special parameters are left out: {count} (--group machine,special)"));
         }
         for setting in &chosen[left_out..] {
             let found = if machine::is_task_steps(setting.parameter) && !link.is_dry() {

@@ -9,7 +9,6 @@ use serde::Serialize;
 use super::list::AXES;
 use super::{OTHER_TASK, Row, alone, field};
 use crate::command::toyo::cells::Cells;
-use crate::command::toyo::link::Link;
 use crate::command::toyo::numbers::{number, runs};
 use crate::command::toyo::stores::{self, Fate, Store, Work, parameter_cell};
 use crate::command::toyo::values::Changes;
@@ -42,11 +41,11 @@ pub struct Set {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
     /// Go on with a file that was cut off; with a point, those before it are not even compared
-    #[arg(long, value_name = "POINT", num_args = 0..=1, require_equals = true, conflicts_with = "point")]
-    resume: Option<Option<i32>>,
+    #[arg(long, value_name = "POINT", num_args = 0..=1, require_equals = true, default_missing_value = "", conflicts_with = "point")]
+    resume: Option<String>,
 }
 
-const WORK: Work = Work { doing: "storing points", noun: "point ", resumes: true };
+const WORK: Work = Work { doing: "storing points", noun: "point", resumes: true };
 
 impl Command for Set {
     type Family = Family;
@@ -69,8 +68,7 @@ impl Command for Set {
             if points.is_empty() {
                 return Err(Failure::usage(format!("{name} has no points")));
             }
-            let key = self.resume.flatten().map(|point| point.to_string());
-            let left_out = stores::left_out(&points, key.as_deref())?;
+            let left_out = stores::left_out(&points, self.resume.as_deref())?;
             let task = tasks::choose(link, self.task).await?;
             let fates = stores::store_all(link, screen, WORK, &points, left_out).await?;
             return Ok(Stored::new(task, &points, &fates));
@@ -78,23 +76,12 @@ impl Command for Set {
         let point = self.point.unwrap_or_default();
         let changes = Changes::read(&format!("point {point}"), &points::table().body(), &self.values)?;
         let task = tasks::choose(link, self.task).await?;
-        let points = [store(whole(link, point, &changes).await?)?];
+        let read = Request::read_parameter(points::table(), Some(point)).map_err(|error| link::wrong(&error))?;
+        let coordinates = changes.completed(link, &read).await?;
+        let points = [store(std::iter::once(Value::Number(point)).chain(coordinates).collect())?];
         let fates = stores::store_all(link, screen, WORK, &points, 0).await?;
         Ok(Stored::new(task, &points, &fates))
     }
-}
-
-/// All fields of a point, with those that are kept from the controller.
-async fn whole(link: &mut Link, point: i32, changes: &Changes) -> Result<Vec<Value>, Failure> {
-    let coordinates = match changes.whole() {
-        Some(coordinates) => coordinates,
-        None => {
-            let read = Request::read_parameter(points::table(), Some(point)).map_err(|error| link::wrong(&error))?;
-            let found = link.read_content(&read).await?;
-            changes.applied(&found.values()[1..])
-        }
-    };
-    Ok(std::iter::once(Value::Number(point)).chain(coordinates).collect())
 }
 
 fn store(values: Vec<Value>) -> Result<Store, Failure> {
