@@ -95,6 +95,8 @@ commands! {
         Palletizing(Verbs<palletizing::Palletizing>),
         /// Easy programs
         Easy(Verbs<easy::Easy>),
+        /// Sequential programs: read, write, edit, check
+        Program(Verbs<program::Program>),
         /// Input, output and internal ports
         Io(Verbs<io::Io>),
         /// Counters
@@ -123,8 +125,6 @@ commands! {
         Raw(raw::Raw),
         /// The serial ports of this machine
         Ports(AtDesk<ports::Ports>),
-        /// Sequential programs: read, write, edit, check
-        Program(Verbs<program::Program>),
         /// Programs at the desk, without any controller
         Sim(Verbs<sim::Sim>),
     }

@@ -64,6 +64,18 @@ fn a_program_is_stored_and_read_back() {
 }
 
 #[test]
+fn the_sample_session_of_the_manual_ends_at_its_place_with_its_output_on() {
+    let mut desk = Desk::with("points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0] } }");
+    desk.put(SAMPLE, &[]).unwrap();
+    desk.bench.data(&["home"]);
+    let ran = desk.bench.data(&["run", "sequential", "1"]);
+    let mm = |axis: &str| ran["position"][axis].as_f64().unwrap();
+    assert_eq!((mm("x_mm"), mm("y_mm"), mm("z_mm"), mm("r_mm")), (100.0, 20.0, 0.0, 0.0));
+    let out = desk.bench.data(&["raw", "@MOUT SNO=0 GN=1"]);
+    assert!(out["answer"].as_str().unwrap().contains("PN01=00000001"), "{out}");
+}
+
+#[test]
 fn what_is_left_of_a_longer_program_goes() {
     let mut desk = Desk::new();
     desk.put("a: NOP\nJMP TAG=a\nTAG TAG=9\nEND\n", &[]).unwrap();
