@@ -91,12 +91,12 @@ commands! {
         Mvm(Verbs<mvm::Mvm>),
         /// Torque limits that programs name by their row
         TorqueTable(Verbs<rows::TorqueTable>),
+        /// Sequential programs: read, write, edit, check
+        Program(Verbs<program::Program>),
         /// Palletizing programs
         Palletizing(Verbs<palletizing::Palletizing>),
         /// Easy programs
         Easy(Verbs<easy::Easy>),
-        /// Sequential programs: read, write, edit, check
-        Program(Verbs<program::Program>),
         /// Input, output and internal ports
         Io(Verbs<io::Io>),
         /// Counters
