@@ -6,7 +6,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::text::{self, Remark};
+use super::text::Remark;
+use crate::command::toyo::files;
 use crate::command::{Desk, Report};
 use crate::controller::toyo::program::{self, MOST_STEPS};
 use crate::failure::{Failure, Kind};
@@ -38,7 +39,7 @@ impl Desk for Check {
 
     fn run(&self, _screen: &Screen) -> Result<Verdict, Failure> {
         let room = usize::from(self.room).min(MOST_STEPS);
-        let files = self.files.iter().map(|path| Ok(FileVerdict::new(&text::shown(path), &text::read(path)?, room)));
+        let files = self.files.iter().map(|path| Ok(FileVerdict::new(&files::shown(path), &files::read(path)?, room)));
         Ok(Verdict { files: files.collect::<Result<_, Failure>>()?, strict: self.strict })
     }
 }

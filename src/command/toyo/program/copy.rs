@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::and_mode;
 use super::insert::moved_wrong;
-use super::steps::{self, Tasks};
-use crate::command::toyo::Family;
+use super::steps;
 use crate::command::toyo::link::Link;
+use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -92,8 +92,7 @@ impl Copy {
     }
 
     async fn copy(&self, link: &mut Link, screen: &Screen) -> Result<Copied, Failure> {
-        let mut tasks = Tasks::choose(link, self.from_task).await?;
-        let source = tasks.current;
+        let source = tasks::choose(link, self.from_task).await?;
         let target = self.to_task.unwrap_or(source);
         if source == target {
             self.overlap()?;
@@ -101,7 +100,7 @@ impl Copy {
         steps::room(link, source, self.to).await?;
         steps::room(link, target, self.end()).await?;
         let wanted = steps::read_all(link, screen, self.from..=self.to).await?;
-        tasks.switch(link, target).await?;
+        tasks::choose(link, Some(target)).await?;
         let found = steps::read_all(link, screen, self.at..=self.end()).await?;
         let report = Copied {
             from_task: source,
@@ -132,7 +131,7 @@ impl Copy {
     }
 
     async fn rehearse(&self, link: &mut Link) -> Result<Copied, Failure> {
-        Tasks::foresee(link, self.from_task).await?;
+        tasks::choose(link, self.from_task).await?;
         link.foresee(&steps::rooms_request(), "whether there is room");
         link.foresee(&steps::read_request(self.from), "what is copied, a step each, and what is there");
         steps::foresee_open(link).await?;

@@ -7,9 +7,9 @@ use serde::Serialize;
 use super::and_mode;
 use super::get::Step;
 use super::insert::moved_wrong;
-use super::steps::{self, Tasks};
-use crate::command::toyo::Family;
+use super::steps;
 use crate::command::toyo::link::Link;
+use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -68,8 +68,8 @@ impl Delete {
     }
 
     async fn delete(&self, link: &mut Link, screen: &Screen, last: u16) -> Result<Deleted, Failure> {
-        let tasks = Tasks::choose(link, self.task).await?;
-        let room = steps::room(link, tasks.current, last).await?;
+        let task = tasks::choose(link, self.task).await?;
+        let room = steps::room(link, task, last).await?;
         let deleted = steps::read_all(link, screen, self.step..=last).await?;
         let behind = match last {
             last if last < room => link.read_content(&steps::read_request(last + 1)).await?,
@@ -83,11 +83,11 @@ impl Delete {
         }
         let deleted = (usize::from(self.step)..).zip(&deleted);
         let deleted = deleted.map(|(step, record)| Step { step, instruction: record.written() }).collect();
-        Ok(Deleted { task: tasks.current, deleted })
+        Ok(Deleted { task, deleted })
     }
 
     async fn rehearse(&self, link: &mut Link, last: u16) -> Result<Deleted, Failure> {
-        Tasks::foresee(link, self.task).await?;
+        tasks::choose(link, self.task).await?;
         link.foresee(&steps::rooms_request(), "how many steps the task has");
         link.foresee(&steps::read_request(self.step), "what is deleted, a step each");
         steps::foresee_open(link).await?;

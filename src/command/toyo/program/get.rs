@@ -6,10 +6,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::steps::{self, Tasks};
+use super::steps;
 use crate::command::local::Target;
-use crate::command::toyo::Family;
 use crate::command::toyo::link::{Link, misuse};
+use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::layout::Record;
@@ -75,7 +75,7 @@ impl Command for Get {
             return self.rehearse(link).await;
         }
         let outcome = self.read(link, screen).await;
-        let (tasks, room, read) = steps::done(link, outcome).await?;
+        let (task, room, read) = steps::done(link, outcome).await?;
         let rows = if self.explain { rows(link, &read).await? } else { Rows::new() };
         let last = usize::from(self.from) + read.len() - 1;
         let is_whole = self.from == 1 && last == usize::from(room);
@@ -93,7 +93,7 @@ impl Command for Get {
         let shown = if is_whole { program::used(&read) } else { read.len() };
         let numbered = (usize::from(self.from)..).zip(&read[..shown]);
         Ok(Got {
-            task: tasks.current,
+            task,
             room_steps: room,
             first_step: self.from,
             last_step: last,
@@ -107,23 +107,18 @@ impl Command for Get {
 }
 
 impl Get {
-    async fn read(
-        &self,
-        link: &mut Link,
-        screen: &crate::output::Screen,
-    ) -> Result<(Tasks, u16, Vec<Record>), Failure> {
-        let tasks = Tasks::choose(link, self.task).await?;
-        let room = steps::room(link, tasks.current, self.to.unwrap_or(self.from)).await?;
+    async fn read(&self, link: &mut Link, screen: &crate::output::Screen) -> Result<(u8, u16, Vec<Record>), Failure> {
+        let task = tasks::choose(link, self.task).await?;
+        let room = steps::room(link, task, self.to.unwrap_or(self.from)).await?;
         let is_end = |record: &Record| self.until_end && record.layout() == Op::End.row().layout;
         let read = steps::read(link, screen, self.from..=self.to.unwrap_or(room), is_end).await?;
-        Ok((tasks, room, read))
+        Ok((task, room, read))
     }
 
     async fn rehearse(&self, link: &mut Link) -> Result<Got, Failure> {
-        Tasks::foresee(link, self.task).await?;
+        tasks::choose(link, self.task).await?;
         link.foresee(&steps::rooms_request(), "how many steps the task has");
         link.foresee(&steps::read_request(self.from), "and so on, a step each");
-        link.put_back().await?;
         std::future::pending().await
     }
 }
@@ -200,11 +195,11 @@ mod tests {
     use crate::command::toyo::testing::{all_blocks, blocks, objection};
 
     #[test]
-    fn a_read_of_another_task_puts_the_task_back() {
+    fn another_task_is_chosen_first() {
         assert_eq!(blocks(&["program", "get"]).unwrap(), ["@MTSK", "@RPAR E22", "@RSTX 0001"]);
         assert_eq!(
             all_blocks(&["program", "get", "--task", "2", "--from", "10"]).unwrap(),
-            ["@MTSK", "@CTSK TASK=02", "@RPAR E22", "@RSTX 0010", "@CTSK TASK=01"]
+            ["@MTSK", "@CTSK TASK=02", "@RPAR E22", "@RSTX 0010"]
         );
     }
 

@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use super::and_mode;
 use super::get::Step;
-use super::steps::{self, Tasks};
-use crate::command::toyo::Family;
+use super::steps;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::link::Link;
+use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -77,13 +77,12 @@ impl Insert {
 
     async fn insert(&self, link: &mut Link, screen: &Screen, instruction: &Record) -> Result<Inserted, Failure> {
         let step = self.step;
-        let tasks = Tasks::choose(link, self.task).await?;
-        let room = steps::room(link, tasks.current, step).await?;
+        let task = tasks::choose(link, self.task).await?;
+        let room = steps::room(link, task, step).await?;
         let before = link.read_content(&steps::read_request(step)).await?;
         let last = link.read_content(&steps::read_request(room)).await?;
         if last != steps::nop() {
-            let message =
-                format!("step {room}, the last of task {}, would fall out: {}", tasks.current, last.written());
+            let message = format!("step {room}, the last of task {}, would fall out: {}", task, last.written());
             return Err(Failure::new(Kind::RefusedHere, message)
                 .hint("delete it first, or give the task more steps by the machine parameter E22 (task-steps)"));
         }
@@ -97,11 +96,11 @@ impl Insert {
         }
         let mut cells = Cells::default();
         link.store(screen, &steps::cell(step, instruction)?, &mut cells).await?;
-        Ok(Inserted { task: tasks.current, inserted: Step { step: step.into(), instruction: instruction.written() } })
+        Ok(Inserted { task, inserted: Step { step: step.into(), instruction: instruction.written() } })
     }
 
     async fn rehearse(&self, link: &mut Link, screen: &Screen, instruction: &Record) -> Result<Inserted, Failure> {
-        Tasks::foresee(link, self.task).await?;
+        tasks::choose(link, self.task).await?;
         link.foresee(&steps::rooms_request(), "how many steps the task has; the last one must be a NOP");
         steps::foresee_open(link).await?;
         link.order(&self.order()).await?;

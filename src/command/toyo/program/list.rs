@@ -4,9 +4,9 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::steps::{self, Tasks};
-use crate::command::toyo::Family;
+use super::steps;
 use crate::command::toyo::link::Link;
+use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::program::{tags, used};
@@ -39,7 +39,7 @@ impl Command for List {
     async fn run(&self, context: Context<'_, Family>) -> Result<Listed, Failure> {
         let Context { link, screen, .. } = context;
         if link.is_dry() {
-            Tasks::foresee(link, None).await?;
+            tasks::choose(link, None).await?;
             link.foresee(&steps::rooms_request(), "how many steps the tasks have");
             if self.used {
                 link.foresee(&steps::read_request(1), "and so on, every step of every task");
@@ -53,13 +53,12 @@ impl Command for List {
 
 impl List {
     async fn list(&self, link: &mut Link, screen: &Screen) -> Result<Listed, Failure> {
-        let mut chosen = Tasks::choose(link, None).await?;
-        let current = chosen.current;
+        let current = tasks::choose(link, None).await?;
         let mut tasks = Vec::new();
         for (task, room) in (1..).zip(steps::rooms(link).await?) {
             let mut listed = Task { task, current: task == current, room_steps: room, used_steps: None, tags: None };
             if self.used && room > 0 {
-                chosen.switch(link, task).await?;
+                tasks::choose(link, Some(task)).await?;
                 let read = steps::read_all(link, screen, 1..=room).await?;
                 listed.used_steps = Some(used(&read));
                 listed.tags = Some(tags(&read, 1).into_keys().collect());

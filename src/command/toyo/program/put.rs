@@ -9,12 +9,12 @@ use serde::Serialize;
 
 use super::and_mode;
 use super::check::Labelled;
-use super::steps::{self, Tasks};
+use super::steps;
 use super::text;
 use crate::command::interrupt::interruptible;
-use crate::command::toyo::Family;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::link::Link;
+use crate::command::toyo::{Family, files, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::layout::Record;
@@ -65,8 +65,8 @@ impl Command for Put {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
         let Context { link, screen, .. } = context;
-        let name = text::shown(&self.file);
-        let bytes = text::read(&self.file)?;
+        let name = files::shown(&self.file);
+        let bytes = files::read(&self.file)?;
         let checked = match self.at {
             None => program::check(&bytes, MOST_STEPS),
             // Which tags are around it is known later.
@@ -96,10 +96,10 @@ impl Put {
         from: u16,
         last: u16,
     ) -> Result<Stored, Failure> {
-        let name = text::shown(&self.file);
+        let name = files::shown(&self.file);
         let first = self.at.unwrap_or(1);
-        let tasks = Tasks::choose(link, self.task).await?;
-        let room = steps::room(link, tasks.current, last).await?;
+        let task = tasks::choose(link, self.task).await?;
+        let room = steps::room(link, task, last).await?;
         let program = match self.at {
             None => text::program(&name, program::check(bytes, room.into()), &screen.silenced())?,
             Some(at) => {
@@ -141,7 +141,7 @@ impl Put {
         cells.cells_unchanged = u32::try_from(found.len() - changes.len()).unwrap_or(u32::MAX);
         Ok(Stored {
             file: name,
-            task: tasks.current,
+            task,
             first_step: first,
             last_step: last,
             cleared_steps: cleared,
@@ -159,7 +159,7 @@ impl Put {
     ) -> Result<Stored, Failure> {
         let first = self.at.unwrap_or(1);
         let last = last_of(first, program);
-        Tasks::foresee(link, self.task).await?;
+        tasks::choose(link, self.task).await?;
         link.foresee(&steps::rooms_request(), "whether there is room");
         steps::foresee_open(link).await?;
         for (step, wanted) in (first..).zip(&program.steps).filter(|(step, _)| *step >= from) {

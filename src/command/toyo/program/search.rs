@@ -4,9 +4,9 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::steps::{self, Tasks};
-use crate::command::toyo::Family;
+use super::steps;
 use crate::command::toyo::link::Link;
+use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -40,10 +40,9 @@ impl Command for Search {
     async fn run(&self, context: Context<'_, Family>) -> Result<Found, Failure> {
         let link = context.link;
         if link.is_dry() {
-            Tasks::foresee(link, self.task).await?;
+            tasks::choose(link, self.task).await?;
             link.order(&self.order()).await?;
             link.foresee(&steps::read_request(0), "at which step it is");
-            link.put_back().await?;
             return std::future::pending().await;
         }
         let outcome = self.search(link).await;
@@ -57,7 +56,7 @@ impl Search {
     }
 
     async fn search(&self, link: &mut Link) -> Result<Found, Failure> {
-        let tasks = Tasks::choose(link, self.task).await?;
+        let task = tasks::choose(link, self.task).await?;
         let status = link.status_of(&[0]).await?;
         if status.executing() || status.paused() {
             return Err(Failure::new(
@@ -67,7 +66,7 @@ impl Search {
             .hint("`toyo program get` tells all tags"));
         }
         if link.try_order(&self.order()).await?.is_err() {
-            let (tag, task) = (self.number, tasks.current);
+            let (tag, task) = (self.number, task);
             return Err(Failure::new(Kind::Refused, format!("there is no tag {tag:03} in task {task} (@NG)"))
                 .hint(
                     "`toyo program get` tells all tags; `toyo status` tells if something else keeps it from searching",
@@ -82,7 +81,7 @@ impl Search {
             content.layout() == Op::Tag.row().layout && content.number("tag") == Some(self.number.into())
         });
         let step = answer.number("step").filter(|_| is_tag);
-        Ok(Found { task: tasks.current, tag: self.number, step })
+        Ok(Found { task, tag: self.number, step })
     }
 }
 

@@ -1,4 +1,4 @@
-//! The steps of a task: which task is meant, how many it has, reading them, and what it takes to write them.
+//! The steps of a task: how many it has, reading them, and what it takes to write them.
 
 use std::ops::RangeInclusive;
 
@@ -11,57 +11,6 @@ use crate::controller::toyo::status::RunMode;
 use crate::controller::toyo::table::{Command, Op, Parameter};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
-
-/// The task that commands are about, which may be another one for a while.
-#[derive(Debug)]
-pub struct Tasks {
-    /// Before.
-    found: u8,
-    /// Now.
-    pub current: u8,
-}
-
-impl Tasks {
-    /// Asks which task is the current one, and makes another one that for a while.
-    pub async fn choose(link: &mut Link, wanted: Option<u8>) -> Result<Self, Failure> {
-        let answer = link.read(&Request::bare(Command::Mtsk)).await?;
-        let found =
-            answer.number("task").and_then(|task| u8::try_from(task).ok()).filter(|task| (1..=4).contains(task));
-        let found = found.ok_or_else(|| link.malformed(&answer.written(), "there are tasks 1 to 4"))?;
-        let mut tasks = Self { found, current: found };
-        tasks.switch(link, wanted.unwrap_or(found)).await?;
-        Ok(tasks)
-    }
-
-    /// Makes a task the current one for a while.
-    pub async fn switch(&mut self, link: &mut Link, task: u8) -> Result<(), Failure> {
-        if task == self.current {
-            return Ok(());
-        }
-        if self.current == self.found {
-            link.borrow(&choice(task), choice(self.found), "").await?;
-        } else {
-            link.order(&choice(task)).await?;
-        }
-        self.current = task;
-        Ok(())
-    }
-
-    /// What a dry run notes of [`Tasks::choose`].
-    pub async fn foresee(link: &mut Link, wanted: Option<u8>) -> Result<(), Failure> {
-        link.foresee(&Request::bare(Command::Mtsk), "which task is the current one");
-        match wanted {
-            Some(task) => {
-                link.borrow(&choice(task), choice(1), "if another one is; later the one that was found").await
-            }
-            None => Ok(()),
-        }
-    }
-}
-
-fn choice(task: u8) -> Request {
-    Request::of(Command::Ctsk, [Value::Number(task.into())])
-}
 
 /// How many steps each task has (TO 2-4, E22).
 pub async fn rooms(link: &mut Link) -> Result<[u16; 4], Failure> {

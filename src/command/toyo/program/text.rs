@@ -1,61 +1,24 @@
-//! Program files: reading them, and what is wrong with them in words.
-
-use std::fs::File;
-use std::io::Read;
-use std::path::Path;
+//! Program files: what is wrong with them in words.
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::command::toyo::files;
 use crate::controller::toyo::program::{Checked, Finding, Program, Severity};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::view::{Cell, Tone};
 
-/// Most that is read of a file: 5,000 steps with a page of comments each.
-const MOST: u64 = 16 << 20;
-
-/// The bytes of a file, or of stdin for `-`.
-pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    let mut bytes = Vec::new();
-    let failed = |error| Failure::io(shown(path), &error);
-    if path == Path::new("-") {
-        std::io::stdin().lock().take(MOST).read_to_end(&mut bytes).map_err(failed)?;
-    } else {
-        File::open(path).map_err(failed)?.take(MOST).read_to_end(&mut bytes).map_err(failed)?;
-    }
-    if bytes.len() as u64 == MOST {
-        return Err(Failure::usage(format!("{} is too large for a program", shown(path))));
-    }
-    Ok(bytes)
-}
-
-/// How a file is called in reports.
-pub fn shown(path: &Path) -> String {
-    if path == Path::new("-") { "stdin".to_owned() } else { path.display().to_string() }
-}
-
 /// The program in a text that was checked; warnings go to stderr, errors are a failure.
 pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program, Failure> {
     let Some(program) = checked.program else {
         let errors: Vec<Finding> = checked.errors().cloned().collect();
-        return Err(faulty(name, &errors).hint(format!("`toyo program check {name}` shows what is wrong and where")));
+        return Err(files::faulty(name, &errors));
     };
     for finding in checked.findings.iter().filter(|finding| finding.severity == Severity::Warning) {
         screen.note(&in_a_line(name, finding));
     }
     Ok(program)
-}
-
-/// The first mistake of a file, and how many more there are.
-pub fn faulty(name: &str, errors: &[Finding]) -> Failure {
-    let first = errors.first().map(|finding| in_a_line(name, finding)).unwrap_or_default();
-    let more = match errors.len() {
-        0 | 1 => String::new(),
-        2 => "; there is 1 more error".to_owned(),
-        all => format!("; there are {} more errors", all - 1),
-    };
-    Failure::usage(format!("{first}{more}"))
 }
 
 /// `pick.txt:3:9: error: there is no label 'pikc' (did you mean pick?)`.
@@ -137,15 +100,14 @@ mod tests {
     }
 
     #[test]
-    fn a_faulty_file_fails_with_its_first_error_and_their_number() {
-        let failure = |text: &str| program("pick.txt", check(text.as_bytes(), MOST_STEPS), &screen()).unwrap_err();
-        let failed = failure("EMD\nJMP TAG=no\nEND");
+    fn a_faulty_file_fails_with_all_its_errors() {
+        let checked = check(b"EMD\nJMP TAG=no\nSPD V=1\n", MOST_STEPS);
+        let failed = program("pick.txt", checked, &screen()).unwrap_err();
         assert_eq!(failed.kind, Kind::Usage);
         assert_eq!(
             failed.message,
-            "pick.txt:1:1: error: there is no instruction 'EMD' (did you mean END?); there is 1 more error"
+            "pick.txt:1:1: there is no instruction 'EMD' (did you mean END?)\npick.txt:2:9: there is no label 'no'"
         );
-        assert!(failure("EMD").message.ends_with("(did you mean END?)"));
     }
 
     #[test]

@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::trace::{End, Recorder, Source, Trace};
 use crate::command::Desk;
+use crate::command::toyo::files;
 use crate::command::toyo::program::text;
 use crate::controller::toyo::bulk::{self, Placed};
 use crate::controller::toyo::findings::Finding;
@@ -131,7 +132,7 @@ impl Run {
     fn start(&self, sources: &[Source]) -> Result<Start, Failure> {
         let state = match &self.state {
             Some(path) => {
-                let bytes = text::read(path)?;
+                let bytes = files::read(path)?;
                 let text = String::from_utf8(bytes)
                     .map_err(|_| Failure::usage(format!("{}: this is no text in UTF-8", path.display())))?;
                 Start::parse(&text).map_err(|error| {
@@ -144,10 +145,10 @@ impl Run {
         };
         let mut written = Vec::new();
         if let Some(path) = &self.params {
-            written.extend(writes(path, bulk::parameters::read(&text::read(path)?))?);
+            written.extend(writes(path, bulk::parameters::read(&files::read(path)?))?);
         }
         if let Some(path) = &self.points {
-            written.extend(writes(path, bulk::points::read(&text::read(path)?, 4))?);
+            written.extend(writes(path, bulk::points::read(&files::read(path)?, 4))?);
         }
         // As what was there before power came on, so that parameter 2 is in force.
         let mut document: toml::Table = state.parse().map_err(|error| Failure::usage(format!("{error}")))?;
@@ -217,8 +218,8 @@ impl Run {
 
 /// The commands that write the settings of a file, without `@`.
 fn writes(path: &Path, read: Result<Vec<Placed>, Vec<Finding>>) -> Result<Vec<String>, Failure> {
-    let name = text::shown(path);
-    let settings = read.map_err(|errors| text::faulty(&name, &errors))?;
+    let name = files::shown(path);
+    let settings = read.map_err(|errors| files::faulty(&name, &errors))?;
     let mut start = Start::default();
     let mut commands = Vec::with_capacity(settings.len());
     for (setting, line) in settings {
@@ -232,7 +233,7 @@ fn writes(path: &Path, read: Result<Vec<Placed>, Vec<Finding>>) -> Result<Vec<St
 
 /// The program in a file.
 fn source(screen: &Screen, task: usize, file: &Path) -> Result<Source, Failure> {
-    let name = text::shown(file);
-    let bytes = text::read(file)?;
+    let name = files::shown(file);
+    let bytes = files::read(file)?;
     Ok(Source { task, program: text::program(&name, check(&bytes, MOST_STEPS), screen)?, file: name })
 }
