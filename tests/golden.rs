@@ -9,6 +9,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use armctl::controller::units;
 use armctl::controller::yerc::Model::{self, Dx200, Fs100};
 use armctl::controller::yerc::describe::{Sender, describe, summary};
 use armctl::controller::yerc::files::{self, FileName, FileType};
@@ -26,7 +27,6 @@ use armctl::controller::yerc::query::{
 };
 use armctl::controller::yerc::request::{Request, RequestError};
 use armctl::controller::yerc::table::service;
-use armctl::controller::yerc::units;
 use armctl::controller::yerc::variables::{Value, VariableKind};
 use armctl::controller::yerc::wire::{AnswerFrame, LAST_BLOCK, RequestFrame, Status, WireError};
 use serde_json::Value as Json;

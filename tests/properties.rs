@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
+use armctl::controller::units;
 use armctl::controller::yerc::Model;
 use armctl::controller::yerc::describe::{Sender, describe, summary};
 use armctl::controller::yerc::files;
@@ -13,7 +14,6 @@ use armctl::controller::yerc::payload::{
 use armctl::controller::yerc::query::{Query, WriteVariable};
 use armctl::controller::yerc::request::Request;
 use armctl::controller::yerc::table::{ROWS, service};
-use armctl::controller::yerc::units;
 use armctl::controller::yerc::variables::{
     Reference, Value, VariableKind, parse_references, plan_io_reads, plan_reads, plan_register_reads, plan_writes,
 };

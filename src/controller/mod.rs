@@ -8,6 +8,7 @@ use std::time::Duration;
 
 pub mod text;
 pub mod toyo;
+pub mod units;
 pub mod yerc;
 pub mod yrcx;
 

@@ -15,11 +15,11 @@ use super::link::Link;
 use super::orders::usage;
 use crate::command::{Command, Context, Verbs, commands};
 use crate::controller::Risk;
+use crate::controller::units;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{CartesianMove, ExtendedForm, Form, MoveLayout, PositionKind, PulseMove};
 use crate::controller::yerc::query::{Coordinates, MoveCartesian, MoveKind, MovePulse};
-use crate::controller::yerc::units;
 use crate::failure::Failure;
 
 commands! {

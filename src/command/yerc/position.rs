@@ -10,10 +10,10 @@ use super::Family;
 use super::link::Link;
 use super::orders::usage;
 use crate::command::{Command, Context, Report};
+use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{self, Axes, ExtendedForm, Form, MAX_AXES, PositionKind};
 use crate::controller::yerc::query::{Coordinates, ReadPosition};
-use crate::controller::yerc::units::{self, Unit};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, View};
 

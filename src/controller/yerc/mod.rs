@@ -15,7 +15,6 @@ pub mod simulator;
 pub mod status;
 pub mod subcode;
 pub mod table;
-pub mod units;
 pub mod variables;
 pub mod wire;
 

@@ -5,9 +5,9 @@ use std::fmt;
 use clap::{Args, ValueEnum};
 
 use crate::command::yerc::position::{extended_words, form_words, in_a_line};
+use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{ExtendedForm, Form, PositionKind, SpeedClass};
-use crate::controller::yerc::units::{self, Unit};
 use crate::failure::Failure;
 
 /// Who moves, and who waits.

@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
+use crate::controller::units::{self, Quantity, Unit};
 use crate::controller::yerc::payload::{ExtendedForm, Form, NamedAxis, PositionKind};
-use crate::controller::yerc::units::{self, Quantity, Unit};
 use crate::controller::yerc::variables::{Value, VariableKind};
 
 /// A position.

@@ -1,8 +1,8 @@
 //! Positions of robots, bases and external axes (FS and DX 3.3.6, 3.3.16 to 3.3.18).
 
 use super::{Axes, MAX_AXES, PayloadError, Reader, push_u32s};
+use crate::controller::units::{self, Unit};
 use crate::controller::yerc::table::Bit;
-use crate::controller::yerc::units::{self, Unit};
 
 const fn bit(bit: u8, clear: &'static str, set: &'static str) -> Bit {
     Bit { bit, clear, set }

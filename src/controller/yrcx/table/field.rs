@@ -1,6 +1,6 @@
 //! Fields of words: where they stand, what they hold, when they count.
 
-use crate::controller::yerc::units::{self, Unit};
+use crate::controller::units::{self, Unit};
 use crate::controller::yrcx::value::{Key, Value};
 
 /// A field of a command or an answer.

@@ -3,7 +3,7 @@
 use super::field::{Charset, Show};
 use super::field::{FINE_PERCENT, Field, MM, MM_S, MS, PERCENT, PLAIN, PULSE};
 use super::parameter;
-use crate::controller::yerc::units::Unit;
+use crate::controller::units::Unit;
 use crate::controller::yrcx::value::Key;
 
 type Layout = &'static [Field];

@@ -1,7 +1,7 @@
 //! Exact conversion between decimal text and the integers on the wire.
 //!
-//! Lengths travel as multiples of 0.001 mm, angles of 0.0001 degree, speeds of 0.01 % or 0.1 mm/s or 0.1 degree/s
-//! (FS and DX 3.3.39). No floating point is involved: what is typed is what is sent, or it is refused.
+//! No floating point is involved: what is typed is what is sent, or it is refused. The constants are the steps of the
+//! Yaskawa controllers (FS and DX 3.3.39); other families define theirs where they differ.
 
 use std::fmt;
 
