@@ -16,5 +16,6 @@ pub mod procedure;
 pub mod sequence;
 pub mod session;
 pub mod signal;
+pub mod simulator;
 pub mod table;
 pub mod value;

@@ -1,0 +1,205 @@
+//! Alarms: where they come up, which are active, and what came before.
+//!
+//! The remote I/O manual gives the numbers of a few alarms and sends the reader to the controller's manual for the rest.
+//! Where it gives none, the group is right and the category is of this simulator: 900 and above.
+
+use std::collections::VecDeque;
+use std::fmt;
+
+use crate::controller::yrcx::alarm::Alarm;
+
+pub(super) use crate::controller::yrcx::alarm::{INPUT_FORMAT, STOP_INPUT};
+
+/// Given by the manual, or known for this maker's controllers.
+pub(super) const SOFT_LIMIT: Alarm = Alarm::new(2, 334);
+pub(super) const UNKNOWN_COMMAND: Alarm = Alarm::new(12, 75);
+pub(super) const NOT_ENABLED: Alarm = Alarm::new(12, 76);
+pub(super) const LINK: Alarm = Alarm::new(12, 551);
+pub(super) const LINK_TOO_LATE: Alarm = Alarm::new(12, 552);
+pub(super) const EMERGENCY_STOP: Alarm = Alarm::new(12, 600);
+
+/// Numbers of this simulator.
+pub(super) const NO_POWER: Alarm = Alarm::new(2, 901);
+pub(super) const NO_ORIGIN: Alarm = Alarm::new(2, 902);
+pub(super) const MOVING: Alarm = Alarm::new(2, 903);
+pub(super) const NO_POINT: Alarm = Alarm::new(2, 904);
+pub(super) const OUT_OF_REACH: Alarm = Alarm::new(2, 905);
+pub(super) const NO_PATH: Alarm = Alarm::new(2, 906);
+pub(super) const NO_ABSOLUTE_RESET: Alarm = Alarm::new(2, 907);
+pub(super) const NO_PROGRAM: Alarm = Alarm::new(3, 901);
+pub(super) const NO_ROBOT: Alarm = Alarm::new(4, 901);
+pub(super) const NO_AXIS: Alarm = Alarm::new(4, 902);
+pub(super) const NO_PALLET: Alarm = Alarm::new(4, 903);
+pub(super) const NO_HAND: Alarm = Alarm::new(4, 904);
+pub(super) const POINT_UNIT: Alarm = Alarm::new(4, 905);
+pub(super) const NO_CONTROLLER: Alarm = Alarm::new(4, 906);
+pub(super) const PAYLOAD: Alarm = Alarm::new(4, 907);
+pub(super) const ARITHMETIC: Alarm = Alarm::new(6, 901);
+pub(super) const NOT_AUTO: Alarm = Alarm::new(6, 902);
+pub(super) const NO_TASK: Alarm = Alarm::new(6, 903);
+pub(super) const RUNNING: Alarm = Alarm::new(6, 904);
+pub(super) const CALLS: Alarm = Alarm::new(6, 905);
+
+/// Entries of the history (4.7.7).
+pub(super) const HISTORY: usize = 500;
+
+/// Where an alarm came up (4.7.7).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    /// The controller as a whole.
+    Controller,
+    /// The option slot of the fieldbus.
+    Slot,
+    /// A robot, counted from 0.
+    Robot(usize),
+    /// An axis of a robot, both counted from 0.
+    Axis(usize, usize),
+    /// A task, 1 to 16.
+    Task(u8),
+}
+
+impl Place {
+    /// The two words of additional information.
+    pub(super) fn words(self) -> [u16; 2] {
+        let small = |number: usize| u16::try_from(number).unwrap_or_default() & 0xFF;
+        match self {
+            Self::Controller => [0x0101, 0x0000],
+            Self::Slot => [0x0101, 0x0301],
+            Self::Robot(robot) => [small(robot + 1), 0x0000],
+            Self::Axis(robot, axis) => [small(robot + 1), 0x0100 | small(axis + 1)],
+            Self::Task(task) => [0x0200, 0x0400 | u16::from(task)],
+        }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Controller => f.write_str("C1"),
+            Self::Slot => f.write_str("C1O1"),
+            Self::Robot(robot) => write!(f, "R{}", robot + 1),
+            Self::Axis(robot, axis) => write!(f, "R{}A{}", robot + 1, axis + 1),
+            Self::Task(task) => write!(f, "T{task}"),
+        }
+    }
+}
+
+/// Why something is not done, or not to its end.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Fault {
+    pub(super) alarm: Alarm,
+    pub(super) place: Place,
+    /// For whoever wants to know more than the number says.
+    pub(super) why: String,
+}
+
+impl Fault {
+    pub(super) fn new(alarm: Alarm, place: Place, why: impl Into<String>) -> Self {
+        Self { alarm, place, why: why.into() }
+    }
+
+    pub(super) fn of_words(why: impl Into<String>) -> Self {
+        Self::new(INPUT_FORMAT, Place::Slot, why)
+    }
+
+    pub(super) fn stopped() -> Self {
+        Self::new(STOP_INPUT, Place::Slot, "SI(06) is off")
+    }
+
+    pub(super) fn emergency() -> Self {
+        Self::new(EMERGENCY_STOP, Place::Controller, "the controller is in emergency stop")
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}: {}", self.alarm, self.place, self.why)
+    }
+}
+
+/// An alarm and where it came up.
+pub(super) type Entry = (Alarm, Place);
+
+/// What is active, and what was.
+#[derive(Debug, Clone, Default)]
+pub(super) struct AlarmLog {
+    /// Active ones; `true` for those that only switching off and on ends.
+    active: Vec<(Alarm, bool)>,
+    /// Newest first.
+    history: VecDeque<Entry>,
+    /// The last one of a remote command (4.7.17).
+    latest_remote: Option<Entry>,
+}
+
+impl AlarmLog {
+    /// A serious alarm.
+    pub(super) fn raise(&mut self, alarm: Alarm, place: Place, fatal: bool) {
+        if self.active.iter().any(|(known, _)| *known == alarm) {
+            return;
+        }
+        self.active.push((alarm, fatal));
+        self.record(alarm, place);
+    }
+
+    /// Something that went wrong and is over.
+    pub(super) fn record(&mut self, alarm: Alarm, place: Place) {
+        self.history.push_front((alarm, place));
+        self.history.truncate(HISTORY);
+    }
+
+    /// A remote command was refused or broken off.
+    pub(super) fn refuse(&mut self, fault: &Fault) {
+        self.latest_remote = Some((fault.alarm, fault.place));
+        // An active alarm that keeps others from being carried out is in the history already.
+        if !self.active.iter().any(|(known, _)| *known == fault.alarm) {
+            self.record(fault.alarm, fault.place);
+        }
+    }
+
+    /// Takes back what may be taken back, but for alarms whose cause is still there.
+    pub(super) fn reset(&mut self, still: impl Fn(Alarm) -> bool) {
+        self.active.retain(|(alarm, fatal)| *fatal || still(*alarm));
+    }
+
+    /// Ends every alarm, as switching off and on does.
+    pub(super) fn clear(&mut self) {
+        self.active.clear();
+    }
+
+    /// The one that is active for the longest time.
+    pub(super) fn active(&self) -> Option<Alarm> {
+        self.active.first().map(|(alarm, _)| *alarm)
+    }
+
+    /// Every active one.
+    pub(super) fn all_active(&self) -> impl Iterator<Item = Alarm> {
+        self.active.iter().map(|(alarm, _)| *alarm)
+    }
+
+    /// Whether only switching off and on helps.
+    pub(super) fn is_fatal(&self) -> bool {
+        self.active.iter().any(|(_, fatal)| *fatal)
+    }
+
+    /// An entry of the history, 1 for the newest.
+    pub(super) fn entry(&self, number: usize) -> Option<Entry> {
+        self.history.get(number.checked_sub(1)?).copied()
+    }
+
+    /// The last one of a remote command.
+    pub(super) fn latest_remote(&self) -> Option<Entry> {
+        self.latest_remote
+    }
+
+    /// Puts an entry at the old end.
+    pub(super) fn fill(&mut self, entry: Entry) {
+        if self.history.len() < HISTORY {
+            self.history.push_back(entry);
+        }
+    }
+
+    /// Sets the last one of a remote command.
+    pub(super) fn set_latest_remote(&mut self, entry: Entry) {
+        self.latest_remote = Some(entry);
+    }
+}

@@ -1,0 +1,62 @@
+//! What a remote command does, by its row of the table.
+
+use super::alarms::{Fault, NOT_ENABLED, Place, UNKNOWN_COMMAND};
+use super::request::Request;
+use super::world::{Action, World};
+use super::{motions, operate, reads, records};
+use crate::controller::Now;
+use crate::controller::yrcx::table::{Command, Pace};
+use crate::controller::yrcx::value::{Key, Values};
+
+/// What a command comes to.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Work {
+    /// Done, with what there is to answer.
+    Done(Values),
+    /// These robots move.
+    Motion(Vec<usize>),
+    /// Power switches at that time.
+    Power(Now, Action),
+    /// It goes on until the master takes it back.
+    Continuous,
+}
+
+/// Begins a command, or refuses it.
+pub(super) fn begin(world: &mut World, request: &Request) -> Result<Work, Fault> {
+    enabled(world, request)?;
+    match (request.row.pace, request.row.category()) {
+        (Pace::Motion | Pace::Jog, _) => motions::begin(world, request),
+        (Pace::Power, _) => operate::power(world, request),
+        (Pace::Quick, 1) => operate::change(world, request).map(done),
+        (Pace::Quick, 5) => operate::program(world, request).map(Work::Done),
+        (Pace::Quick, 2..=4) => records::carry_out(world, request).map(Work::Done),
+        (Pace::Quick, 7) => operate::utility(world, request).map(done),
+        (Pace::Quick, _) if request.int(Key::Continuous) == 1 => {
+            reads::answer(world, request).map(|_| Work::Continuous)
+        }
+        (Pace::Quick, _) => reads::answer(world, request).map(Work::Done),
+    }
+}
+
+/// A command that came to the wrong part of the simulator.
+pub(super) fn not_here(request: &Request) -> Fault {
+    Fault::new(UNKNOWN_COMMAND, Place::Slot, format!("the simulator does not know {}", request.row.id))
+}
+
+fn done((): ()) -> Work {
+    Work::Done(Values::default())
+}
+
+/// Whether commands are taken at all (chapter 2, 3).
+fn enabled(world: &World, request: &Request) -> Result<(), Fault> {
+    if !world.switches.inputs {
+        let why = "a safety setting disables the dedicated inputs";
+        return Err(Fault::new(NOT_ENABLED, Place::Slot, why));
+    }
+    // 4.6.4 is a reference, but not in the list of what the box leaves.
+    let reads = request.row.name.starts_with("read ") && request.row.command != Command::ProgramShow;
+    if world.switches.boxed && !reads {
+        return Err(Fault::new(NOT_ENABLED, Place::Slot, "the programming box has control"));
+    }
+    Ok(())
+}

@@ -1,0 +1,145 @@
+//! What somebody at the machine can do: one line, one action.
+
+use std::fmt::Write as _;
+
+use super::alarms::{Fault, NOT_AUTO, Place};
+use super::geometry::whole;
+use super::memory::{PORT_NAMES, SI};
+use super::program::assigned;
+use super::robot::{Axis, Servo};
+use super::world::{Mode, World};
+use crate::controller::yrcx::alarm::Alarm;
+
+/// The lines there are, as `help` shows them.
+const USAGE: &str = "estop on|off | mode auto|manual | box on|off | inputs on|off | warning on|off | \
+alarm GROUP.CATEGORY [fatal] | DI(20)=1 | DO2()=255 | obstacle R1A3 PULSES|off | load R1A3 PERCENT | power | why | \
+state";
+
+/// Carries out a line; the answer says what is now.
+pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    match words.as_slice() {
+        ["help"] => return Ok(USAGE.replace(" | ", "\n")),
+        ["state"] => return Ok(state(world)),
+        ["why"] => {
+            let why = world.why.as_ref().map(ToString::to_string);
+            return Ok(why.unwrap_or_else(|| "nothing was refused".to_owned()));
+        }
+        ["estop", on] => {
+            world.switches.estop = on_off(on)?;
+            world.check_emergency();
+        }
+        ["mode", "auto"] => set_mode(world, Mode::Auto),
+        ["mode", "manual"] => set_mode(world, Mode::Manual),
+        ["box", on] => world.switches.boxed = on_off(on)?,
+        ["inputs", on] => world.switches.inputs = on_off(on)?,
+        ["warning", on] => world.switches.warning = on_off(on)?,
+        ["alarm", number] => raise(world, number, false)?,
+        ["alarm", number, "fatal"] => raise(world, number, true)?,
+        ["power"] => world.power_cycle(),
+        ["obstacle", axis, "off"] => find_axis(world, axis)?.obstacle = None,
+        ["obstacle", axis, place] => {
+            let place = place.parse::<i32>().map_err(|_| format!("'{place}' is no number of pulses"))?;
+            find_axis(world, axis)?.obstacle = Some(place.into());
+        }
+        ["load", axis, load] => {
+            let load = load.parse().ok().filter(|load| (-100..=100).contains(load));
+            find_axis(world, axis)?.load = load.ok_or("a load is -100 to 100 %")?;
+        }
+        [port] if port.contains('=') => return set_port(world, port),
+        _ => return Err(format!("no such line: '{}'", line.trim())),
+    }
+    Ok(summary(world))
+}
+
+/// Leaving AUTO mode stops programs.
+fn set_mode(world: &mut World, mode: Mode) {
+    if world.switches.mode != mode {
+        world.switches.mode = mode;
+        world.stop(&Fault::new(NOT_AUTO, Place::Controller, "the mode was changed"));
+    }
+}
+
+fn raise(world: &mut World, number: &str, fatal: bool) -> Result<(), String> {
+    let alarm = number.parse::<Alarm>().map_err(|error| error.to_string())?;
+    world.raise(&Fault::new(alarm, Place::Controller, "raised at the console"), fatal);
+    Ok(())
+}
+
+fn set_port(world: &mut World, text: &str) -> Result<String, String> {
+    let found = assigned(text).filter(|(port, _)| port.kind != SI);
+    let (port, value) = found.ok_or_else(|| format!("'{text}' sets no port; the master has SI"))?;
+    match port.bit {
+        Some(bit) => world.memory.set_bit(port.kind, port.port, bit, value == 1),
+        None => world.memory.set_port(port.kind, port.port, value),
+    }
+    world.restless = true;
+    let byte = world.memory.port(port.kind, port.port);
+    Ok(format!("{}{}() is {byte}", PORT_NAMES[port.kind], port.port))
+}
+
+/// `R1A3`.
+fn find_axis<'a>(world: &'a mut World, text: &str) -> Result<&'a mut Axis, String> {
+    let numbers = text.strip_prefix('R').and_then(|rest| rest.split_once('A'));
+    let index = |digits: &str| digits.parse::<usize>().ok()?.checked_sub(1);
+    let place = numbers.and_then(|(robot, axis)| Some((index(robot)?, index(axis)?)));
+    place
+        .and_then(|(robot, axis)| world.robots.get_mut(robot)?.axes.get_mut(axis))
+        .ok_or_else(|| format!("'{text}' is no axis such as R1A3"))
+}
+
+fn on_off(text: &str) -> Result<bool, String> {
+    match text {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err(format!("'{text}' is not on or off")),
+    }
+}
+
+fn summary(world: &World) -> String {
+    let mode = if world.switches.mode == Mode::Auto { "auto" } else { "manual" };
+    let mut text = format!("mode {mode}, motor power {}", if world.motor { "on" } else { "off" });
+    for (on, what) in [
+        (world.emergency(), "emergency stop"),
+        (world.switches.boxed, "the programming box has control"),
+        (!world.switches.inputs, "dedicated inputs disabled"),
+        (world.is_running(), "a program runs"),
+        (world.switches.warning, "warning"),
+    ] {
+        if on {
+            text.push_str(", ");
+            text.push_str(what);
+        }
+    }
+    for alarm in world.alarms.all_active() {
+        // Writing to a text does not fail.
+        let _ = write!(text, ", alarm {alarm}");
+    }
+    text
+}
+
+fn state(world: &World) -> String {
+    let mut lines = vec![summary(world)];
+    for (number, robot) in world.robots.iter().enumerate() {
+        let places = robot.pulses().map(whole);
+        let pulses: Vec<String> = places.iter().take(robot.axes.len()).map(ToString::to_string).collect();
+        let servos: String = robot
+            .axes
+            .iter()
+            .map(|axis| match axis.servo {
+                Servo::Brake => '-',
+                Servo::On => '+',
+                Servo::Free => '~',
+            })
+            .collect();
+        let moving = if robot.motion.is_some() { ", moving" } else { "" };
+        let origin = if robot.is_at_home() { "" } else { ", origin incomplete" };
+        lines.push(format!("robot {}: {} pulses, servos {servos}{moving}{origin}", number + 1, pulses.join(" ")));
+    }
+    for task in &world.tasks {
+        let state = ["stopped", "running", "suspended", "waiting"];
+        let state = usize::try_from(task.status()).ok().and_then(|at| state.get(at)).unwrap_or(&"");
+        lines.push(format!("task {}: program {}, line {}, {state}", task.number, task.program, world.line_of(task)));
+    }
+    lines.join("\n")
+}

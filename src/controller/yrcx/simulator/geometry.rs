@@ -1,0 +1,235 @@
+//! Where axes put the tool, and back. Exact both ways, so that a target in mm is read back as it was commanded.
+
+/// Pulses, axis positions, or X, Y, Z in mm with R in degrees.
+pub(super) type Four = [f64; 4];
+
+/// Steps of the protocol in a mm or a degree.
+pub(super) const STEPS: f64 = 1000.0;
+
+/// How the axes stand to each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Kind {
+    /// Axes 1 to 4 are X, Y, Z, R.
+    Cartesian,
+    /// Two arms that turn about the vertical, a height, a rotation.
+    Scara {
+        /// Length of the first arm in mm.
+        first: f64,
+        /// Length of the second arm in mm.
+        second: f64,
+    },
+}
+
+/// To which side a SCARA bends its arms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Arm {
+    Right,
+    Left,
+}
+
+impl Arm {
+    /// 0 right, 1 left (4.2.19).
+    pub(super) fn of(code: i32) -> Self {
+        if code == 1 { Self::Left } else { Self::Right }
+    }
+
+    pub(super) fn code(self) -> i32 {
+        i32::from(self == Self::Left)
+    }
+
+    /// 1 right, 2 left, else none: the other coding (4.2.1, 4.3.1).
+    pub(super) fn of_hand_system(code: i32) -> Option<Self> {
+        match code {
+            1 => Some(Self::Right),
+            2 => Some(Self::Left),
+            _ => None,
+        }
+    }
+
+    pub(super) fn hand_system(self) -> i32 {
+        self.code() + 1
+    }
+}
+
+/// A robot's geometry with the hand it has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Geometry {
+    pub(super) kind: Kind,
+    /// Pulses in a mm or a degree, by axis.
+    pub(super) per_unit: Four,
+    /// Data of the hand (4.3.5).
+    pub(super) hand: Option<[i32; 4]>,
+}
+
+impl Geometry {
+    /// Axis positions in mm or degrees.
+    pub(super) fn units(&self, pulses: &Four) -> Four {
+        std::array::from_fn(|axis| pulses[axis] / self.per_unit[axis])
+    }
+
+    /// Pulses of axis positions.
+    pub(super) fn of_units(&self, units: &Four) -> Four {
+        std::array::from_fn(|axis| units[axis] * self.per_unit[axis])
+    }
+
+    /// Where the tool is.
+    pub(super) fn pose(&self, pulses: &Four) -> Four {
+        let [a, b, z, d] = self.units(pulses);
+        match self.kind {
+            Kind::Cartesian => {
+                let [x, y, height] = self.tool(d);
+                [a + x, b + y, z + height, d]
+            }
+            Kind::Scara { first, .. } => {
+                let (bend, second) = self.second_arm(b);
+                let r = a + b + d;
+                let [x, y, height] = self.tool(r);
+                let ((sin_1, cos_1), (sin_2, cos_2)) = (a.to_radians().sin_cos(), (a + bend).to_radians().sin_cos());
+                [first * cos_1 + second * cos_2 + x, first * sin_1 + second * sin_2 + y, z + height, r]
+            }
+        }
+    }
+
+    /// Pulses that put the tool there; `None` if nothing does.
+    pub(super) fn pulses(&self, pose: &Four, arm: Arm) -> Option<Four> {
+        let [x, y, z, r] = *pose;
+        let [tool_x, tool_y, height] = self.tool(r);
+        let (x, y, z) = (x - tool_x, y - tool_y, z - height);
+        let Kind::Scara { first, .. } = self.kind else { return Some(self.of_units(&[x, y, z, r])) };
+        let (offset, second) = (self.second_arm(0.0).0, self.second_arm(0.0).1);
+        let cos = (x * x + y * y - first * first - second * second) / (2.0 * first * second);
+        if !cos.is_finite() || cos.abs() > 1.0 + 1e-9 {
+            return None;
+        }
+        let bend = cos.clamp(-1.0, 1.0).acos() * if arm == Arm::Right { 1.0 } else { -1.0 };
+        let turn = y.atan2(x) - (second * bend.sin()).atan2(first + second * bend.cos());
+        let (a, b) = (half_turns(turn.to_degrees()), bend.to_degrees() - offset);
+        Some(self.of_units(&[a, b, z, r - a - b]))
+    }
+
+    /// The hand system of a position; a Cartesian robot has none.
+    pub(super) fn arm(&self, pulses: &Four) -> Option<Arm> {
+        match self.kind {
+            Kind::Cartesian => None,
+            Kind::Scara { .. } => {
+                let (bend, _) = self.second_arm(self.units(pulses)[1]);
+                Some(if bend < 0.0 { Arm::Left } else { Arm::Right })
+            }
+        }
+    }
+
+    /// Angle and length of the second arm with a hand that is not on the R axis: data 1 is an offset in pulses, data 2 a
+    /// difference of length.
+    fn second_arm(&self, angle: f64) -> (f64, f64) {
+        match (self.kind, self.hand) {
+            (Kind::Scara { second, .. }, Some([offset, longer, _, 0])) => {
+                (angle + f64::from(offset) / self.per_unit[1], second + f64::from(longer) / STEPS)
+            }
+            (Kind::Scara { second, .. }, _) => (angle, second),
+            (Kind::Cartesian, _) => (angle, 0.0),
+        }
+    }
+
+    /// Where the hand's end is from its mount, with the R axis at `r`. Data 4 says whether it turns with that axis.
+    fn tool(&self, r: f64) -> [f64; 3] {
+        let Some([one, two, three, on_r]) = self.hand else { return [0.0; 3] };
+        let height = f64::from(three) / STEPS;
+        let (x, y) = match (self.kind, on_r) {
+            (Kind::Cartesian, 0) => (f64::from(one) / STEPS, f64::from(two) / STEPS),
+            (Kind::Cartesian, _) => turned(f64::from(one) / STEPS, f64::from(two) / STEPS, r),
+            (Kind::Scara { .. }, 0) => (0.0, 0.0),
+            (Kind::Scara { .. }, _) => turned(f64::from(two) / STEPS, 0.0, r + f64::from(one) / self.per_unit[3]),
+        };
+        [x, y, height]
+    }
+}
+
+/// An angle as -180 to 180 degrees.
+fn half_turns(angle: f64) -> f64 {
+    if angle > 180.0 {
+        angle - 360.0
+    } else if angle < -180.0 {
+        angle + 360.0
+    } else {
+        angle
+    }
+}
+
+fn turned(x: f64, y: f64, degrees: f64) -> (f64, f64) {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    (x * cos - y * sin, x * sin + y * cos)
+}
+
+/// Coordinates of a shift, seen from the robot.
+pub(super) fn from_shift(shift: &[i32; 4], pose: &Four) -> Four {
+    let [x, y, z, r] = shift.map(|step| f64::from(step) / STEPS);
+    let (turned_x, turned_y) = turned(pose[0], pose[1], r);
+    [turned_x + x, turned_y + y, pose[2] + z, pose[3] + r]
+}
+
+/// Coordinates of the robot, seen from a shift.
+pub(super) fn to_shift(shift: &[i32; 4], pose: &Four) -> Four {
+    let [x, y, z, r] = shift.map(|step| f64::from(step) / STEPS);
+    let (turned_x, turned_y) = turned(pose[0] - x, pose[1] - y, -r);
+    [turned_x, turned_y, pose[2] - z, pose[3] - r]
+}
+
+/// A pose that goes `by` along the axes of the tool, which turn with R.
+pub(super) fn along_tool(pose: &Four, by: &Four) -> Four {
+    let (x, y) = turned(by[0], by[1], pose[3]);
+    [pose[0] + x, pose[1] + y, pose[2] + by[2], pose[3] + by[3]]
+}
+
+/// The nearest whole number that fits.
+#[expect(clippy::cast_possible_truncation, reason = "a number out of range becomes the nearest one within")]
+pub(super) fn whole(number: f64) -> i32 {
+    number.round() as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCARA: Geometry = Geometry {
+        kind: Kind::Scara { first: 125.0, second: 125.0 },
+        per_unit: [200.0, 200.0, 1000.0, 100.0],
+        hand: None,
+    };
+
+    fn near(found: &Four, wanted: &Four) -> bool {
+        found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-6)
+    }
+
+    #[test]
+    fn there_and_back_with_every_hand() {
+        for hand in [None, Some([1000, 20_000, -5000, 0]), Some([500, 30_000, 7000, 1])] {
+            let geometry = Geometry { hand, ..SCARA };
+            for pulses in [[2000.0, 9000.0, 4000.0, 300.0], [-4000.0, -12_000.0, 0.0, -900.0]] {
+                let pose = geometry.pose(&pulses);
+                let arm = geometry.arm(&pulses).unwrap();
+                assert!(near(&geometry.pulses(&pose, arm).unwrap(), &pulses), "{hand:?} {pulses:?}");
+            }
+            let cartesian = Geometry { kind: Kind::Cartesian, ..geometry };
+            let pulses = [1.0, -2.0, 3.0, -4.0];
+            assert!(near(&cartesian.pulses(&cartesian.pose(&pulses), Arm::Left).unwrap(), &pulses));
+        }
+    }
+
+    #[test]
+    fn both_arms_reach_the_same_place() {
+        let pose = [100.0, 50.0, 0.0, 30.0];
+        let [right, left] = [Arm::Right, Arm::Left].map(|arm| SCARA.pulses(&pose, arm).unwrap());
+        assert!(near(&SCARA.pose(&right), &pose) && near(&SCARA.pose(&left), &pose));
+        assert!(right[1] > 0.0 && left[1] < 0.0);
+        assert_eq!(SCARA.pulses(&[251.0, 0.0, 0.0, 0.0], Arm::Right), None);
+    }
+
+    #[test]
+    fn shifts_and_tools_turn() {
+        let shift = [10_000, -20_000, 5000, 90_000];
+        let pose = [1.0, 2.0, 3.0, 4.0];
+        assert!(near(&from_shift(&shift, &pose), &[8.0, -19.0, 8.0, 94.0]));
+        assert!(near(&to_shift(&shift, &from_shift(&shift, &pose)), &pose));
+        assert!(near(&along_tool(&[0.0, 0.0, 0.0, 90.0], &[1.0, 0.0, 2.0, 3.0]), &[0.0, 1.0, 2.0, 93.0]));
+    }
+}

@@ -1,0 +1,362 @@
+//! What the controller stores: points, comments, pallets, shifts, hands, static variables, ports.
+
+use std::collections::BTreeMap;
+
+use super::alarms::{ARITHMETIC, Fault, NO_AXIS, NO_PALLET, NO_POINT, POINT_UNIT, Place};
+use super::geometry::{Four, STEPS, whole};
+use super::robot::AXES;
+
+/// Points there are.
+pub(super) const POINTS: u16 = 30_000;
+/// Pallets and shifts there are.
+pub(super) const SHIFTS: usize = 40;
+/// Hands there are.
+pub(super) const HANDS: usize = 32;
+/// Variables of each kind.
+const VARIABLES: usize = 32;
+/// The number of SGR0 (4.4.1).
+const FIRST_REAL: usize = 256;
+/// Ports of a type at most, and types (4.5.1).
+const PORTS: usize = 24;
+const PORT_TYPES: usize = 7;
+/// Port types of the image.
+pub(super) const SI: usize = 5;
+pub(super) const SO: usize = 6;
+/// Names of the port types, by code.
+pub(super) const PORT_NAMES: [&str; PORT_TYPES] = ["DI", "DO", "MO", "LO", "TO", "SI", "SO"];
+
+/// What a point is measured in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum PointUnit {
+    Pulse,
+    Mm,
+}
+
+impl PointUnit {
+    pub(super) fn of(code: i32) -> Self {
+        if code == 1 { Self::Mm } else { Self::Pulse }
+    }
+
+    pub(super) fn code(self) -> i32 {
+        i32::from(self == Self::Mm)
+    }
+}
+
+/// A point as defined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Point {
+    pub(super) unit: PointUnit,
+    /// 0 none, 1 right, 2 left.
+    pub(super) hand_system: i32,
+    /// Pulses, or steps of 0.001 mm or degrees.
+    pub(super) values: [i32; AXES],
+}
+
+impl Point {
+    /// In pulses, or in mm and degrees.
+    pub(super) fn numbers(&self) -> Four {
+        match self.unit {
+            PointUnit::Pulse => self.values.map(f64::from),
+            PointUnit::Mm => self.values.map(|value| f64::from(value) / STEPS),
+        }
+    }
+}
+
+/// A pallet; its five points are those from `first` on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Pallet {
+    pub(super) counts: [i32; 3],
+    pub(super) first: u16,
+}
+
+/// A hand and the robot that has it, counted from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Hand {
+    pub(super) owner: usize,
+    pub(super) data: [i32; 4],
+}
+
+/// A number of a variable.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Number {
+    Whole(i32),
+    Real(f32),
+}
+
+impl Number {
+    pub(super) fn wide(self) -> f64 {
+        match self {
+            Self::Whole(number) => number.into(),
+            Self::Real(number) => number.into(),
+        }
+    }
+}
+
+/// The four operations, and plain assignment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Operation {
+    Assign,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+}
+
+/// All of it.
+#[derive(Debug, Clone)]
+pub(super) struct Memory {
+    points: BTreeMap<u16, Point>,
+    pub(super) comments: BTreeMap<u16, String>,
+    pub(super) pallets: [Option<Pallet>; SHIFTS],
+    pub(super) shifts: [[i32; AXES]; SHIFTS],
+    pub(super) hands: [Option<Hand>; HANDS],
+    whole: [i32; VARIABLES],
+    real: [f32; VARIABLES],
+    ports: [[u8; PORTS]; PORT_TYPES],
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self {
+            points: BTreeMap::new(),
+            comments: BTreeMap::new(),
+            pallets: [None; SHIFTS],
+            shifts: [[0; AXES]; SHIFTS],
+            hands: [None; HANDS],
+            whole: [0; VARIABLES],
+            real: [0.0; VARIABLES],
+            ports: [[0; PORTS]; PORT_TYPES],
+        }
+    }
+}
+
+impl Memory {
+    /// A point that is defined.
+    pub(super) fn point(&self, number: usize) -> Result<Point, Fault> {
+        let key = u16::try_from(number).ok();
+        key.and_then(|key| self.points.get(&key)).copied().ok_or_else(|| no_point(number))
+    }
+
+    /// Defines a point.
+    pub(super) fn set_point(&mut self, number: usize, point: Point) {
+        if let Ok(number) = u16::try_from(number) {
+            self.points.insert(number, point);
+        }
+    }
+
+    /// Adds a point to another one, or subtracts it (4.4.3).
+    pub(super) fn combine_points(&mut self, number: usize, other: usize, sign: i64) -> Result<(), Fault> {
+        let (mut point, other) = (self.point(number)?, self.point(other)?);
+        if point.unit != other.unit {
+            return Err(unit_differs("the two points"));
+        }
+        for (value, added) in point.values.iter_mut().zip(other.values) {
+            *value = i32::try_from(i64::from(*value) + sign * i64::from(added)).map_err(|_| too_large())?;
+        }
+        self.set_point(number, point);
+        Ok(())
+    }
+
+    /// Sets one element of a point, 0 for the first (4.4.4).
+    pub(super) fn set_element(&mut self, number: usize, unit: PointUnit, at: usize, value: i32) -> Result<(), Fault> {
+        let mut point = self.point(number)?;
+        if point.unit != unit {
+            return Err(unit_differs("the point"));
+        }
+        let no_axis = || Fault::new(NO_AXIS, Place::Controller, format!("a point has no element {}", at + 1));
+        *point.values.get_mut(at).ok_or_else(no_axis)? = value;
+        self.set_point(number, point);
+        Ok(())
+    }
+
+    /// A pallet that is defined.
+    pub(super) fn pallet(&self, number: usize) -> Result<Pallet, Fault> {
+        let pallet = self.pallets.get(number).copied().flatten();
+        pallet.ok_or_else(|| Fault::new(NO_PALLET, Place::Controller, format!("pallet {number} is not defined")))
+    }
+
+    /// A place on a pallet, 1 the first: X counts fastest, then Y, then Z.
+    pub(super) fn pallet_point(&self, number: usize, place: i32) -> Result<Point, Fault> {
+        let pallet = self.pallet(number)?;
+        let [nx, ny, nz] = pallet.counts;
+        if i64::from(place) > i64::from(nx) * i64::from(ny) * i64::from(nz) {
+            let why = format!("pallet {number} has {nx} x {ny} x {nz} places, not {place}");
+            return Err(Fault::new(NO_PALLET, Place::Controller, why));
+        }
+        let corner = |offset: u16| {
+            let point = self.point(usize::from(pallet.first) + usize::from(offset))?;
+            if point.unit == PointUnit::Mm { Ok(point) } else { Err(unit_differs("a corner of the pallet")) }
+        };
+        let (origin, along_x, along_y, opposite) = (corner(0)?, corner(1)?, corner(2)?, corner(3)?);
+        let top = if nz > 1 { corner(4)? } else { origin };
+        let share = |index: i32, count: i32| f64::from(index) / f64::from((count - 1).max(1));
+        let index = place - 1;
+        let (x, y, z) = (share(index % nx, nx), share(index / nx % ny, ny), share(index / nx / ny, nz));
+        let values = std::array::from_fn(|axis| {
+            let [origin, along_x, along_y, opposite, top] =
+                [origin, along_x, along_y, opposite, top].map(|point| f64::from(point.values[axis]));
+            let plane = (1.0 - x) * (1.0 - y) * origin + x * (1.0 - y) * along_x + (1.0 - x) * y * along_y;
+            whole(plane + x * y * opposite + z * (top - origin))
+        });
+        Ok(Point { values, ..origin })
+    }
+
+    /// A variable by its number: SGI0 is 0, SGR0 is 256.
+    pub(super) fn variable(&self, number: usize) -> Number {
+        match number.checked_sub(FIRST_REAL) {
+            Some(real) => Number::Real(self.real.get(real).copied().unwrap_or_default()),
+            None => Number::Whole(self.whole.get(number).copied().unwrap_or_default()),
+        }
+    }
+
+    /// Changes a variable by a number.
+    pub(super) fn compute(&mut self, number: usize, operation: Operation, operand: Number) -> Result<(), Fault> {
+        let result = calculate(operation, self.variable(number), operand)?;
+        self.assign(number, result)
+    }
+
+    /// Puts a number into a variable; whole ones lose what comes after the point.
+    pub(super) fn assign(&mut self, number: usize, value: f64) -> Result<(), Fault> {
+        match number.checked_sub(FIRST_REAL) {
+            Some(real) => {
+                let value = single(value);
+                if !value.is_finite() {
+                    return Err(too_large());
+                }
+                *self.real.get_mut(real).ok_or_else(too_large)? = value;
+            }
+            None => {
+                let value = value.trunc();
+                if value < f64::from(i32::MIN) || value > f64::from(i32::MAX) {
+                    return Err(too_large());
+                }
+                *self.whole.get_mut(number).ok_or_else(too_large)? = whole(value);
+            }
+        }
+        Ok(())
+    }
+
+    /// Eight signals of a port; its number has two octal digits.
+    pub(super) fn port(&self, kind: usize, number: usize) -> u8 {
+        self.ports.get(kind).and_then(|ports| ports.get(index(number))).copied().unwrap_or_default()
+    }
+
+    /// Sets eight signals of a port.
+    pub(super) fn set_port(&mut self, kind: usize, number: usize, value: u8) {
+        if let Some(port) = self.ports.get_mut(kind).and_then(|ports| ports.get_mut(index(number))) {
+            *port = value;
+        }
+    }
+
+    /// Sets one signal of a port.
+    pub(super) fn set_bit(&mut self, kind: usize, number: usize, bit: u8, on: bool) {
+        let mask = 1_u8.checked_shl(bit.into()).unwrap_or_default();
+        let old = self.port(kind, number);
+        self.set_port(kind, number, if on { old | mask } else { old & !mask });
+    }
+}
+
+/// Two numbers and what to do with them.
+pub(super) fn calculate(operation: Operation, first: Number, second: Number) -> Result<f64, Fault> {
+    let (a, b) = (first.wide(), second.wide());
+    match operation {
+        Operation::Assign => Ok(b),
+        Operation::Add => Ok(a + b),
+        Operation::Subtract => Ok(a - b),
+        Operation::Multiply => Ok(a * b),
+        Operation::Divide if b == 0.0 => Err(Fault::new(ARITHMETIC, Place::Controller, "division by zero")),
+        Operation::Divide => Ok(a / b),
+    }
+}
+
+/// Ports 7 and 10 follow each other.
+fn index(number: usize) -> usize {
+    number / 10 * 8 + number % 10
+}
+
+/// The number of a port type by its name.
+pub(super) fn port_kind(name: &str) -> Option<usize> {
+    PORT_NAMES.iter().position(|known| *known == name)
+}
+
+/// Whether there is such a port (4.5.1).
+pub(super) fn is_port(kind: usize, number: usize) -> bool {
+    match kind {
+        3 => number <= 1,
+        4 => number == 0,
+        0..PORT_TYPES => number % 10 <= 7 && number / 10 <= 2,
+        _ => false,
+    }
+}
+
+fn no_point(number: usize) -> Fault {
+    Fault::new(NO_POINT, Place::Controller, format!("point {number} is not defined"))
+}
+
+fn unit_differs(what: &str) -> Fault {
+    Fault::new(POINT_UNIT, Place::Controller, format!("{what} must be in the unit of this command"))
+}
+
+fn too_large() -> Fault {
+    Fault::new(ARITHMETIC, Place::Controller, "the result does not fit")
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "real variables have single precision; what is too large is infinite"
+)]
+fn single(number: f64) -> f32 {
+    number as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mm(values: [i32; 4]) -> Point {
+        Point { unit: PointUnit::Mm, hand_system: 0, values }
+    }
+
+    #[test]
+    fn pallets_count_x_first() {
+        let mut memory = Memory::default();
+        memory.pallets[2] = Some(Pallet { counts: [3, 2, 2], first: 10 });
+        let corners = [[0, 0, 0, 0], [200, 0, 0, 0], [0, 100, 0, 0], [200, 100, 0, 0], [0, 0, 50, 0]];
+        for (number, values) in (10..).zip(corners) {
+            assert!(memory.pallet_point(2, 1).is_err(), "not all of its points are defined");
+            memory.set_point(number, mm(values));
+        }
+        let place = |number| memory.pallet_point(2, number).unwrap().values;
+        assert_eq!((place(1), place(2), place(3)), ([0; 4], [100, 0, 0, 0], [200, 0, 0, 0]));
+        assert_eq!((place(5), place(12)), ([100, 100, 0, 0], [200, 100, 50, 0]));
+        assert_eq!(memory.pallet_point(2, 13).unwrap_err().alarm, NO_PALLET);
+        assert_eq!(memory.pallet_point(1, 1).unwrap_err().alarm, NO_PALLET);
+    }
+
+    #[test]
+    fn variables_keep_their_kind() {
+        let mut memory = Memory::default();
+        memory.compute(5, Operation::Assign, Number::Whole(7)).unwrap();
+        memory.compute(5, Operation::Divide, Number::Whole(-2)).unwrap();
+        assert_eq!(memory.variable(5), Number::Whole(-3));
+        memory.compute(256, Operation::Assign, Number::Real(1.5)).unwrap();
+        memory.compute(256, Operation::Multiply, Number::Whole(2)).unwrap();
+        assert_eq!(memory.variable(256), Number::Real(3.0));
+        memory.compute(5, Operation::Assign, Number::Whole(i32::MAX)).unwrap();
+        for (operation, operand) in [(Operation::Add, Number::Whole(1)), (Operation::Divide, Number::Real(0.0))] {
+            assert_eq!(memory.compute(5, operation, operand).unwrap_err().alarm, ARITHMETIC);
+            assert_eq!(memory.variable(5), Number::Whole(i32::MAX));
+        }
+        assert!(memory.compute(287, Operation::Assign, Number::Real(f32::MAX)).is_ok());
+        assert!(memory.compute(287, Operation::Multiply, Number::Whole(2)).is_err());
+    }
+
+    #[test]
+    fn ports_have_octal_numbers() {
+        let mut memory = Memory::default();
+        memory.set_port(1, 7, 0x55);
+        memory.set_bit(1, 10, 3, true);
+        assert_eq!((memory.port(1, 7), memory.port(1, 10), memory.port(2, 10)), (0x55, 8, 0));
+        assert!(is_port(0, 27) && !is_port(0, 8) && !is_port(0, 30) && is_port(4, 0) && !is_port(3, 2));
+    }
+}

@@ -1,0 +1,301 @@
+//! Motion over time: ramps of speed along paths, one leg after the other.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use super::alarms::Fault;
+use super::geometry::{Arm, Four, Geometry};
+use crate::controller::Now;
+
+/// Seconds in which an axis comes to full speed with a coefficient of 100 %.
+const ACCELERATION_TIME: f64 = 0.2;
+/// Seconds in which it comes to rest from there when it is stopped.
+const STOP_TIME: f64 = 0.1;
+
+/// Speed over time. Ways and speeds are in seconds at full speed and in shares of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Profile {
+    /// Up, along, down.
+    Ramp { way: f64, speed: f64, up: f64, down: f64 },
+    /// From a place and a speed to rest.
+    Brake { from: f64, speed: f64 },
+    /// No way at all.
+    Rest { seconds: f64 },
+}
+
+impl Profile {
+    /// `share` of full speed, accelerations in shares of what is possible.
+    fn ramp(way: f64, share: f64, accel: f64, decel: f64) -> Self {
+        let (up, down) = (accel / ACCELERATION_TIME, decel / ACCELERATION_TIME);
+        // Short ways do not reach the speed.
+        let speed = share.min((2.0 * way * up * down / (up + down)).sqrt());
+        if way > 0.0 && speed > 0.0 { Self::Ramp { way, speed, up, down } } else { Self::Rest { seconds: 0.0 } }
+    }
+
+    fn seconds(&self) -> f64 {
+        match *self {
+            Self::Ramp { way, speed, up, down } => way / speed + speed / (2.0 * up) + speed / (2.0 * down),
+            Self::Brake { speed, .. } => speed * STOP_TIME,
+            Self::Rest { seconds } => seconds,
+        }
+    }
+
+    /// Way and speed after `seconds`.
+    fn at(&self, seconds: f64) -> (f64, f64) {
+        match *self {
+            Self::Ramp { way, speed, up, down } => {
+                let left = self.seconds() - seconds;
+                if seconds < speed / up {
+                    (up * seconds * seconds / 2.0, up * seconds)
+                } else if left < speed / down {
+                    (way - down * left * left / 2.0, down * left)
+                } else {
+                    (speed * (seconds - speed / (2.0 * up)), speed)
+                }
+            }
+            Self::Brake { from, speed } => {
+                (from + speed * seconds - seconds * seconds / (2.0 * STOP_TIME), speed - seconds / STOP_TIME)
+            }
+            Self::Rest { .. } => (0.0, 0.0),
+        }
+    }
+}
+
+/// A way from one place to another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Path {
+    /// All axes at the same time, each by its own way.
+    Joint { from: Four, to: Four },
+    /// A line of the tool.
+    Line { from: Four, to: Four, arm: Arm },
+    /// An arc of the tool about `centre`, from there along `first` towards `second`.
+    Arc { from: Four, to: Four, centre: [f64; 3], first: [f64; 3], second: [f64; 3], angle: f64, arm: Arm },
+}
+
+impl Path {
+    /// Pulses at a share of the way; `None` where the robot cannot be.
+    pub(super) fn at(&self, share: f64, geometry: &Geometry) -> Option<Four> {
+        let between = |from: &Four, to: &Four| std::array::from_fn(|at| from[at] + (to[at] - from[at]) * share);
+        match self {
+            Self::Joint { from, to } => Some(between(from, to)),
+            Self::Line { from, to, arm } => geometry.pulses(&between(from, to), *arm),
+            Self::Arc { from, to, centre, first, second, angle, arm } => {
+                let (sin, cos) = (angle * share).sin_cos();
+                let place: [f64; 3] = std::array::from_fn(|at| centre[at] + cos * first[at] + sin * second[at]);
+                let r = from[3] + (to[3] - from[3]) * share;
+                geometry.pulses(&[place[0], place[1], place[2], r], *arm)
+            }
+        }
+    }
+
+    /// The arc over `via`; `None` if the three places are on a line.
+    pub(super) fn arc(from: &Four, via: &Four, to: &Four, arm: Arm) -> Option<(Self, f64)> {
+        let minus = |a: &[f64; 3], b: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|at| a[at] - b[at]) };
+        let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let cross = |a: &[f64; 3], b: &[f64; 3]| -> [f64; 3] {
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        };
+        let place = |pose: &Four| [pose[0], pose[1], pose[2]];
+        let (a, b) = (minus(&place(via), &place(from)), minus(&place(to), &place(from)));
+        let normal = cross(&a, &b);
+        let square = dot(&normal, &normal);
+        if square < 1e-9 {
+            return None;
+        }
+        let (to_a, to_b) = (dot(&a, &a), dot(&b, &b));
+        let (u, v) = (cross(&b, &normal), cross(&normal, &a));
+        let offset: [f64; 3] = std::array::from_fn(|at| (u[at] * to_a + v[at] * to_b) / (2.0 * square));
+        let centre = std::array::from_fn(|at| from[at] + offset[at]);
+        let first: [f64; 3] = offset.map(|part| -part);
+        let along = cross(&normal, &first);
+        let second: [f64; 3] = along.map(|part| part / square.sqrt());
+        let end = minus(&place(to), &centre);
+        let turn = dot(&end, &second).atan2(dot(&end, &first));
+        let angle = if turn <= 0.0 { turn + std::f64::consts::TAU } else { turn };
+        let radius = dot(&first, &first).sqrt();
+        Some((Self::Arc { from: *from, to: *to, centre, first, second, angle, arm }, angle * radius))
+    }
+}
+
+/// Who moves a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Owner {
+    /// The remote command.
+    Remote,
+    /// A dedicated input.
+    Input,
+    /// A task, 1 to 16.
+    Task(u8),
+}
+
+/// How a motion ended.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum End {
+    /// At its target.
+    Arrived,
+    /// Pushing for as long as asked.
+    Pushed,
+    /// Before its end, or at a limit.
+    Stopped(Fault),
+}
+
+/// One way with its speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Leg {
+    path: Path,
+    profile: Profile,
+}
+
+impl Leg {
+    /// A way of `way` seconds at full speed, at a share of it.
+    pub(super) fn new(path: Path, way: f64, share: f64, accel: f64, decel: f64) -> Self {
+        Self { path, profile: Profile::ramp(way, share, accel, decel) }
+    }
+
+    /// Staying at a place.
+    pub(super) fn rest(at: Four, time: Duration) -> Self {
+        Self { path: Path::Joint { from: at, to: at }, profile: Profile::Rest { seconds: time.as_secs_f64() } }
+    }
+
+    fn time(&self) -> Duration {
+        Duration::try_from_secs_f64(self.profile.seconds()).unwrap_or(Duration::MAX)
+    }
+
+    /// The share of the way after a time.
+    fn share(&self, way: f64) -> f64 {
+        match self.profile {
+            Profile::Ramp { way: all, .. } => (way / all).clamp(0.0, 1.0),
+            _ => 1.0,
+        }
+    }
+}
+
+/// A motion under way.
+#[derive(Debug, Clone)]
+pub(super) struct Motion {
+    pub(super) owner: Owner,
+    geometry: Geometry,
+    legs: VecDeque<Leg>,
+    began: Now,
+    /// Why it is being stopped, and the way to where it began to brake.
+    stop: Option<(Fault, Profile)>,
+    end: End,
+}
+
+impl Motion {
+    /// Begins now and ends as `end` says.
+    pub(super) fn new(owner: Owner, geometry: Geometry, legs: Vec<Leg>, end: End, now: Now) -> Self {
+        Self { owner, geometry, legs: legs.into(), began: now, stop: None, end }
+    }
+
+    /// When a leg ends.
+    pub(super) fn due(&self) -> Now {
+        let time = match (&self.stop, self.legs.front()) {
+            (Some((_, brake)), _) => Duration::from_secs_f64(brake.seconds()),
+            (None, Some(leg)) => leg.time(),
+            (None, None) => Duration::ZERO,
+        };
+        self.began.saturating_add(time)
+    }
+
+    /// Begins to brake. The first reason counts.
+    pub(super) fn stop(&mut self, now: Now, fault: Fault) {
+        let Some(leg) = self.legs.front() else { return };
+        if self.stop.is_none() {
+            let (from, speed) = leg.profile.at(now.saturating_sub(self.began).as_secs_f64());
+            self.stop = Some((fault, Profile::Brake { from, speed }));
+            self.began = now;
+        }
+    }
+
+    /// Where it is now; and how it ended, if it did.
+    pub(super) fn advance(&mut self, now: Now) -> (Option<Four>, Option<End>) {
+        let mut place = None;
+        loop {
+            let due = self.due();
+            let over = now >= due;
+            let Some(leg) = self.legs.front() else { return (place, Some(self.end.clone())) };
+            let seconds = now.min(due).saturating_sub(self.began).as_secs_f64();
+            let way = match &self.stop {
+                Some((_, brake)) => brake.at(seconds).0,
+                None => leg.profile.at(seconds).0,
+            };
+            let share = if over && self.stop.is_none() { 1.0 } else { leg.share(way) };
+            place = leg.path.at(share, &self.geometry).or(place);
+            match &self.stop {
+                _ if !over => return (place, None),
+                Some((fault, _)) => return (place, Some(End::Stopped(fault.clone()))),
+                None => {
+                    self.legs.pop_front();
+                    self.began = due;
+                }
+            }
+        }
+    }
+
+    /// By how much each axis moves in this leg; for the sign of its torque.
+    pub(super) fn direction(&self) -> Four {
+        let ends = self
+            .legs
+            .front()
+            .and_then(|leg| Some((leg.path.at(0.0, &self.geometry)?, leg.path.at(1.0, &self.geometry)?)));
+        ends.map_or([0.0; 4], |(from, to)| std::array::from_fn(|axis| to[axis] - from[axis]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::yrcx::simulator::geometry::Kind;
+
+    const GEOMETRY: Geometry = Geometry { kind: Kind::Cartesian, per_unit: [1.0; 4], hand: None };
+
+    fn to(target: f64, way: f64, share: f64) -> Motion {
+        let path = Path::Joint { from: [0.0; 4], to: [target, 0.0, 0.0, 0.0] };
+        Motion::new(Owner::Remote, GEOMETRY, vec![Leg::new(path, way, share, 1.0, 1.0)], End::Arrived, Now::ZERO)
+    }
+
+    #[test]
+    fn ramps_take_their_time() {
+        // One second at full speed, and half of each of two ramps of 0.2 s.
+        let mut motion = to(1000.0, 1.0, 1.0);
+        assert_eq!(motion.due(), Duration::from_millis(1200));
+        let mut last = -1.0;
+        for ms in (0..1200).step_by(5) {
+            let (place, end) = motion.advance(Duration::from_millis(ms));
+            let x = place.unwrap()[0];
+            assert!(x > last && x < 1000.0 && end.is_none(), "{ms} {x}");
+            last = x;
+        }
+        assert_eq!(motion.advance(Duration::from_millis(1200)), (Some([1000.0, 0.0, 0.0, 0.0]), Some(End::Arrived)));
+        // A tenth of the speed, ten times the way.
+        assert_eq!(to(1.0, 1.0, 0.1).due(), Duration::from_millis(10_020));
+        // Too short for the speed: up and down.
+        assert!(to(1.0, 0.05, 1.0).due() < Duration::from_millis(250));
+        assert_eq!(to(0.0, 0.0, 1.0).due(), Now::ZERO);
+    }
+
+    #[test]
+    fn a_stop_brakes_on_the_way() {
+        let mut motion = to(1000.0, 1.0, 1.0);
+        let before = motion.advance(Duration::from_millis(600)).0.unwrap()[0];
+        motion.stop(Duration::from_millis(600), Fault::stopped());
+        motion.stop(Duration::from_millis(650), Fault::emergency());
+        assert_eq!(motion.due(), Duration::from_millis(700));
+        let (place, end) = motion.advance(Duration::from_millis(700));
+        assert!((place.unwrap()[0] - before - 50.0).abs() < 1e-6);
+        assert_eq!(end, Some(End::Stopped(Fault::stopped())));
+    }
+
+    #[test]
+    fn arcs_go_over_their_middle() {
+        let (from, via, to) = ([10.0, 0.0, 0.0, 0.0], [0.0, 10.0, 0.0, 0.0], [0.0, -10.0, 0.0, 90.0]);
+        let (arc, length) = Path::arc(&from, &via, &to, Arm::Right).unwrap();
+        assert!((length - 15.0 * std::f64::consts::PI).abs() < 1e-9);
+        let near = |share: f64, wanted: [f64; 4]| {
+            arc.at(share, &GEOMETRY).unwrap().iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-9)
+        };
+        assert!(near(0.0, from) && near(1.0 / 3.0, [0.0, 10.0, 0.0, 30.0]) && near(1.0, to));
+        assert_eq!(Path::arc(&from, &from, &to, Arm::Right), None);
+    }
+}

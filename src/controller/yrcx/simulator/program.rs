@@ -1,0 +1,211 @@
+//! Programs in a small part of the robot language: moves, waits, outputs, variables, jumps.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use super::memory::{Number, Operation, POINTS, is_port, port_kind};
+use super::request::ROBOTS;
+
+/// Lines of a program at most; the line of COMMON is told from 10000 on (4.6.4).
+const MAX_LINES: usize = 9999;
+
+/// A port, or a signal of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct PortRef {
+    pub(super) kind: usize,
+    pub(super) port: usize,
+    pub(super) bit: Option<u8>,
+}
+
+/// A number in a program.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Operand {
+    Number(Number),
+    /// A variable: SGI0 is 0, SGR0 is 256.
+    Variable(usize),
+}
+
+/// One line.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Line {
+    /// Empty, a comment, a label.
+    Nothing,
+    Move {
+        /// Counted from 0.
+        robot: usize,
+        linear: bool,
+        relative: bool,
+        point: usize,
+    },
+    Delay(Duration),
+    Output(PortRef, u8),
+    Wait(PortRef, u8),
+    Assign {
+        variable: usize,
+        first: Operand,
+        then: Option<(Operation, Operand)>,
+    },
+    Goto(String),
+    Gosub(String),
+    Return,
+    Halt,
+}
+
+/// A program.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Program {
+    pub(super) name: String,
+    pub(super) lines: Vec<Line>,
+    pub(super) labels: BTreeMap<String, usize>,
+}
+
+impl Program {
+    /// Reads a program. The error says what is wrong and in which of its lines.
+    pub(super) fn parse(name: &str, text: &str) -> Result<Self, String> {
+        let named = |byte: u8| byte.is_ascii_uppercase() || byte.is_ascii_digit() || byte == b'_';
+        if name.is_empty() || name.len() > 32 || !name.bytes().all(named) {
+            return Err(format!("'{name}' is no program name (A-Z, 0-9 and _)"));
+        }
+        let mut program = Self { name: name.to_owned(), lines: Vec::new(), labels: BTreeMap::new() };
+        for (number, line) in text.lines().enumerate() {
+            let line = line.split('\'').next().unwrap_or_default().trim();
+            if let Some(label) = line.strip_prefix('*').and_then(|label| label.strip_suffix(':')) {
+                program.labels.insert(label.to_owned(), number);
+                program.lines.push(Line::Nothing);
+                continue;
+            }
+            let parsed = statement(line).ok_or_else(|| format!("line {} of {name}: '{line}'", number + 1))?;
+            program.lines.push(parsed);
+        }
+        if program.lines.is_empty() || program.lines.len() > MAX_LINES {
+            return Err(format!("{name} has {} lines; 1 to {MAX_LINES} are possible", program.lines.len()));
+        }
+        Ok(program)
+    }
+
+    /// Its name in 16 characters, as commands carry it.
+    pub(super) fn short_name(&self) -> &str {
+        self.name.get(..16).unwrap_or(&self.name)
+    }
+}
+
+fn statement(line: &str) -> Option<Line> {
+    let (word, rest) = line.split_once(' ').map_or((line, ""), |(word, rest)| (word, rest.trim()));
+    let label = || rest.strip_prefix('*').map(str::to_owned);
+    match word {
+        "" | "REM" => Some(Line::Nothing),
+        "DELAY" => Some(Line::Delay(Duration::from_millis(rest.parse().ok()?))),
+        "WAIT" => assigned(rest).map(|(port, value)| Line::Wait(port, value)),
+        "GOTO" => label().map(Line::Goto),
+        "GOSUB" => label().map(Line::Gosub),
+        "RETURN" => Some(Line::Return),
+        "HALT" => Some(Line::Halt),
+        _ if word.starts_with("MOVE") => motion(word, rest),
+        _ if word.starts_with("SG") => assignment(line),
+        _ => assigned(line)
+            .filter(|(port, _)| !matches!(port.kind, 0 | super::memory::SI))
+            .map(|(port, value)| Line::Output(port, value)),
+    }
+}
+
+/// `MOVE P,P19`, `MOVE[2] L,P20`, `MOVEI P,P3`.
+fn motion(word: &str, rest: &str) -> Option<Line> {
+    let (word, robot) = match word.split_once('[') {
+        Some((word, robot)) => (word, robot.strip_suffix(']')?.parse::<usize>().ok()?),
+        None => (word, 1),
+    };
+    let (kind, point) = rest.split_once(',')?;
+    let point = point.trim().strip_prefix('P')?.parse::<u16>().ok().filter(|point| *point < POINTS)?;
+    let linear = match kind.trim() {
+        "P" => false,
+        "L" => true,
+        _ => return None,
+    };
+    let relative = match word {
+        "MOVE" => false,
+        "MOVEI" => true,
+        _ => return None,
+    };
+    let robot = robot.checked_sub(1).filter(|robot| *robot < ROBOTS)?;
+    Some(Line::Move { robot, linear, relative, point: point.into() })
+}
+
+/// `DO(20)=1` for a signal, `DO2()=255` for a port.
+pub(super) fn assigned(text: &str) -> Option<(PortRef, u8)> {
+    let (port, value) = text.split_once('=')?;
+    let value = value.trim().parse::<u8>().ok()?;
+    let (name, bit) = port.trim().split_once('(')?;
+    let bit = bit.strip_suffix(')')?;
+    let letters = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let (port, bit) = if bit.is_empty() {
+        (name[letters.len()..].parse().ok()?, None)
+    } else {
+        let number = bit.parse::<usize>().ok().filter(|_| letters == name)?;
+        (number / 10, u8::try_from(number % 10).ok())
+    };
+    let found = PortRef { kind: port_kind(letters)?, port, bit };
+    let fits = is_port(found.kind, port) && bit.is_none_or(|bit| bit <= 7 && value <= 1);
+    fits.then_some((found, value))
+}
+
+/// `SGI1=5`, `SGI1=SGI1+1`, `SGR0=SGI2/2.5`.
+fn assignment(line: &str) -> Option<Line> {
+    let (variable, value) = line.split_once('=')?;
+    let Operand::Variable(variable) = operand(variable.trim())? else { return None };
+    let value = value.trim();
+    let operations =
+        [('+', Operation::Add), ('*', Operation::Multiply), ('/', Operation::Divide), ('-', Operation::Subtract)];
+    let split = operations.iter().find_map(|&(sign, operation)| {
+        let at = value.get(1..)?.find(sign)? + 1;
+        Some((operation, operand(value[..at].trim())?, operand(value[at + 1..].trim())?))
+    });
+    Some(match split {
+        Some((operation, first, second)) => Line::Assign { variable, first, then: Some((operation, second)) },
+        None => Line::Assign { variable, first: operand(value)?, then: None },
+    })
+}
+
+fn operand(text: &str) -> Option<Operand> {
+    let variable = |prefix: &str, first: usize| {
+        let index = text.strip_prefix(prefix)?.parse::<usize>().ok().filter(|index| *index < 32)?;
+        Some(Operand::Variable(first + index))
+    };
+    let whole = || text.parse().ok().map(|number| Operand::Number(Number::Whole(number)));
+    let real = || text.parse::<f32>().ok().filter(|number| number.is_finite());
+    variable("SGI", 0)
+        .or_else(|| variable("SGR", 256))
+        .or_else(whole)
+        .or_else(|| real().map(|number| Operand::Number(Number::Real(number))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_understood() {
+        let text = "*START:\nMOVE P,P19 'there\nMOVEI[2] L,P3\nDELAY 500\nDO(127)=1\nMO3()=255\nWAIT SI(20)=0\n\
+                    SGI1=SGI1+1\nSGR0=SGI2/2.5\nSGI3=-5\nGOSUB *SUB\nGOTO *START\nRETURN\nHALT\n";
+        let program = Program::parse("PG1", text).unwrap();
+        assert_eq!(program.labels.get("START"), Some(&0));
+        assert_eq!(program.lines[1], Line::Move { robot: 0, linear: false, relative: false, point: 19 });
+        assert_eq!(program.lines[2], Line::Move { robot: 1, linear: true, relative: true, point: 3 });
+        assert_eq!(program.lines[4], Line::Output(PortRef { kind: 1, port: 12, bit: Some(7) }, 1));
+        assert_eq!(program.lines[5], Line::Output(PortRef { kind: 2, port: 3, bit: None }, 255));
+        assert_eq!(program.lines[6], Line::Wait(PortRef { kind: 5, port: 2, bit: Some(0) }, 0));
+        let half = (Operation::Divide, Operand::Number(Number::Real(2.5)));
+        let first = Operand::Variable(2);
+        assert_eq!(program.lines[8], Line::Assign { variable: 256, first, then: Some(half) });
+        let first = Operand::Number(Number::Whole(-5));
+        assert_eq!(program.lines[9], Line::Assign { variable: 3, first, then: None });
+    }
+
+    #[test]
+    fn what_is_not_understood_is_named() {
+        for line in ["MOVE X,P1", "MOVE P,P30000", "MOVE[5] P,P1", "SI(20)=1", "DO(28)=1", "DO(20)=2", "SGI32=1", "X"] {
+            let error = Program::parse("A", &format!("HALT\n{line}")).unwrap_err();
+            assert!(error.starts_with("line 2 of A"), "{error}");
+        }
+        assert!(Program::parse("a", "HALT").is_err());
+    }
+}

@@ -1,0 +1,206 @@
+//! The handshake of remote commands (chapter 2, sections 1 and 2), one scan after the other.
+
+use super::alarms::{Fault, LINK, Place, STOP_INPUT};
+use super::commands::{self, Work};
+use super::motion::{End, Owner};
+use super::motions;
+use super::reads;
+use super::request::Request;
+use super::world::{Link, SCAN, World};
+use crate::controller::Now;
+use crate::controller::yrcx::answer::Status;
+use crate::controller::yrcx::image::{COMMAND_WORDS, Words};
+use crate::controller::yrcx::table::Pace;
+use crate::controller::yrcx::value::{Key, Values};
+
+const NO_WORDS: Words = [0; COMMAND_WORDS];
+const RUN_STATUS: Words = {
+    let mut words = NO_WORDS;
+    words[0] = Status::Running.word();
+    words
+};
+
+/// A command under way.
+#[derive(Debug, Clone)]
+struct Running {
+    request: Request,
+    work: Work,
+    /// The run status is shown at least until then.
+    not_before: Now,
+    /// Whether the master still shows it; what it does not is carried out and not told.
+    held: bool,
+    /// How its motions ended, as far as they did.
+    ends: Vec<End>,
+}
+
+#[derive(Debug, Clone)]
+enum State {
+    /// A command may come.
+    Ready,
+    Running(Box<Running>),
+    /// Over; waits for the status reset.
+    Ended,
+}
+
+/// What is shown in WO0 to WO15, and why.
+#[derive(Debug, Clone)]
+pub(super) struct Remote {
+    state: State,
+    shown: Words,
+    /// Scans that a quick command shows the run status at most.
+    run_scans: u32,
+    random: fastrand::Rng,
+}
+
+impl Remote {
+    pub(super) fn new(run_scans: u32, seed: u64) -> Self {
+        Self { state: State::Ready, shown: NO_WORDS, run_scans, random: fastrand::Rng::with_seed(seed) }
+    }
+
+    /// WO0 to WO15.
+    pub(super) fn words(&self) -> Words {
+        self.shown
+    }
+
+    /// When it has something to do without the master.
+    pub(super) fn due(&self, world: &World) -> Option<Now> {
+        let State::Running(running) = &self.state else { return None };
+        match &running.work {
+            Work::Power(at, _) => Some(*at),
+            Work::Done(_) => Some(running.not_before),
+            // While nothing moves, nothing changes.
+            Work::Continuous => {
+                let robot = world.robots.get(running.request.robot())?;
+                robot.motion.is_some().then(|| world.now.saturating_add(SCAN))
+            }
+            // Their own ends wake them.
+            Work::Motion(_) => None,
+        }
+    }
+
+    /// One scan, after everything else has had its own.
+    pub(super) fn scan(&mut self, world: &mut World) {
+        let words = (world.link != Link::Down).then(|| world.inputs.command());
+        match (&mut self.state, words) {
+            (State::Ready, Some(words)) if words[0] != Status::Ready.word() => self.take(world, &words),
+            (State::Running(running), Some(words)) if words != running.request.words => running.held = false,
+            (State::Ended, Some(words)) if words[0] == Status::Ready.word() => {
+                self.state = State::Ready;
+                self.shown = NO_WORDS;
+            }
+            _ => {}
+        }
+        self.carry_on(world);
+    }
+
+    fn take(&mut self, world: &mut World, words: &Words) {
+        match Request::read(words).and_then(|request| Ok((commands::begin(world, &request)?, request))) {
+            Ok((work, request)) => {
+                let scans = if matches!(work, Work::Done(_)) { self.random.u32(0..=self.run_scans) } else { 0 };
+                let not_before = world.now.saturating_add(SCAN.saturating_mul(scans));
+                self.shown = RUN_STATUS;
+                self.state =
+                    State::Running(Box::new(Running { request, work, not_before, held: true, ends: Vec::new() }));
+            }
+            Err(fault) => self.end(refusal(world, fault)),
+        }
+    }
+
+    fn carry_on(&mut self, world: &mut World) {
+        let State::Running(running) = &mut self.state else { return };
+        let Some(result) = progress(world, running) else {
+            if running.work == Work::Continuous {
+                self.shown = output(world, &running.request);
+            }
+            return;
+        };
+        let (held, request) = (running.held, running.request.clone());
+        let words = match result {
+            Ok(values) => request.reply(Status::NormalEnd, &values),
+            Err(fault) => {
+                let positions = if request.row.pace == Pace::Jog && fault.alarm == STOP_INPUT {
+                    motions::positions(world, &request).unwrap_or_default()
+                } else {
+                    Values::default()
+                };
+                let words = refusal(world, fault);
+                if positions == Values::default() { words } else { with_positions(&request, &positions, &words) }
+            }
+        };
+        let taken_back = world.inputs.command()[0] == Status::Ready.word() && world.link != Link::Down;
+        match (held, taken_back) {
+            (true, _) => self.end(words),
+            (false, true) => {
+                self.state = State::Ready;
+                self.shown = NO_WORDS;
+            }
+            // Another command came before this one was over: its end is not told, and the other not taken.
+            (false, false) => self.end(RUN_STATUS),
+        }
+    }
+
+    fn end(&mut self, words: Words) {
+        self.state = State::Ended;
+        self.shown = words;
+    }
+}
+
+/// How a command ended, if it did.
+fn progress(world: &mut World, running: &mut Running) -> Option<Result<Values, Fault>> {
+    match &running.work {
+        Work::Done(values) => (world.now >= running.not_before).then(|| Ok(values.clone())),
+        Work::Power(at, action) => {
+            let action = *action;
+            (world.now >= *at).then(|| world.act(action).map(|()| Values::default()))
+        }
+        Work::Continuous if world.link == Link::Down => Some(Err(Fault::new(LINK, Place::Slot, "the master is gone"))),
+        Work::Continuous => (!running.held).then(|| Ok(Values::default())),
+        Work::Motion(robots) => {
+            for robot in robots {
+                let end = world.robots.get_mut(*robot).and_then(|robot| robot.take_end(Owner::Remote));
+                running.ends.extend(end);
+            }
+            if running.ends.len() < robots.len() {
+                return None;
+            }
+            let stopped = running.ends.iter().find_map(|end| match end {
+                End::Stopped(fault) => Some(fault.clone()),
+                End::Arrived | End::Pushed => None,
+            });
+            Some(match stopped {
+                Some(fault) => Err(fault),
+                None => motions::positions(world, &running.request).map(|mut values| {
+                    values.set(Key::PushResult, i32::from(running.ends.contains(&End::Pushed)));
+                    values
+                }),
+            })
+        }
+    }
+}
+
+/// The run status with what continuous output shows.
+fn output(world: &World, request: &Request) -> Words {
+    match reads::answer(world, request) {
+        Ok(values) => request.reply(Status::Running, &values),
+        Err(_) => RUN_STATUS,
+    }
+}
+
+/// The words of an abnormal end.
+fn refusal(world: &mut World, fault: Fault) -> Words {
+    let mut words = NO_WORDS;
+    words[0] = Status::AbnormalEnd.word();
+    words[1] = fault.alarm.group;
+    words[2] = fault.alarm.category;
+    world.alarms.refuse(&fault);
+    world.why = Some(fault);
+    words
+}
+
+/// A jog that was stopped tells where it is (4.2.6).
+fn with_positions(request: &Request, positions: &Values, refusal: &Words) -> Words {
+    let mut words = request.reply(Status::AbnormalEnd, positions);
+    words[1] = refusal[1];
+    words[2] = refusal[2];
+    words
+}

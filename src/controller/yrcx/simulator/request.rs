@@ -1,0 +1,191 @@
+//! The words of a command, read by the table but checked here: more strictly than a real controller is known to, and not
+//! by the checks of the client.
+
+use super::alarms::{Fault, Place, UNKNOWN_COMMAND};
+use crate::controller::yrcx::answer::Status;
+use crate::controller::yrcx::image::{COMMAND_WORDS, Words};
+use crate::controller::yrcx::table::parameter::Parameter;
+use crate::controller::yrcx::table::{Charset, Command, Field, Form, Row, Show};
+use crate::controller::yrcx::value::{Key, Value, Values};
+
+/// Robots there can be.
+pub(super) const ROBOTS: usize = 4;
+
+/// A command whose words are right.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Request {
+    pub(super) row: &'static Row,
+    pub(super) words: Words,
+    values: Values,
+}
+
+impl Request {
+    /// Reads WI0 to WI15.
+    pub(super) fn read(words: &Words) -> Result<Self, Fault> {
+        let row = Row::of(words[0])
+            .ok_or_else(|| Fault::new(UNKNOWN_COMMAND, Place::Slot, format!("WI0: {:#06X} is no command", words[0])))?;
+        let mut values = Values::default();
+        let mut used: Words = [0; COMMAND_WORDS];
+        for field in row.request().filter(|field| counts(field, |key| raw(row, key, words))) {
+            let value = read(field, words).map_err(|why| wrong(field, &why))?;
+            for word in used.iter_mut().skip(field.word).take(field.size()) {
+                *word |= field.mask();
+            }
+            values.set(field.key, value);
+        }
+        let stray = words.iter().zip(&used).enumerate().skip(1).find(|(_, (word, used))| **word & !**used != 0);
+        if let Some((at, (word, used))) = stray {
+            return Err(Fault::of_words(format!("WI{at}: bits {:#06X} must be 0", word & !used)));
+        }
+        let request = Self { row, words: *words, values };
+        request.check()?;
+        Ok(request)
+    }
+
+    /// A number; 0 where the field does not count.
+    pub(super) fn int(&self, key: Key) -> i32 {
+        self.values.int(key).unwrap_or_default()
+    }
+
+    /// A number that the layout keeps to what an index can be.
+    pub(super) fn index(&self, key: Key) -> usize {
+        usize::try_from(self.int(key)).unwrap_or_default()
+    }
+
+    /// A number if its field counts.
+    pub(super) fn maybe(&self, key: Key) -> Option<i32> {
+        self.values.int(key)
+    }
+
+    /// A text.
+    pub(super) fn text(&self, key: Key) -> &str {
+        self.values.text(key).unwrap_or_default()
+    }
+
+    /// The number for a variable: whole or real.
+    pub(super) fn value(&self) -> Option<&Value> {
+        self.values.value(Key::Value)
+    }
+
+    /// Four axes.
+    pub(super) fn axes(&self) -> [i32; 4] {
+        Key::AXES.map(|key| self.int(key))
+    }
+
+    /// Which robot, counted from 0; none named is the first.
+    pub(super) fn robot(&self) -> usize {
+        self.index(Key::Robot).saturating_sub(1)
+    }
+
+    /// The words of an end or of continuous output, with `values` in the places that the table gives them.
+    pub(super) fn reply(&self, status: Status, values: &Values) -> Words {
+        let mut words = [0; COMMAND_WORDS];
+        let look = |key| values.int(key).or_else(|| self.values.int(key)).unwrap_or_default();
+        for field in self.row.answer().filter(|field| counts(field, look)) {
+            // What the command named is in the answer again.
+            if let Some(value) = values.value(field.key).or_else(|| self.values.value(field.key)) {
+                field.write(&mut words, value).expect("what the simulator answers fits its field");
+            }
+        }
+        words[0] = status.word();
+        words
+    }
+
+    /// What no single field tells.
+    fn check(&self) -> Result<(), Fault> {
+        match self.row.command {
+            Command::PalletSet => {
+                let places: i64 =
+                    [Key::CountX, Key::CountY, Key::CountZ].map(|key| i64::from(self.int(key))).iter().product();
+                if (1..=32_767).contains(&places) {
+                    return Ok(());
+                }
+                Err(Fault::of_words(format!("a pallet of {places} places")))
+            }
+            Command::ParamSet | Command::ParamGet => {
+                let parameter = Parameter::of(self.int(Key::Parameter));
+                let parameter = parameter.ok_or_else(|| Fault::of_words("WI2: no such parameter"))?;
+                if parameter.per_axis != (self.int(Key::Axes) != 0) {
+                    return Err(Fault::of_words(format!("WI3: {} and this axis", parameter.name)));
+                }
+                let (least, most) = parameter.span;
+                if self.row.command == Command::ParamSet && !(least..=most).contains(&self.int(Key::Value)) {
+                    return Err(Fault::of_words(format!("WI4: {} is out of range", parameter.name)));
+                }
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What another field of the same command holds, for conditions.
+fn raw(row: &Row, key: Key, words: &Words) -> i32 {
+    let field = row.request().find(|field| field.key == key);
+    match field.map(|field| field.read(words)) {
+        Some(Value::Int(number)) => number,
+        _ => 0,
+    }
+}
+
+/// Whether a field counts, by another one.
+fn counts(field: &Field, look: impl Fn(Key) -> i32) -> bool {
+    field.when.is_none_or(|when| (when.least..=when.most).contains(&look(when.key)))
+}
+
+fn wrong(field: &Field, why: &str) -> Fault {
+    Fault::of_words(format!("WI{} {}: {why}", field.word, field.key))
+}
+
+/// Reads a field, and takes nothing that the manual does not allow.
+fn read(field: &Field, words: &Words) -> Result<Value, String> {
+    if let Form::Text(charset) = field.form {
+        return text(charset, &words[field.word..field.word + field.size()]).map(Value::Text);
+    }
+    let value = field.read(words);
+    match value {
+        Value::Int(number) => number_is_allowed(field, number)?,
+        Value::Real(number) if !number.is_finite() => return Err(format!("{number} is no number")),
+        Value::Real(_) | Value::Text(_) => {}
+    }
+    Ok(value)
+}
+
+fn number_is_allowed(field: &Field, number: i32) -> Result<(), String> {
+    if !field.spans.is_empty() && field.spans.iter().all(|&(least, most)| number < least || number > most) {
+        return Err(format!("{number} is out of range"));
+    }
+    let Form::Bits { show, .. } = field.form else { return Ok(()) };
+    let fine = match show {
+        Show::Choice(choices) => choices.iter().any(|&(code, _)| i32::from(code) == number),
+        Show::Set { least, most } => (least..=most).contains(&number.count_ones()),
+        Show::Fixed(fixed) => i32::from(fixed) == number,
+        // What is no decimal digit is read as a number of more than two.
+        Show::Digits => number < 100,
+        Show::Number(_) | Show::Version | Show::Revision | Show::FpgaVersion | Show::Variable | Show::Line => true,
+    };
+    if fine { Ok(()) } else { Err(format!("{number} is not defined here")) }
+}
+
+/// Characters, then only what fills the place.
+fn text(charset: Charset, words: &[u16]) -> Result<String, String> {
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
+    let (used, rest) = bytes.split_at(end);
+    if rest.iter().any(|byte| *byte != 0) {
+        return Err("characters after the end".to_owned());
+    }
+    let allowed = |byte: &u8| match charset {
+        Charset::Comment => (0x20..=0x7E).contains(byte),
+        Charset::Program => byte.is_ascii_uppercase() || byte.is_ascii_digit() || *byte == b'_',
+    };
+    let length = used.iter().rposition(|byte| *byte != b' ').map_or(0, |last| last + 1);
+    let used = &used[..length];
+    if !used.iter().all(allowed) {
+        return Err("a character that is not allowed".to_owned());
+    }
+    if used.is_empty() && charset == Charset::Program {
+        return Err("no name".to_owned());
+    }
+    Ok(used.iter().copied().map(char::from).collect())
+}

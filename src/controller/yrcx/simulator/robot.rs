@@ -1,0 +1,227 @@
+//! One robot: its axes, what is selected for it, where it is.
+
+use std::collections::BTreeMap;
+
+use super::alarms::{Fault, Place, SOFT_LIMIT};
+use super::geometry::{Arm, Four, Geometry, Kind};
+use super::motion::{End, Motion, Owner};
+use crate::controller::Now;
+use crate::controller::yrcx::image::Words;
+
+/// Axes a robot can have.
+pub(super) const AXES: usize = 4;
+/// Every axis as bits.
+pub(super) const ALL: u8 = 0b1111;
+/// Pulses between places where absolute reset is possible: a quarter of a turn of a motor with 16384 (4.2.10).
+pub(super) const RESET_PITCH: f64 = 4096.0;
+/// Rated torque in shares of the greatest.
+pub(super) const MAX_OF_RATED: i32 = 5;
+/// % of the greatest torque, without a limit.
+pub(super) const FULL_TORQUE: i32 = 100;
+/// Torque in % of the greatest that a moving axis adds to what it holds.
+const MOVING_TORQUE: i32 = 10;
+
+/// How an axis knows where it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Motor {
+    Incremental,
+    Absolute,
+    SemiAbsolute,
+}
+
+/// How an axis finds its origin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Method {
+    Mark,
+    Sensor,
+    Stroke,
+}
+
+/// What holds an axis (4.7.3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Servo {
+    Brake,
+    On,
+    Free,
+}
+
+impl Servo {
+    pub(super) fn code(self) -> i32 {
+        match self {
+            Self::Brake => 0,
+            Self::On => 1,
+            Self::Free => 2,
+        }
+    }
+}
+
+/// One axis.
+#[derive(Debug, Clone)]
+pub(super) struct Axis {
+    /// Its number in 4.7.2.
+    pub(super) model: u16,
+    pub(super) motor: Motor,
+    pub(super) method: Method,
+    /// Pulses in a mm or a degree.
+    pub(super) per_unit: f64,
+    /// Soft limits in pulses.
+    pub(super) limits: (f64, f64),
+    /// mm or degrees a second at full speed.
+    pub(super) speed: f64,
+    pub(super) pulses: f64,
+    pub(super) servo: Servo,
+    pub(super) origin: bool,
+    /// % of the greatest torque, until the power goes off.
+    pub(super) torque_limit: i32,
+    /// % of the greatest torque that it takes to hold it.
+    pub(super) load: i32,
+    /// Where something stands in its way, in pulses.
+    pub(super) obstacle: Option<f64>,
+    pub(super) parameters: BTreeMap<u16, i32>,
+}
+
+impl Axis {
+    pub(super) fn is_within(&self, pulses: f64) -> bool {
+        // A micro-pulse of rounding is no violation.
+        (self.limits.0 - 1e-6..=self.limits.1 + 1e-6).contains(&pulses)
+    }
+
+    pub(super) fn parameter(&self, number: u16) -> i32 {
+        self.parameters.get(&number).copied().unwrap_or_default()
+    }
+}
+
+/// A motion that was broken off, to be carried on by the same command (4.2.2, 4.2.4).
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Kept {
+    pub(super) words: Words,
+    pub(super) target: Four,
+}
+
+/// One robot.
+#[derive(Debug, Clone)]
+pub(super) struct Robot {
+    pub(super) kind: Kind,
+    /// Its number in 4.7.2.
+    pub(super) model: u16,
+    pub(super) axes: Vec<Axis>,
+    pub(super) max_payload_g: i32,
+    pub(super) payload_g: i32,
+    pub(super) auto_speed: i32,
+    pub(super) manual_speed: i32,
+    pub(super) program_speed: i32,
+    pub(super) inching: i32,
+    pub(super) shift: usize,
+    pub(super) hand: Option<usize>,
+    pub(super) arm: Arm,
+    pub(super) motion: Option<Motion>,
+    /// Motions that ended, for whoever began them.
+    pub(super) ended: Vec<(Owner, End)>,
+    /// Axis and torque, in % of the rated one, of the push that was the last motion.
+    pub(super) pushing: Option<(usize, i32)>,
+    /// Axes that know their origin when the motion arrives, as bits.
+    pub(super) homing: u8,
+    pub(super) kept: Option<Kept>,
+}
+
+impl Robot {
+    /// Where the axes are; 0 for those that are not there.
+    pub(super) fn pulses(&self) -> Four {
+        std::array::from_fn(|axis| self.axes.get(axis).map_or(0.0, |axis| axis.pulses))
+    }
+
+    /// Its axes as bits.
+    pub(super) fn mask(&self) -> u8 {
+        (0..self.axes.len()).fold(0, |mask, axis| mask | 1 << axis)
+    }
+
+    /// Its geometry with this hand.
+    pub(super) fn geometry(&self, hand: Option<[i32; 4]>) -> Geometry {
+        let per_unit = std::array::from_fn(|axis| self.axes.get(axis).map_or(1.0, |axis| axis.per_unit));
+        Geometry { kind: self.kind, per_unit, hand }
+    }
+
+    /// The first axis that would be outside its soft limits.
+    pub(super) fn beyond(&self, pulses: &Four) -> Option<usize> {
+        self.axes.iter().zip(pulses).position(|(axis, pulses)| !axis.is_within(*pulses))
+    }
+
+    /// Refuses a place outside the soft limits. `robot` is this one's index.
+    pub(super) fn check_limits(&self, robot: usize, pulses: &Four) -> Result<(), Fault> {
+        match self.beyond(pulses) {
+            Some(axis) => Err(over_limit(robot, axis)),
+            None => Ok(()),
+        }
+    }
+
+    /// Seconds at full speed for the axis that takes longest.
+    pub(super) fn seconds(&self, from: &Four, to: &Four) -> f64 {
+        let ways = self.axes.iter().zip(from.iter().zip(to));
+        ways.map(|(axis, (from, to))| (to - from).abs() / (axis.per_unit * axis.speed)).fold(0.0, f64::max)
+    }
+
+    /// Lets the motion reach `now`.
+    pub(super) fn advance(&mut self, now: Now) {
+        let Some(motion) = &mut self.motion else { return };
+        let (place, end) = motion.advance(now);
+        let owner = motion.owner;
+        if let Some(place) = place {
+            for (axis, pulses) in self.axes.iter_mut().zip(place) {
+                axis.pulses = pulses;
+            }
+        }
+        if let Some(end) = end {
+            self.motion = None;
+            self.pushing = None;
+            if end == End::Arrived {
+                self.kept = None;
+            }
+            let homing = std::mem::take(&mut self.homing);
+            for (at, axis) in self.axes.iter_mut().enumerate() {
+                axis.origin |= end == End::Arrived && homing >> at & 1 == 1;
+            }
+            self.ended.push((owner, end));
+        }
+    }
+
+    /// Ends the motion on the spot: power is off.
+    pub(super) fn halt(&mut self, fault: &Fault) {
+        if let Some(motion) = self.motion.take() {
+            self.ended.push((motion.owner, End::Stopped(fault.clone())));
+        }
+        self.pushing = None;
+        self.homing = 0;
+    }
+
+    /// How a motion of `owner` ended, once.
+    pub(super) fn take_end(&mut self, owner: Owner) -> Option<End> {
+        let at = self.ended.iter().position(|(other, _)| *other == owner)?;
+        Some(self.ended.remove(at).1)
+    }
+
+    /// The torque of an axis in % of the greatest, the sign its direction.
+    pub(super) fn torque(&self, number: usize) -> i32 {
+        let Some(axis) = self.axes.get(number).filter(|axis| axis.servo == Servo::On) else { return 0 };
+        let moving = self.motion.as_ref().map_or(0.0, |motion| motion.direction()[number]);
+        let torque = match self.pushing {
+            Some((pushed, force)) if pushed == number => force / MAX_OF_RATED,
+            _ if moving > 0.0 => axis.load + MOVING_TORQUE,
+            _ if moving < 0.0 => axis.load - MOVING_TORQUE,
+            _ => axis.load,
+        };
+        torque.clamp(-axis.torque_limit, axis.torque_limit)
+    }
+
+    /// Whether every axis knows its origin.
+    pub(super) fn is_at_home(&self) -> bool {
+        self.axes.iter().all(|axis| axis.origin)
+    }
+}
+
+/// The alarm of an axis at its limit.
+pub(super) fn over_limit(robot: usize, axis: usize) -> Fault {
+    let why = format!("axis {} would be outside its soft limits", axis + 1);
+    Fault::new(SOFT_LIMIT, Place::Axis(robot, axis), why)
+}

@@ -1,0 +1,539 @@
+//! The start state: what a TOML file can say about the controller to be simulated.
+//!
+//! Everything has a default, so an empty file is a controller with four robots and servo power. What the file names comes
+//! on top of what a fresh controller has in it, but for robots: if it names any, there are those and no others. Each
+//! mistake is told with its line.
+
+mod fill;
+
+use std::collections::{BTreeMap, VecDeque};
+use std::time::Duration;
+
+use jiff::civil::DateTime;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::alarms::AlarmLog;
+use super::console;
+use super::defaults::{self, STOCK};
+use super::memory::Memory;
+use super::robot::{Method, Motor};
+use super::world::{Link, Mode, Switches, World};
+use crate::controller::Now;
+use crate::controller::yrcx::signal::resting;
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Value};
+
+/// What a simulated controller is like when it starts; [`Start::parse`] reads it (see [`EXAMPLE`]), [`Start::default`]
+/// has four robots.
+#[derive(Debug, Clone)]
+pub struct Start {
+    pub(super) world: World,
+    pub(super) run_scans: u32,
+    pub(super) seed: u64,
+}
+
+/// A start state that names the keys there are; each can be left out.
+pub const EXAMPLE: &str = r#"mode = "auto"                   # or "manual"
+servo = true                    # motor power and servos; a real controller starts without
+box = false                     # true: the programming box has control
+inputs = true                   # false: a safety setting disables dedicated inputs and remote commands
+sequence = false                # true: there is a sequence program for SI(10)
+di17 = "abs"                    # or "abs/org": SI(17) returns incremental axes as well
+movei_start = "keep"            # or "reset": a relative motion that was stopped begins anew
+clock = "2026/03/14 08:00:00"
+link_within_ms = 60000          # alarm if no master comes; without this key, none
+run_scans = 0                   # quick commands show the run status for up to so many scans, by the seed
+seed = 0
+versions = { host = "V1.08", revision = 48, fpga = "V1.001", drivers = ["V1.01", "V1.01", "V1.01", "V1.01"] }
+slots = { 1 = ["EtherNet/IP", "DIO NPN general-purpose input", "none", "none"] }
+variables = { SGI5 = 50, SGR0 = 1.5 }
+ports = { "DI2()" = 127, "DO(20)" = 1 }
+stock = true                    # false: no points, programs and so on but what is named here
+
+[[robot]]
+kind = "cartesian"              # or "scara"; arms = [225, 175] in mm
+axes = 4
+model = 2000                    # its number in 4.7.2
+pulses_per_unit = [1000, 1000, 1000, 1000]  # a mm or a degree
+limits = [[-1000000, 1000000], [-1000000, 1000000], [-500000, 500000], [-360000, 360000]]  # pulses
+speeds = [1000, 1000, 500, 720] # mm or degrees a second
+motors = ["absolute", "absolute", "absolute", "absolute"]  # incremental, semi-absolute
+methods = ["mark", "mark", "mark", "mark"]  # sensor, stroke
+origin = [true, true, true, true]
+position = [0, 0, 0, 0]         # pulses
+servos = ["servo", "servo", "servo", "servo"]  # brake, free; with servo = true
+load = [0, 0, 20, 0]            # torque at rest, % of the greatest
+obstacles = { 3 = 9000 }        # pulses at which a push of that axis meets something
+payload_g = 1000
+max_payload_g = 10000
+auto_speed = 100
+manual_speed = 20
+program_speed = 100
+inching = 100
+shift = 0
+hand = 1                        # without this key, none
+arm = "right"                   # or "left": what is selected
+parameters = { OUTPOS = [131071, 2000, 2000, 2000] }
+
+[points]
+100 = { pulse = [123456, -123, 0, 0] }
+50 = { mm = [10.0, -20.0, 5.0, -18.0], hand = "right" }
+
+[comments]
+50 = "WAIT ORG"
+
+[pallets]
+10 = { counts = [10, 15, 1], first = 100 }
+
+[shifts]
+5 = [10.0, -20.0, 5.0, -18.0]   # mm, degrees
+
+[hands]
+1 = { robot = 1, data = [10000, -2000, 5000, 0] }  # as they travel
+
+[[program]]
+number = 3
+name = "BLINK"
+text = """
+*AGAIN:
+SO(21)=1
+DELAY 500
+SO(21)=0
+DELAY 500
+GOTO *AGAIN"""
+
+[[task]]
+number = 3
+program = 3
+priority = 32
+line = 1
+state = "stop"                  # run, suspend
+
+[[history]]                     # newest first
+alarm = "12.551"
+place = "C1O1"                  # C1, R1, R1A3, T1
+
+[latest_remote]
+alarm = "2.334"
+place = "R1A1"
+
+[[event]]
+at_ms = 60000
+do = "estop on"                 # any line of the console
+"#;
+
+impl Default for Start {
+    fn default() -> Self {
+        build(&Entries::default(), "").expect("the defaults are correct")
+    }
+}
+
+impl Start {
+    /// Reads a start state. The error says what is wrong, and in which line.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        build(&read(text)?, text)
+    }
+
+    /// Another seed for everything random.
+    #[must_use]
+    pub fn with_seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+}
+
+/// The keys of the file.
+#[derive(Debug, Deserialize)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a key of its own")]
+#[serde(default, deny_unknown_fields)]
+struct Entries {
+    mode: Mode,
+    servo: bool,
+    r#box: bool,
+    inputs: bool,
+    sequence: bool,
+    di17: Di17,
+    movei_start: MoveiStart,
+    clock: Option<Spanned<String>>,
+    link_within_ms: Option<u64>,
+    run_scans: u32,
+    seed: u64,
+    versions: Versions,
+    slots: Table<[String; 4]>,
+    variables: Table<Number>,
+    ports: Table<u8>,
+    stock: bool,
+    #[serde(rename = "robot")]
+    robots: Vec<Spanned<RobotEntry>>,
+    points: Table<PointEntry>,
+    comments: Table<String>,
+    pallets: Table<PalletEntry>,
+    shifts: Table<[f64; 4]>,
+    hands: Table<HandEntry>,
+    #[serde(rename = "program")]
+    programs: Vec<Spanned<ProgramEntry>>,
+    #[serde(rename = "task")]
+    tasks: Vec<Spanned<TaskEntry>>,
+    history: Vec<Spanned<AlarmEntry>>,
+    latest_remote: Option<Spanned<AlarmEntry>>,
+    #[serde(rename = "event")]
+    events: Vec<Spanned<Event>>,
+}
+
+/// Entries by number or name.
+type Table<T> = BTreeMap<String, Spanned<T>>;
+
+impl Default for Entries {
+    fn default() -> Self {
+        Self {
+            mode: Mode::Auto,
+            servo: true,
+            r#box: false,
+            inputs: true,
+            sequence: false,
+            di17: Di17::Abs,
+            movei_start: MoveiStart::Keep,
+            clock: None,
+            link_within_ms: None,
+            run_scans: 0,
+            seed: 0,
+            versions: Versions::default(),
+            slots: Table::new(),
+            variables: Table::new(),
+            ports: Table::new(),
+            stock: true,
+            robots: Vec::new(),
+            points: Table::new(),
+            comments: Table::new(),
+            pallets: Table::new(),
+            shifts: Table::new(),
+            hands: Table::new(),
+            programs: Vec::new(),
+            tasks: Vec::new(),
+            history: Vec::new(),
+            latest_remote: None,
+            events: Vec::new(),
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+enum Di17 {
+    #[serde(rename = "abs")]
+    Abs,
+    #[serde(rename = "abs/org")]
+    AbsOrg,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum MoveiStart {
+    Keep,
+    Reset,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Versions {
+    host: Option<Spanned<String>>,
+    revision: Option<Spanned<u16>>,
+    fpga: Option<Spanned<String>>,
+    drivers: Option<Spanned<[String; 4]>>,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(untagged)]
+enum Number {
+    Whole(i32),
+    Real(f64),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum KindEntry {
+    Cartesian,
+    Scara,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum ServoEntry {
+    Servo,
+    Brake,
+    Free,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum ArmEntry {
+    Right,
+    Left,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct RobotEntry {
+    kind: KindEntry,
+    arms: [f64; 2],
+    axes: usize,
+    model: u16,
+    pulses_per_unit: Vec<f64>,
+    limits: Vec<[i32; 2]>,
+    speeds: Vec<f64>,
+    motors: Vec<Motor>,
+    methods: Vec<Method>,
+    origin: Vec<bool>,
+    position: Vec<i32>,
+    servos: Vec<ServoEntry>,
+    load: Vec<i32>,
+    obstacles: BTreeMap<String, i32>,
+    payload_g: i32,
+    max_payload_g: i32,
+    auto_speed: i32,
+    manual_speed: i32,
+    program_speed: i32,
+    inching: i32,
+    shift: usize,
+    hand: Option<usize>,
+    arm: ArmEntry,
+    parameters: BTreeMap<String, Vec<i32>>,
+}
+
+impl Default for RobotEntry {
+    fn default() -> Self {
+        Self {
+            kind: KindEntry::Cartesian,
+            arms: defaults::ARMS,
+            axes: 4,
+            model: 2000,
+            pulses_per_unit: Vec::new(),
+            limits: Vec::new(),
+            speeds: Vec::new(),
+            motors: Vec::new(),
+            methods: Vec::new(),
+            origin: Vec::new(),
+            position: Vec::new(),
+            servos: Vec::new(),
+            load: Vec::new(),
+            obstacles: BTreeMap::new(),
+            payload_g: 1000,
+            max_payload_g: 10_000,
+            auto_speed: 100,
+            manual_speed: 20,
+            program_speed: 100,
+            inching: 100,
+            shift: 0,
+            hand: None,
+            arm: ArmEntry::Right,
+            parameters: BTreeMap::new(),
+        }
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PointEntry {
+    pulse: Option<[i32; 4]>,
+    mm: Option<[f64; 4]>,
+    hand: Option<ArmEntry>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PalletEntry {
+    counts: [i32; 3],
+    first: u16,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct HandEntry {
+    robot: usize,
+    data: [i32; 4],
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ProgramEntry {
+    number: u8,
+    name: String,
+    text: String,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Default)]
+#[serde(rename_all = "lowercase")]
+enum StateEntry {
+    #[default]
+    Stop,
+    Run,
+    Suspend,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TaskEntry {
+    number: u8,
+    program: u8,
+    #[serde(default = "usual_priority")]
+    priority: u8,
+    #[serde(default = "first_line")]
+    line: usize,
+    #[serde(default)]
+    state: StateEntry,
+}
+
+const fn usual_priority() -> u8 {
+    32
+}
+
+const fn first_line() -> usize {
+    1
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AlarmEntry {
+    alarm: String,
+    #[serde(default)]
+    place: String,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Event {
+    at_ms: u64,
+    #[serde(rename = "do")]
+    line: String,
+}
+
+fn read(text: &str) -> Result<Entries, String> {
+    toml::from_str(text).map_err(|error| {
+        let line = 1 + error.span().map_or(0, |span| newlines(text, span.start));
+        format!("line {line}: {}", error.message())
+    })
+}
+
+/// Lines that end before a place in a text.
+fn newlines(text: &str, place: usize) -> usize {
+    text.bytes().take(place).filter(|&byte| byte == b'\n').count()
+}
+
+/// Says what is wrong with an entry, and where.
+struct At<'a> {
+    text: &'a str,
+}
+
+impl At<'_> {
+    fn wrong<T>(&self, entry: &Spanned<T>, what: impl std::fmt::Display) -> String {
+        let line = 1 + newlines(self.text, entry.span().start);
+        format!("line {line}: {what}")
+    }
+}
+
+fn build(entries: &Entries, text: &str) -> Result<Start, String> {
+    let at = At { text };
+    let stock = read(STOCK)?;
+    let mut world = bare_world(entries, &at)?;
+    let (robots, its) =
+        if entries.robots.is_empty() { (&stock.robots, At { text: STOCK }) } else { (&entries.robots, At { text }) };
+    fill::robots(&mut world, robots, entries.servo, &its)?;
+    if entries.stock {
+        fill::memory(&mut world, &stock, &At { text: STOCK })?;
+    }
+    fill::memory(&mut world, entries, &at)?;
+    fill::check(&world, entries, &at)?;
+    events(&mut world, &entries.events, &at)?;
+    Ok(Start { world, run_scans: entries.run_scans, seed: entries.seed })
+}
+
+/// The controller with nothing in it.
+fn bare_world(entries: &Entries, at: &At<'_>) -> Result<World, String> {
+    let clock = match &entries.clock {
+        Some(entry) => DateTime::strptime("%Y/%m/%d %H:%M:%S", entry.get_ref())
+            .map_err(|_| at.wrong(entry, "a time looks like \"2026/03/14 08:00:00\""))?,
+        None => DateTime::constant(2026, 3, 14, 8, 0, 0, 0),
+    };
+    let mut slots = BTreeMap::from([(1, defaults::SLOTS)]);
+    for (name, entry) in &entries.slots {
+        let controller = name.parse().ok().filter(|number| (1..=4).contains(number));
+        let controller = controller.ok_or_else(|| at.wrong(entry, "controllers are 1 to 4"))?;
+        let mut modules = [0; 4];
+        for (module, name) in modules.iter_mut().zip(entry.get_ref()) {
+            *module = word(Command::Slots, Key::Slot1, name).map_err(|what| at.wrong(entry, what))?;
+        }
+        slots.insert(controller, modules);
+    }
+    Ok(World {
+        now: Now::ZERO,
+        switches: Switches {
+            mode: entries.mode,
+            boxed: entries.r#box,
+            inputs: entries.inputs,
+            estop: false,
+            warning: false,
+            sequence: entries.sequence,
+            origin_both: entries.di17 == Di17::AbsOrg,
+            keep: entries.movei_start == MoveiStart::Keep,
+        },
+        link: Link::Waiting,
+        link_within: entries.link_within_ms.map(Duration::from_millis),
+        inputs: resting(),
+        motor: entries.servo,
+        robots: Vec::new(),
+        memory: Memory::default(),
+        alarms: AlarmLog::default(),
+        programs: BTreeMap::new(),
+        tasks: Vec::new(),
+        reset_done: false,
+        clock: (clock, Now::ZERO),
+        versions: versions(&entries.versions, at)?,
+        slots,
+        delayed: Vec::new(),
+        events: VecDeque::new(),
+        why: None,
+        restless: false,
+    })
+}
+
+fn versions(entry: &Versions, at: &At<'_>) -> Result<[u16; 7], String> {
+    let mut words = defaults::VERSIONS;
+    let read =
+        |key, text: &Spanned<String>| word(Command::Versions, key, text.get_ref()).map_err(|what| at.wrong(text, what));
+    if let Some(text) = &entry.host {
+        words[0] = read(Key::HostVersion, text)?;
+    }
+    if let Some(revision) = &entry.revision {
+        words[1] = *revision.get_ref();
+    }
+    if let Some(text) = &entry.fpga {
+        words[2] = read(Key::FpgaVersion, text)?;
+    }
+    if let Some(texts) = &entry.drivers {
+        for (driver, text) in words[3..].iter_mut().zip(texts.get_ref()) {
+            *driver = word(Command::Versions, Key::DriverVersion1, text).map_err(|what| at.wrong(texts, what))?;
+        }
+    }
+    Ok(words)
+}
+
+/// A word of an answer from its text, as the table has it.
+fn word(command: Command, key: Key, text: &str) -> Result<u16, String> {
+    let field = command.row().answer().find(|field| field.key == key);
+    match field.map(|field| field.parse(text)) {
+        Some(Ok(Value::Int(number))) => u16::try_from(number).map_err(|_| format!("'{text}' does not fit")),
+        Some(Err(what)) => Err(what),
+        _ => Err(format!("'{text}' is no value")),
+    }
+}
+
+fn events(world: &mut World, entries: &[Spanned<Event>], at: &At<'_>) -> Result<(), String> {
+    let mut sorted: Vec<Event> = entries.iter().map(Spanned::get_ref).cloned().collect();
+    sorted.sort_by_key(|event| event.at_ms);
+    // Carried out in order on a copy, so that a mistake shows now and not in the middle of a run.
+    let mut copy = world.clone();
+    for entry in entries {
+        console::execute(&mut copy, &entry.get_ref().line).map_err(|what| at.wrong(entry, what))?;
+    }
+    world.events = sorted.into_iter().map(|event| (Duration::from_millis(event.at_ms), event.line)).collect();
+    Ok(())
+}

@@ -1,0 +1,281 @@
+//! Robots and memory as a start state names them.
+
+use std::collections::BTreeMap;
+
+use toml::Spanned;
+
+use super::{AlarmEntry, ArmEntry, At, Entries, KindEntry, Number, PointEntry, RobotEntry, ServoEntry, StateEntry};
+use crate::controller::yrcx::alarm::Alarm;
+use crate::controller::yrcx::simulator::alarms::{Entry, Place};
+use crate::controller::yrcx::simulator::defaults::{CARTESIAN, PARAMETERS, SCARA};
+use crate::controller::yrcx::simulator::geometry::{Arm, Kind, STEPS, whole};
+use crate::controller::yrcx::simulator::memory::{HANDS, Hand, POINTS, Pallet, Point, PointUnit, SHIFTS};
+use crate::controller::yrcx::simulator::program::{Program, assigned};
+use crate::controller::yrcx::simulator::request::ROBOTS;
+use crate::controller::yrcx::simulator::robot::{AXES, Axis, FULL_TORQUE, Method, Motor, Robot, Servo};
+use crate::controller::yrcx::simulator::task::{State, TASKS, Task};
+use crate::controller::yrcx::simulator::world::World;
+use crate::controller::yrcx::table::parameter::PARAMETERS as KNOWN_PARAMETERS;
+use crate::controller::yrcx::table::{Charset, Field};
+use crate::controller::yrcx::value::{Key, Value};
+
+/// Puts the robots there.
+pub(super) fn robots(
+    world: &mut World,
+    entries: &[Spanned<RobotEntry>],
+    power: bool,
+    at: &At<'_>,
+) -> Result<(), String> {
+    for entry in entries {
+        if world.robots.len() >= ROBOTS {
+            return Err(at.wrong(entry, format!("there are {ROBOTS} robots at most")));
+        }
+        let robot = robot(entry.get_ref(), power).map_err(|what| at.wrong(entry, what))?;
+        world.robots.push(robot);
+    }
+    Ok(())
+}
+
+fn robot(entry: &RobotEntry, power: bool) -> Result<Robot, String> {
+    if !(1..=AXES).contains(&entry.axes) {
+        return Err(format!("a robot has 1 to {AXES} axes"));
+    }
+    let longest = [
+        entry.pulses_per_unit.len(),
+        entry.limits.len(),
+        entry.speeds.len(),
+        entry.motors.len(),
+        entry.methods.len(),
+        entry.origin.len(),
+        entry.position.len(),
+        entry.servos.len(),
+        entry.load.len(),
+    ];
+    if longest.iter().chain(entry.parameters.values().map(Vec::len).collect::<Vec<_>>().iter()).any(|n| *n > entry.axes)
+    {
+        return Err(format!("a list for more than the {} axes of this robot", entry.axes));
+    }
+    let positive = |number: &f64| number.is_finite() && *number > 0.0;
+    if !entry.pulses_per_unit.iter().chain(&entry.speeds).chain(&entry.arms).all(positive) {
+        return Err("pulses_per_unit, speeds and arms are greater than 0".to_owned());
+    }
+    let percents = [entry.auto_speed, entry.manual_speed, entry.program_speed];
+    if !percents.iter().all(|percent| (1..=100).contains(percent)) || !(1..=10_000).contains(&entry.inching) {
+        return Err("speeds are 1 to 100 %, inching is 1 to 10000".to_owned());
+    }
+    if entry.payload_g < 0 || entry.payload_g > entry.max_payload_g || entry.shift >= SHIFTS {
+        return Err("payload_g is 0 to max_payload_g, shift is 0 to 39".to_owned());
+    }
+    let [first, second] = entry.arms;
+    Ok(Robot {
+        kind: if entry.kind == KindEntry::Scara { Kind::Scara { first, second } } else { Kind::Cartesian },
+        model: entry.model,
+        axes: (0..entry.axes).map(|number| axis(entry, number, power)).collect::<Result<_, String>>()?,
+        max_payload_g: entry.max_payload_g,
+        payload_g: entry.payload_g,
+        auto_speed: entry.auto_speed,
+        manual_speed: entry.manual_speed,
+        program_speed: entry.program_speed,
+        inching: entry.inching,
+        shift: entry.shift,
+        hand: entry.hand,
+        arm: arm(entry.arm),
+        motion: None,
+        ended: Vec::new(),
+        pushing: None,
+        homing: 0,
+        kept: None,
+    })
+}
+
+fn axis(entry: &RobotEntry, number: usize, power: bool) -> Result<Axis, String> {
+    let usual = if entry.kind == KindEntry::Scara { SCARA[number] } else { CARTESIAN[number] };
+    let limits = entry.limits.get(number).copied().unwrap_or([-usual.limit, usual.limit]);
+    if limits[0] >= limits[1] {
+        return Err(format!("limits of axis {} are the wrong way round", number + 1));
+    }
+    let servo = match entry.servos.get(number).copied().unwrap_or(ServoEntry::Servo) {
+        _ if !power => Servo::Brake,
+        ServoEntry::Servo => Servo::On,
+        ServoEntry::Brake => Servo::Brake,
+        ServoEntry::Free => Servo::Free,
+    };
+    let mut parameters: BTreeMap<u16, i32> = PARAMETERS.into();
+    for (name, values) in &entry.parameters {
+        let known = KNOWN_PARAMETERS.iter().find(|known| known.name == *name && known.per_axis);
+        let known = known.ok_or_else(|| format!("'{name}' is no parameter of an axis"))?;
+        let Some(value) = values.get(number) else { continue };
+        if !(known.span.0..=known.span.1).contains(value) {
+            return Err(format!("{name} is {} to {}", known.span.0, known.span.1));
+        }
+        parameters.insert(known.number, *value);
+    }
+    Ok(Axis {
+        model: entry.model,
+        motor: entry.motors.get(number).copied().unwrap_or(Motor::Absolute),
+        method: entry.methods.get(number).copied().unwrap_or(Method::Mark),
+        per_unit: entry.pulses_per_unit.get(number).copied().unwrap_or(usual.per_unit),
+        limits: (limits[0].into(), limits[1].into()),
+        speed: entry.speeds.get(number).copied().unwrap_or(usual.speed),
+        pulses: entry.position.get(number).copied().unwrap_or(0).into(),
+        servo,
+        origin: entry.origin.get(number).copied().unwrap_or(true),
+        torque_limit: FULL_TORQUE,
+        load: entry.load.get(number).copied().unwrap_or(0).clamp(-FULL_TORQUE, FULL_TORQUE),
+        obstacle: entry.obstacles.get(&(number + 1).to_string()).map(|place| f64::from(*place)),
+        parameters,
+    })
+}
+
+fn arm(entry: ArmEntry) -> Arm {
+    match entry {
+        ArmEntry::Right => Arm::Right,
+        ArmEntry::Left => Arm::Left,
+    }
+}
+
+/// Puts everything else there, on top of what is.
+pub(super) fn memory(world: &mut World, entries: &Entries, at: &At<'_>) -> Result<(), String> {
+    for (name, entry) in &entries.points {
+        let number = number(name, POINTS.into()).ok_or_else(|| at.wrong(entry, "points are 0 to 29999"))?;
+        let point = point(entry.get_ref()).map_err(|what| at.wrong(entry, what))?;
+        world.memory.set_point(number, point);
+    }
+    for (name, entry) in &entries.comments {
+        let number = number(name, POINTS.into()).and_then(|number| u16::try_from(number).ok());
+        let number = number.ok_or_else(|| at.wrong(entry, "points are 0 to 29999"))?;
+        let field = Field::text(Key::Comment, "comment", 4, Charset::Comment);
+        field.accept(&Value::from(entry.get_ref().as_str())).map_err(|what| at.wrong(entry, what))?;
+        world.memory.comments.insert(number, entry.get_ref().clone());
+    }
+    for (name, entry) in &entries.pallets {
+        let number = number(name, SHIFTS).ok_or_else(|| at.wrong(entry, "pallets are 0 to 39"))?;
+        let pallet = entry.get_ref();
+        let places: i64 = pallet.counts.iter().map(|count| i64::from(*count)).product();
+        if pallet.counts.iter().any(|count| *count < 1) || places > 32_767 || pallet.first > POINTS - 5 {
+            return Err(at.wrong(entry, "a pallet has 1 to 32767 places, and its points end at 29999"));
+        }
+        world.memory.pallets[number] = Some(Pallet { counts: pallet.counts, first: pallet.first });
+    }
+    for (name, entry) in &entries.shifts {
+        let number = number(name, SHIFTS).ok_or_else(|| at.wrong(entry, "shifts are 0 to 39"))?;
+        world.memory.shifts[number] = entry.get_ref().map(|place| whole(place * STEPS));
+    }
+    for (name, entry) in &entries.hands {
+        let number = number(name, HANDS).ok_or_else(|| at.wrong(entry, "hands are 0 to 31"))?;
+        let hand = entry.get_ref();
+        let owner = hand.robot.checked_sub(1).filter(|owner| *owner < ROBOTS);
+        let owner = owner.ok_or_else(|| at.wrong(entry, "robots are 1 to 4"))?;
+        world.memory.hands[number] = Some(Hand { owner, data: hand.data });
+    }
+    for (name, entry) in &entries.variables {
+        let variable = variable(name).ok_or_else(|| at.wrong(entry, format!("'{name}' is no variable")))?;
+        let value = match *entry.get_ref() {
+            Number::Whole(value) => value.into(),
+            Number::Real(value) => value,
+        };
+        world.memory.assign(variable, value).map_err(|fault| at.wrong(entry, fault.why))?;
+    }
+    for (name, entry) in &entries.ports {
+        let found = assigned(&format!("{name}={}", entry.get_ref()));
+        let (port, value) = found.ok_or_else(|| at.wrong(entry, format!("'{name}' is no port or signal")))?;
+        match port.bit {
+            Some(bit) => world.memory.set_bit(port.kind, port.port, bit, value == 1),
+            None => world.memory.set_port(port.kind, port.port, value),
+        }
+    }
+    programs(world, entries, at)?;
+    for entry in &entries.history {
+        let alarm = alarm(entry.get_ref()).map_err(|what| at.wrong(entry, what))?;
+        world.alarms.fill(alarm);
+    }
+    if let Some(entry) = &entries.latest_remote {
+        let alarm = alarm(entry.get_ref()).map_err(|what| at.wrong(entry, what))?;
+        world.alarms.set_latest_remote(alarm);
+    }
+    Ok(())
+}
+
+fn programs(world: &mut World, entries: &Entries, at: &At<'_>) -> Result<(), String> {
+    for entry in &entries.programs {
+        let program = entry.get_ref();
+        if !(1..=100).contains(&program.number) {
+            return Err(at.wrong(entry, "programs are 1 to 100"));
+        }
+        let parsed = Program::parse(&program.name, program.text.trim_end()).map_err(|what| at.wrong(entry, what))?;
+        world.programs.insert(program.number, parsed);
+    }
+    for entry in &entries.tasks {
+        let task = entry.get_ref();
+        let program = world.programs.get(&task.program);
+        let program = program.ok_or_else(|| at.wrong(entry, format!("there is no program {}", task.program)))?;
+        let fits = (1..=TASKS).contains(&task.number) && (1..=64).contains(&task.priority);
+        if !fits || !(1..=program.lines.len()).contains(&task.line) {
+            return Err(at.wrong(entry, "tasks are 1 to 16, priorities 1 to 64, lines those of the program"));
+        }
+        let mut new = Task::new(task.number, task.program, task.priority);
+        new.set_line(task.line - 1);
+        new.state = match task.state {
+            StateEntry::Stop => State::Stopped,
+            StateEntry::Run => State::Running,
+            StateEntry::Suspend => State::Suspended,
+        };
+        world.tasks.retain(|other| other.number != task.number && other.program != task.program);
+        world.tasks.push(new);
+    }
+    Ok(())
+}
+
+/// What depends on several entries.
+pub(super) fn check(world: &World, entries: &Entries, at: &At<'_>) -> Result<(), String> {
+    for (number, entry) in entries.robots.iter().enumerate() {
+        let Some(hand) = entry.get_ref().hand else { continue };
+        let owner = world.memory.hands.get(hand).copied().flatten().map(|hand| hand.owner);
+        if owner != Some(number) {
+            return Err(at.wrong(entry, format!("hand {hand} is not defined for robot {}", number + 1)));
+        }
+    }
+    Ok(())
+}
+
+fn point(entry: &PointEntry) -> Result<Point, String> {
+    let hand_system = entry.hand.map_or(0, |side| arm(side).hand_system());
+    match (entry.pulse, entry.mm) {
+        (Some(values), None) => Ok(Point { unit: PointUnit::Pulse, hand_system: 0, values }),
+        (None, Some(values)) => {
+            Ok(Point { unit: PointUnit::Mm, hand_system, values: values.map(|place| whole(place * STEPS)) })
+        }
+        _ => Err("a point has either pulse or mm".to_owned()),
+    }
+}
+
+fn number(name: &str, count: usize) -> Option<usize> {
+    name.parse().ok().filter(|number| *number < count)
+}
+
+fn variable(name: &str) -> Option<usize> {
+    let index = |prefix| number(name.strip_prefix(prefix)?, 32);
+    index("SGI").or_else(|| index("SGR").map(|index| index + 256))
+}
+
+fn alarm(entry: &AlarmEntry) -> Result<Entry, String> {
+    let alarm: Alarm =
+        entry.alarm.parse().map_err(|error: crate::controller::yrcx::alarm::AlarmError| error.to_string())?;
+    let place = match entry.place.as_str() {
+        "" | "C1" => Some(Place::Controller),
+        "C1O1" => Some(Place::Slot),
+        other => other_place(other),
+    };
+    Ok((alarm, place.ok_or_else(|| format!("'{}' is no place such as C1O1 or R1A3", entry.place))?))
+}
+
+fn other_place(text: &str) -> Option<Place> {
+    let index = |digits: &str, most| digits.parse::<usize>().ok()?.checked_sub(1).filter(|index| *index < most);
+    if let Some(task) = text.strip_prefix('T') {
+        return task.parse().ok().filter(|task| (1..=TASKS).contains(task)).map(Place::Task);
+    }
+    match text.strip_prefix('R')?.split_once('A') {
+        Some((robot, axis)) => Some(Place::Axis(index(robot, ROBOTS)?, index(axis, AXES)?)),
+        None => index(text.strip_prefix('R')?, ROBOTS).map(Place::Robot),
+    }
+}

@@ -1,0 +1,402 @@
+//! Tasks that run programs, a line a scan.
+
+use super::alarms::{CALLS, Fault, NO_TASK, Place, RUNNING};
+use super::geometry::Four;
+use super::memory::calculate;
+use super::motion::{End, Owner};
+use super::moves::Speed;
+use super::program::{Line, Operand, PortRef};
+use super::world::World;
+use crate::controller::Now;
+
+/// Calls within each other.
+const MAX_CALLS: usize = 16;
+/// Tasks there are.
+pub(super) const TASKS: u8 = 16;
+/// The program whose subroutines every program can call (4.6.4).
+const COMMON: &str = "COMMON";
+
+/// What a task does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum State {
+    Stopped,
+    Running,
+    Suspended,
+}
+
+/// How far it shall run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Until {
+    End,
+    /// One line.
+    Line,
+    /// One line with what it calls, which were so many calls deep.
+    Call(usize),
+}
+
+/// What its line waits for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Doing {
+    Nothing,
+    Delay(Now),
+    Moving(usize),
+    Waiting,
+}
+
+/// A line of a program, counted from 0.
+type Spot = (u8, usize);
+
+/// A task with its program.
+#[derive(Debug, Clone)]
+pub(super) struct Task {
+    pub(super) number: u8,
+    /// The program that is registered.
+    pub(super) program: u8,
+    pub(super) priority: u8,
+    pub(super) state: State,
+    at: Spot,
+    calls: Vec<Spot>,
+    doing: Doing,
+    until: Until,
+    /// Where a relative motion goes that was broken off.
+    kept: Option<(Spot, Four)>,
+}
+
+impl Task {
+    /// A task at the first line, stopped.
+    pub(super) fn new(number: u8, program: u8, priority: u8) -> Self {
+        Self {
+            number,
+            program,
+            priority,
+            state: State::Stopped,
+            at: (program, 0),
+            calls: Vec::new(),
+            doing: Doing::Nothing,
+            until: Until::End,
+            kept: None,
+        }
+    }
+
+    /// Puts it at a line, counted from 0.
+    pub(super) fn set_line(&mut self, line: usize) {
+        self.at.1 = line;
+    }
+
+    /// When it has something to do.
+    pub(super) fn due(&self, now: Now) -> Option<Now> {
+        match (self.state, self.doing) {
+            (State::Running, Doing::Nothing) => Some(now),
+            (State::Running, Doing::Delay(until)) => Some(until),
+            // Motions and signals wake it.
+            _ => None,
+        }
+    }
+
+    /// 0 stop, 1 execution, 2 suspend, 3 standby (4.7.5).
+    pub(super) fn status(&self) -> i32 {
+        match (self.state, self.doing) {
+            (State::Stopped, _) => 0,
+            (State::Running, Doing::Waiting) => 3,
+            (State::Running, _) => 1,
+            (State::Suspended, _) => 2,
+        }
+    }
+
+    fn reset(&mut self) {
+        *self = Self::new(self.number, self.program, self.priority);
+    }
+
+    fn stop(&mut self) {
+        if self.state != State::Suspended {
+            self.state = State::Stopped;
+        }
+        self.doing = Doing::Nothing;
+    }
+}
+
+/// What a line asks for next.
+enum Flow {
+    Next,
+    Stay,
+    To(Spot),
+    Over,
+}
+
+impl World {
+    /// Whether a program runs: SO(13).
+    pub(super) fn is_running(&self) -> bool {
+        self.tasks.iter().any(|task| task.state == State::Running)
+    }
+
+    /// The line that a task is at, from 1; more than 10000 in COMMON (4.6.4).
+    pub(super) fn line_of(&self, task: &Task) -> i32 {
+        let (program, line) = task.at;
+        let common = self.programs.get(&program).is_some_and(|program| program.name == COMMON);
+        let line = i32::try_from(line).unwrap_or(i32::MAX).saturating_add(1);
+        if common { line.saturating_add(10_000) } else { line }
+    }
+
+    /// Stops every task at its line.
+    pub(super) fn stop_tasks(&mut self) {
+        self.tasks.iter_mut().for_each(Task::stop);
+    }
+
+    /// Puts every task back to its first line.
+    pub(super) fn reset_programs(&mut self) -> Result<(), Fault> {
+        self.none_runs()?;
+        self.tasks.iter_mut().for_each(Task::reset);
+        self.reset_done = true;
+        Ok(())
+    }
+
+    /// Puts one task back to its first line.
+    pub(super) fn reset_task(&mut self, at: usize) -> Result<(), Fault> {
+        let task = self.tasks.get_mut(at).ok_or_else(no_task)?;
+        if task.state == State::Running {
+            return Err(running());
+        }
+        task.reset();
+        self.reset_done = self.tasks.iter().all(|task| task.at == (task.program, 0) && task.calls.is_empty());
+        Ok(())
+    }
+
+    /// Runs every task.
+    pub(super) fn start_all(&mut self) -> Result<(), Fault> {
+        self.may_run()?;
+        if self.tasks.is_empty() {
+            return Err(no_task());
+        }
+        (0..self.tasks.len()).for_each(|at| self.start(at, Until::End));
+        Ok(())
+    }
+
+    /// Runs one task.
+    pub(super) fn start_task(&mut self, at: usize) -> Result<(), Fault> {
+        self.may_run()?;
+        self.tasks.get(at).ok_or_else(no_task)?;
+        self.start(at, Until::End);
+        Ok(())
+    }
+
+    /// Runs one line of a task; `over` carries out a subroutine whole.
+    pub(super) fn step_task(&mut self, at: usize, over: bool) -> Result<(), Fault> {
+        self.may_run()?;
+        self.none_runs()?;
+        let task = self.tasks.get(at).ok_or_else(no_task)?;
+        let until = if over { Until::Call(task.calls.len()) } else { Until::Line };
+        self.start(at, until);
+        Ok(())
+    }
+
+    /// Passes over one line of a task.
+    pub(super) fn skip_line(&mut self, at: usize) -> Result<(), Fault> {
+        self.may_run()?;
+        self.none_runs()?;
+        let (program, line) = self.tasks.get(at).ok_or_else(no_task)?.at;
+        let lines = self.programs.get(&program).map_or(0, |program| program.lines.len());
+        if let Some(task) = self.tasks.get_mut(at).filter(|_| line + 1 < lines) {
+            task.at.1 = line + 1;
+            self.reset_done = false;
+        }
+        Ok(())
+    }
+
+    /// Refuses while a program runs.
+    pub(super) fn none_runs(&self) -> Result<(), Fault> {
+        if self.is_running() { Err(running()) } else { Ok(()) }
+    }
+
+    /// Lets every task that runs do what it can in this scan, by priority.
+    pub(super) fn run_tasks(&mut self) {
+        let mut order: Vec<usize> = (0..self.tasks.len()).collect();
+        order.sort_by_key(|at| self.tasks.get(*at).map(|task| (task.priority, task.number)));
+        for at in order {
+            if self.tasks.get(at).is_some_and(|task| task.state == State::Running) {
+                self.run_task(at);
+            }
+        }
+    }
+
+    fn start(&mut self, at: usize, until: Until) {
+        self.reset_done = false;
+        let Some(task) = self.tasks.get_mut(at).filter(|task| task.state != State::Running) else { return };
+        task.state = State::Running;
+        task.doing = Doing::Nothing;
+        task.until = until;
+        let owner = Owner::Task(task.number);
+        for robot in &mut self.robots {
+            robot.ended.retain(|(other, _)| *other != owner);
+        }
+    }
+
+    fn run_task(&mut self, at: usize) {
+        let Some(task) = self.tasks.get(at) else { return };
+        let (number, spot, doing) = (task.number, task.at, task.doing);
+        let flow = match doing {
+            Doing::Delay(until) if self.now < until => Ok(Flow::Stay),
+            Doing::Delay(_) => Ok(Flow::Next),
+            Doing::Moving(robot) => match self.robot_mut(robot).map(|robot| robot.take_end(Owner::Task(number))) {
+                Ok(None) => Ok(Flow::Stay),
+                Ok(Some(End::Stopped(fault))) | Err(fault) => Err(fault),
+                Ok(Some(End::Arrived | End::Pushed)) => Ok(Flow::Next),
+            },
+            Doing::Nothing | Doing::Waiting => self.execute(at, spot),
+        };
+        match flow {
+            Ok(flow) => self.follow(at, &flow),
+            Err(fault) => {
+                // An error of one program stops all of them.
+                self.stop_tasks();
+                self.note(Fault { place: Place::Task(number), ..fault });
+            }
+        }
+    }
+
+    fn follow(&mut self, at: usize, flow: &Flow) {
+        let programs = &self.programs;
+        let Some(task) = self.tasks.get_mut(at) else { return };
+        let to = match *flow {
+            Flow::Stay => return,
+            Flow::Next => Some((task.at.0, task.at.1 + 1)),
+            Flow::To(spot) => Some(spot),
+            Flow::Over => None,
+        };
+        task.kept = None;
+        task.doing = Doing::Nothing;
+        match to.filter(|(program, line)| programs.get(program).is_some_and(|program| *line < program.lines.len())) {
+            Some(spot) => {
+                task.at = spot;
+                let over = match task.until {
+                    Until::End => false,
+                    Until::Line => true,
+                    Until::Call(depth) => task.calls.len() <= depth,
+                };
+                if over {
+                    task.state = State::Stopped;
+                }
+            }
+            // After the last line, a program is at its beginning.
+            None => task.reset(),
+        }
+        // Other tasks may wait for what this one did.
+        self.restless = true;
+    }
+
+    fn execute(&mut self, at: usize, (program, line): Spot) -> Result<Flow, Fault> {
+        let code = self.programs.get(&program).and_then(|program| program.lines.get(line)).cloned();
+        let Some(code) = code else { return Ok(Flow::Over) };
+        match code {
+            Line::Nothing => {}
+            Line::Halt => return Ok(Flow::Over),
+            Line::Delay(time) => {
+                self.set_doing(at, Doing::Delay(self.now.saturating_add(time)));
+                return Ok(Flow::Stay);
+            }
+            Line::Move { robot, linear, relative, point } => {
+                return self.program_move(at, robot, linear, relative, point);
+            }
+            Line::Output(port, value) => self.output(port, value),
+            Line::Wait(port, value) => {
+                if self.signal(port) != value {
+                    self.set_doing(at, Doing::Waiting);
+                    return Ok(Flow::Stay);
+                }
+            }
+            Line::Assign { variable, first, then } => {
+                let operand = |world: &Self, operand| match operand {
+                    Operand::Number(number) => number,
+                    Operand::Variable(number) => world.memory.variable(number),
+                };
+                let first = operand(self, first);
+                let value = match then {
+                    Some((operation, second)) => calculate(operation, first, operand(self, second))?,
+                    None => first.wide(),
+                };
+                self.memory.assign(variable, value)?;
+            }
+            Line::Goto(label) => return self.label(program, &label).map(Flow::To),
+            Line::Gosub(label) => {
+                let spot = self.label(program, &label)?;
+                let task = self.tasks.get_mut(at).ok_or_else(no_task)?;
+                if task.calls.len() >= MAX_CALLS {
+                    return Err(Fault::new(CALLS, Place::Controller, "too many calls within each other"));
+                }
+                task.calls.push((program, line + 1));
+                return Ok(Flow::To(spot));
+            }
+            Line::Return => {
+                let call = self.tasks.get_mut(at).and_then(|task| task.calls.pop());
+                let none = || Fault::new(CALLS, Place::Controller, "RETURN without GOSUB");
+                return call.map(Flow::To).ok_or_else(none);
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn program_move(
+        &mut self,
+        at: usize,
+        robot: usize,
+        linear: bool,
+        relative: bool,
+        point: usize,
+    ) -> Result<Flow, Fault> {
+        if self.robot(robot)?.motion.is_some() {
+            // Still braking after a stop, or moved by somebody else.
+            self.restless = true;
+            return Ok(Flow::Stay);
+        }
+        let task = self.tasks.get(at).ok_or_else(no_task)?;
+        let (number, spot) = (task.number, task.at);
+        let kept = task.kept.filter(|(kept, _)| relative && *kept == spot && self.switches.keep);
+        let point = self.memory.point(point)?;
+        let target = match kept {
+            Some((_, target)) => target,
+            None if relative => self.relative_target(robot, super::robot::ALL, &point)?,
+            None => self.point_target(robot, super::robot::ALL, &point)?,
+        };
+        self.begin_program_move(robot, Owner::Task(number), &target, linear, Speed::default())?;
+        if let Some(task) = self.tasks.get_mut(at) {
+            task.kept = relative.then_some((spot, target));
+        }
+        self.set_doing(at, Doing::Moving(robot));
+        Ok(Flow::Stay)
+    }
+
+    fn set_doing(&mut self, at: usize, doing: Doing) {
+        if let Some(task) = self.tasks.get_mut(at) {
+            task.doing = doing;
+        }
+    }
+
+    fn label(&self, program: u8, label: &str) -> Result<Spot, Fault> {
+        let own = self.programs.get(&program).and_then(|found| found.labels.get(label)).map(|line| (program, *line));
+        let common = || {
+            let (number, found) = self.programs.iter().find(|(_, program)| program.name == COMMON)?;
+            found.labels.get(label).map(|line| (*number, *line))
+        };
+        let missing = || Fault::new(CALLS, Place::Controller, format!("there is no label *{label}"));
+        own.or_else(common).ok_or_else(missing)
+    }
+
+    fn output(&mut self, port: PortRef, value: u8) {
+        match port.bit {
+            Some(bit) => self.memory.set_bit(port.kind, port.port, bit, value == 1),
+            None => self.memory.set_port(port.kind, port.port, value),
+        }
+    }
+
+    fn signal(&self, port: PortRef) -> u8 {
+        let value = self.memory.port(port.kind, port.port);
+        port.bit.map_or(value, |bit| value >> bit & 1)
+    }
+}
+
+fn no_task() -> Fault {
+    Fault::new(NO_TASK, Place::Controller, "no such program is registered in a task")
+}
+
+fn running() -> Fault {
+    Fault::new(RUNNING, Place::Controller, "a program runs")
+}

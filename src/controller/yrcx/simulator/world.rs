@@ -1,0 +1,405 @@
+//! The controller as a machine: switches, power, alarms, what may be done when, and the passing of time.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::time::Duration;
+
+use jiff::SignedDuration;
+use jiff::civil::DateTime;
+
+use super::alarms::{AlarmLog, EMERGENCY_STOP, Fault, LINK_TOO_LATE, MOVING, NO_AXIS, NO_ORIGIN, NO_POWER, NO_ROBOT};
+use super::alarms::{NOT_AUTO, Place};
+use super::console;
+use super::memory::Memory;
+use super::motion::{End, Motion, Owner};
+use super::program::Program;
+use super::robot::{ALL, Robot, Servo};
+use super::task::Task;
+use crate::controller::Now;
+use crate::controller::yrcx::alarm::Alarm;
+use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::signal::{input, resting};
+
+/// The scan of the controller (chapter 2, 1.2).
+pub(super) const SCAN: Duration = Duration::from_millis(5);
+
+/// The mode that is selected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Mode {
+    Auto,
+    Manual,
+}
+
+/// What people at the machine switch, and parameters that matter here.
+#[derive(Debug, Clone)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+pub(super) struct Switches {
+    pub(super) mode: Mode,
+    /// The programming box has control.
+    pub(super) boxed: bool,
+    /// A safety setting leaves the dedicated inputs, and so remote commands, in force.
+    pub(super) inputs: bool,
+    /// An emergency stop that is wired to the controller is pressed.
+    pub(super) estop: bool,
+    pub(super) warning: bool,
+    /// A sequence program exists.
+    pub(super) sequence: bool,
+    /// SI(17) returns incremental axes as well ("ABS/ORG").
+    pub(super) origin_both: bool,
+    /// A relative motion that was broken off keeps its target when it is given again (4.2.2).
+    pub(super) keep: bool,
+}
+
+/// The fieldbus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Link {
+    /// No master has been there yet; the inputs rest.
+    Waiting,
+    Up,
+    /// Lost; all inputs are off.
+    Down,
+}
+
+/// What takes a moment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Action {
+    MotorOn,
+    MotorPower,
+    MotorOff,
+    /// A state for some axes of a robot.
+    Servo(usize, u8, Servo),
+    AlarmReset,
+    ProgramReset,
+    AutoStart,
+    /// Power goes off after an emergency stop.
+    PowerLoss,
+}
+
+/// The controller.
+#[derive(Debug, Clone)]
+pub(super) struct World {
+    pub(super) now: Now,
+    pub(super) switches: Switches,
+    pub(super) link: Link,
+    /// After this time without a master the link is missed.
+    pub(super) link_within: Option<Duration>,
+    /// What the master shows.
+    pub(super) inputs: Image,
+    pub(super) motor: bool,
+    pub(super) robots: Vec<Robot>,
+    pub(super) memory: Memory,
+    pub(super) alarms: AlarmLog,
+    pub(super) programs: BTreeMap<u8, Program>,
+    pub(super) tasks: Vec<Task>,
+    /// SO(14).
+    pub(super) reset_done: bool,
+    /// Date and time at a moment.
+    pub(super) clock: (DateTime, Now),
+    /// Words of 4.7.1.
+    pub(super) versions: [u16; 7],
+    /// Modules by controller and slot (4.7.15).
+    pub(super) slots: BTreeMap<u8, [u16; 4]>,
+    pub(super) delayed: Vec<(Now, Action)>,
+    /// Console lines to carry out at their time, in order.
+    pub(super) events: VecDeque<(Now, String)>,
+    /// What was wrong with the last thing that was refused or broken off.
+    pub(super) why: Option<Fault>,
+    /// Something changed that others may wait for: there is another scan.
+    pub(super) restless: bool,
+}
+
+impl World {
+    /// When something happens by itself.
+    pub(super) fn due(&self) -> Option<Now> {
+        let link = self.link_within.filter(|_| self.link == Link::Waiting);
+        let motions = self.robots.iter().filter_map(|robot| robot.motion.as_ref()).map(Motion::due);
+        let tasks = self.tasks.iter().filter_map(|task| task.due(self.now));
+        let delayed = self.delayed.iter().map(|(at, _)| *at);
+        let events = self.events.front().map(|(at, _)| *at);
+        let restless = self.restless.then_some(self.now);
+        motions.chain(tasks).chain(delayed).chain(events).chain(link).chain(restless).min()
+    }
+
+    /// Lets what moves reach `now`.
+    pub(super) fn move_on(&mut self, now: Now) {
+        self.now = now;
+        self.restless = false;
+        for robot in &mut self.robots {
+            robot.advance(now);
+        }
+        let ended: Vec<End> = self.robots.iter_mut().filter_map(|robot| robot.take_end(Owner::Input)).collect();
+        for end in ended {
+            if let End::Stopped(fault) = end {
+                self.note(fault);
+            }
+        }
+    }
+
+    /// Does what is due in this scan.
+    pub(super) fn scan(&mut self) {
+        let now = self.now;
+        if self.link == Link::Waiting && self.link_within.is_some_and(|within| within <= now) {
+            self.link = Link::Down;
+            self.raise(&Fault::new(LINK_TOO_LATE, Place::Slot, "no master came in time"), false);
+        }
+        while self.events.front().is_some_and(|(at, _)| *at <= now) {
+            if let Some((_, line)) = self.events.pop_front() {
+                // Lines were tried when the start state was read; one that is refused by now has no effect.
+                let _refused = console::execute(self, &line);
+            }
+        }
+        for at in (0..self.delayed.len()).rev() {
+            if self.delayed.get(at).is_some_and(|(due, _)| *due <= now) {
+                let (_, action) = self.delayed.remove(at);
+                if let Err(fault) = self.act(action) {
+                    self.note(fault);
+                }
+            }
+        }
+        self.run_tasks();
+    }
+
+    /// Does something that took its moment.
+    pub(super) fn act(&mut self, action: Action) -> Result<(), Fault> {
+        match action {
+            Action::MotorOn | Action::MotorPower => {
+                self.may_power()?;
+                self.motor = true;
+                if action == Action::MotorOn {
+                    self.set_servos(Servo::On);
+                }
+            }
+            Action::MotorOff => self.power_off(&Fault::new(NO_POWER, Place::Controller, "motor power went off")),
+            Action::PowerLoss => self.power_off(&Fault::emergency()),
+            Action::Servo(robot, axes, state) => self.set_servo(robot, axes, state)?,
+            Action::AlarmReset => {
+                let emergency = self.emergency();
+                self.alarms.reset(|alarm| emergency && alarm == EMERGENCY_STOP);
+            }
+            Action::ProgramReset => self.reset_programs()?,
+            Action::AutoStart => self.start_all()?,
+        }
+        Ok(())
+    }
+
+    /// Lets something happen later.
+    pub(super) fn later(&mut self, after: Duration, action: Action) {
+        self.delayed.push((self.now.saturating_add(after), action));
+    }
+
+    /// Whether the controller is in emergency stop.
+    pub(super) fn emergency(&self) -> bool {
+        self.switches.estop || (self.link == Link::Up && !input::EMERGENCY_STOP.is_on(&self.inputs))
+    }
+
+    /// Whether the stop input keeps everything from moving.
+    pub(super) fn held(&self) -> bool {
+        !input::STOP.is_on(&self.inputs)
+    }
+
+    /// Records what went wrong where nobody is told.
+    pub(super) fn note(&mut self, fault: Fault) {
+        self.alarms.record(fault.alarm, fault.place);
+        self.why = Some(fault);
+    }
+
+    /// A serious alarm: everything stops, and power goes off.
+    pub(super) fn raise(&mut self, fault: &Fault, fatal: bool) {
+        self.alarms.raise(fault.alarm, fault.place, fatal);
+        self.why = Some(fault.clone());
+        self.stop_tasks();
+        self.delayed.retain(|(_, action)| matches!(action, Action::PowerLoss | Action::AlarmReset));
+        for robot in &mut self.robots {
+            robot.halt(fault);
+        }
+        self.later(SCAN, Action::PowerLoss);
+    }
+
+    /// Programs stop, and what moves comes to rest.
+    pub(super) fn stop(&mut self, fault: &Fault) {
+        let now = self.now;
+        self.stop_tasks();
+        self.delayed.retain(|(_, action)| *action != Action::AutoStart);
+        for motion in self.robots.iter_mut().filter_map(|robot| robot.motion.as_mut()) {
+            motion.stop(now, fault.clone());
+        }
+    }
+
+    /// The emergency stop, whichever it is, began or ended.
+    pub(super) fn check_emergency(&mut self) {
+        if self.emergency() {
+            self.raise(&Fault::emergency(), false);
+        }
+    }
+
+    /// The master shows something, or is gone.
+    pub(super) fn set_link(&mut self, image: Option<&Image>) {
+        match image {
+            Some(image) => {
+                self.link = Link::Up;
+                self.inputs = *image;
+            }
+            None if self.link == Link::Down => {}
+            None => {
+                self.link = Link::Down;
+                self.inputs = Image::default();
+                let why = "the master is gone";
+                self.raise(&Fault::new(super::alarms::LINK, Place::Slot, why), false);
+            }
+        }
+    }
+
+    /// What the master shows; `None` if it is gone.
+    pub(super) fn shown_by_master(&self) -> Option<Image> {
+        (self.link != Link::Down).then_some(self.inputs)
+    }
+
+    /// What rests until a master is there.
+    pub(super) fn resting() -> Image {
+        resting()
+    }
+
+    /// Whether motor power may go on.
+    pub(super) fn may_power(&self) -> Result<(), Fault> {
+        if self.emergency() {
+            return Err(Fault::emergency());
+        }
+        self.no_alarm()
+    }
+
+    /// Whether nothing is wrong.
+    pub(super) fn no_alarm(&self) -> Result<(), Fault> {
+        match self.alarms.active() {
+            Some(alarm) => Err(active(alarm)),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether programs may run.
+    pub(super) fn may_run(&self) -> Result<(), Fault> {
+        self.may_power()?;
+        if self.held() {
+            return Err(Fault::stopped());
+        }
+        if self.switches.mode != Mode::Auto || self.switches.boxed {
+            return Err(Fault::new(NOT_AUTO, Place::Controller, "AUTO mode is not selected, or the box has control"));
+        }
+        Ok(())
+    }
+
+    /// Whether these axes of a robot may move.
+    pub(super) fn may_move(&self, number: usize, axes: u8) -> Result<(), Fault> {
+        self.may_power()?;
+        if self.held() {
+            return Err(Fault::stopped());
+        }
+        self.has_axes(number, axes)?;
+        let robot = self.robot(number)?;
+        let off = robot.axes.iter().enumerate().position(|(at, axis)| axes >> at & 1 == 1 && axis.servo != Servo::On);
+        if let Some(axis) = off.or((!self.motor).then_some(0)) {
+            return Err(Fault::new(
+                NO_POWER,
+                Place::Axis(number, axis),
+                format!("axis {} has no servo power", axis + 1),
+            ));
+        }
+        if robot.motion.is_some() {
+            return Err(Fault::new(MOVING, Place::Robot(number), format!("robot {} moves already", number + 1)));
+        }
+        Ok(())
+    }
+
+    /// Whether a robot knows where it is.
+    pub(super) fn at_home(&self, number: usize) -> Result<(), Fault> {
+        let unknown = self.robot(number)?.axes.iter().position(|axis| !axis.origin);
+        match unknown {
+            Some(axis) => {
+                let why = format!("axis {} has not returned to origin", axis + 1);
+                Err(Fault::new(NO_ORIGIN, Place::Axis(number, axis), why))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// A robot, counted from 0.
+    pub(super) fn robot(&self, number: usize) -> Result<&Robot, Fault> {
+        self.robots.get(number).ok_or_else(|| no_robot(number))
+    }
+
+    /// A robot, counted from 0.
+    pub(super) fn robot_mut(&mut self, number: usize) -> Result<&mut Robot, Fault> {
+        self.robots.get_mut(number).ok_or_else(|| no_robot(number))
+    }
+
+    /// Whether a robot has all of these axes.
+    pub(super) fn has_axes(&self, number: usize, axes: u8) -> Result<(), Fault> {
+        let missing = axes & ALL & !self.robot(number)?.mask();
+        if missing == 0 {
+            return Ok(());
+        }
+        let why = format!("robot {} has no axis {}", number + 1, missing.trailing_zeros() + 1);
+        Err(Fault::new(NO_AXIS, Place::Robot(number), why))
+    }
+
+    /// Date and time.
+    pub(super) fn time(&self) -> DateTime {
+        let (then, at) = self.clock;
+        then.saturating_add(SignedDuration::try_from(self.now.saturating_sub(at)).unwrap_or(SignedDuration::MAX))
+    }
+
+    /// Switches the controller off and on: only what is stored remains.
+    pub(super) fn power_cycle(&mut self) {
+        self.stop_tasks();
+        self.delayed.clear();
+        self.power_off(&Fault::new(NO_POWER, Place::Controller, "the controller was switched off"));
+        self.alarms.clear();
+        self.why = None;
+        for axis in self.robots.iter_mut().flat_map(|robot| &mut robot.axes) {
+            axis.origin &= axis.motor != super::robot::Motor::Incremental;
+            axis.torque_limit = super::robot::FULL_TORQUE;
+        }
+        self.check_emergency();
+    }
+
+    fn power_off(&mut self, fault: &Fault) {
+        self.motor = false;
+        self.set_servos(Servo::Brake);
+        for robot in &mut self.robots {
+            robot.halt(fault);
+        }
+    }
+
+    fn set_servos(&mut self, state: Servo) {
+        for axis in self.robots.iter_mut().flat_map(|robot| &mut robot.axes) {
+            axis.servo = state;
+        }
+    }
+
+    fn set_servo(&mut self, number: usize, axes: u8, state: Servo) -> Result<(), Fault> {
+        self.has_axes(number, axes)?;
+        if state == Servo::On {
+            self.may_power()?;
+            if !self.motor {
+                return Err(Fault::new(NO_POWER, Place::Robot(number), "motor power is off"));
+            }
+        }
+        let robot = self.robot_mut(number)?;
+        if state != Servo::On {
+            robot.halt(&Fault::new(NO_POWER, Place::Robot(number), "a servo went off"));
+        }
+        let chosen = robot.axes.iter_mut().enumerate().filter(|(at, _)| axes == 0 || axes >> at & 1 == 1);
+        for (_, axis) in chosen {
+            axis.servo = state;
+        }
+        Ok(())
+    }
+}
+
+/// The refusal while an alarm is active.
+fn active(alarm: Alarm) -> Fault {
+    Fault::new(alarm, Place::Controller, "an alarm is active; reset it")
+}
+
+fn no_robot(number: usize) -> Fault {
+    Fault::new(NO_ROBOT, Place::Controller, format!("there is no robot {}", number + 1))
+}
