@@ -145,6 +145,8 @@ impl Simulator {
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
         self.advance(now);
         self.touched.get_or_insert(now);
+        // Between scans as well, robots are where they are.
+        self.world.move_on(now.max(self.world.now));
         console::execute(&mut self.world, line)
     }
 

@@ -1,1 +1,144 @@
+//! The simulator from outside: images in, images out, in virtual time.
 
+use std::time::Duration;
+
+use super::*;
+use crate::controller::yrcx::answer::{Answer, Status};
+use crate::controller::yrcx::image::Words;
+use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::signal::{Side, Signal, input, output, resting};
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Values};
+
+mod examples;
+mod handshake;
+mod life;
+mod motion;
+mod programs;
+mod refusals;
+mod sessions;
+mod signals;
+
+/// A simulator with a clock and a master that shows images.
+struct Bench {
+    simulator: Simulator,
+    now: Now,
+    image: Image,
+}
+
+impl Default for Bench {
+    fn default() -> Self {
+        Self::new("")
+    }
+}
+
+impl Bench {
+    fn new(start: &str) -> Self {
+        let mut bench =
+            Self { simulator: Simulator::new(Start::parse(start).unwrap()), now: Now::ZERO, image: resting() };
+        bench.wait(200);
+        bench
+    }
+
+    /// Shows the image for so long.
+    fn wait(&mut self, millis: u64) {
+        self.simulator.input(self.now, Some(&self.image));
+        self.now += Duration::from_millis(millis);
+        self.simulator.advance(self.now);
+    }
+
+    fn console(&mut self, line: &str) -> String {
+        self.simulator.console(self.now, line).unwrap()
+    }
+
+    fn words(&self) -> Words {
+        self.simulator.output().command()
+    }
+
+    fn is_on(&self, signal: Signal) -> bool {
+        signal.is_on(self.simulator.output())
+    }
+
+    /// Switches an input and waits until edges may follow.
+    fn set(&mut self, signal: Signal, on: bool) {
+        signal.set(&mut self.image, on);
+        self.wait(120);
+    }
+
+    fn pulse(&mut self, signal: Signal) {
+        self.set(signal, true);
+        self.set(signal, false);
+    }
+
+    /// Shows a command for a scan.
+    fn begin(&mut self, words: &Words) {
+        let mut data = *words;
+        data[0] = 0;
+        self.image.set_command(&data);
+        self.wait(5);
+        self.image.set_command(words);
+        self.wait(5);
+    }
+
+    /// Waits for the end of a command, and resets the status.
+    fn end(&mut self) -> Words {
+        for _ in 0..200_000 {
+            if Status::of(self.words()[0]).is_end() {
+                let words = self.words();
+                self.image.set_command(&[0; 16]);
+                self.wait(5);
+                assert_eq!(self.words(), [0; 16], "ready after the status reset");
+                return words;
+            }
+            assert_eq!(self.words()[0], 0x0100, "the run status until the end");
+            self.wait(5);
+        }
+        panic!("never over");
+    }
+
+    /// A whole command in words.
+    fn send(&mut self, words: &Words) -> Words {
+        self.begin(words);
+        self.end()
+    }
+
+    /// A whole command.
+    fn ask(&mut self, draft: Draft) -> Answer {
+        let order = draft.build().unwrap();
+        let words = self.send(order.words());
+        Answer::parse(&order, &words).unwrap()
+    }
+
+    /// A command that ends well.
+    fn done(&mut self, draft: Draft) -> Values {
+        match self.ask(draft) {
+            Answer::Done(values) => values,
+            other => panic!("{other:?}: {}", self.console("why")),
+        }
+    }
+
+    /// A command that is refused or broken off.
+    fn refused(&mut self, draft: Draft) -> String {
+        match self.ask(draft) {
+            Answer::Refused { alarm, .. } => alarm.to_string(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Where a robot is in pulses.
+    fn pulses(&mut self, robot: i32) -> [i32; 4] {
+        self.done(Command::PositionPulse.order().with(Key::Robot, robot)).axes().unwrap()
+    }
+
+    /// Where a robot is in 0.001 mm.
+    fn steps(&mut self, robot: i32) -> [i32; 4] {
+        self.done(Command::PositionMm.order().with(Key::Robot, robot)).axes().unwrap()
+    }
+}
+
+/// Words from the first ones.
+fn words(head: &[u16]) -> Words {
+    let mut words = [0; 16];
+    words[..head.len()].copy_from_slice(head);
+    words
+}
