@@ -5,7 +5,7 @@ use super::request::Request;
 use super::world::{Action, World};
 use super::{motions, operate, reads, records};
 use crate::controller::Now;
-use crate::controller::yrcx::table::{Command, Pace};
+use crate::controller::yrcx::table::Pace;
 use crate::controller::yrcx::value::{Key, Values};
 
 /// What a command comes to.
@@ -20,6 +20,12 @@ pub(super) enum Work {
     /// It goes on until the master takes it back.
     Continuous,
 }
+
+/// What the programming box leaves (chapter 2, 3).
+const UNDER_THE_BOX: [u16; 27] = [
+    0x101, 0x105, 0x109, 0x10D, 0x111, 0x214, 0x224, 0x304, 0x501, 0x502, 0x503, 0x505, 0x506, 0x507, 0x508, 0x509,
+    0x50A, 0x50B, 0x50C, 0x50F, 0x510, 0x511, 0x512, 0x513, 0x514, 0x515, 0x516,
+];
 
 /// Begins a command, or refuses it.
 pub(super) fn begin(world: &mut World, request: &Request) -> Result<Work, Fault> {
@@ -53,9 +59,7 @@ fn enabled(world: &World, request: &Request) -> Result<(), Fault> {
         let why = "a safety setting disables the dedicated inputs";
         return Err(Fault::new(NOT_ENABLED, Place::Slot, why));
     }
-    // 4.6.4 is a reference, but not in the list of what the box leaves.
-    let reads = request.row.name.starts_with("read ") && request.row.command != Command::ProgramShow;
-    if world.switches.boxed && !reads {
+    if world.switches.boxed && !UNDER_THE_BOX.contains(&request.row.code) {
         return Err(Fault::new(NOT_ENABLED, Place::Slot, "the programming box has control"));
     }
     Ok(())

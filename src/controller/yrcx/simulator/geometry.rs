@@ -74,37 +74,37 @@ impl Geometry {
 
     /// Where the tool is.
     pub(super) fn pose(&self, pulses: &Four) -> Four {
-        let [a, b, z, d] = self.units(pulses);
+        let [one, two, height, last] = self.units(pulses);
         match self.kind {
             Kind::Cartesian => {
-                let [x, y, height] = self.tool(d);
-                [a + x, b + y, z + height, d]
+                let tool = self.tool(last);
+                [one + tool[0], two + tool[1], height + tool[2], last]
             }
             Kind::Scara { first, .. } => {
-                let (bend, second) = self.second_arm(b);
-                let r = a + b + d;
-                let [x, y, height] = self.tool(r);
-                let ((sin_1, cos_1), (sin_2, cos_2)) = (a.to_radians().sin_cos(), (a + bend).to_radians().sin_cos());
-                [first * cos_1 + second * cos_2 + x, first * sin_1 + second * sin_2 + y, z + height, r]
+                let (bend, second) = self.second_arm(two);
+                let turn = one + two + last;
+                let (elbow, wrist) = (turned(first, 0.0, one), turned(second, 0.0, one + bend));
+                let tool = self.tool(turn);
+                [elbow.0 + wrist.0 + tool[0], elbow.1 + wrist.1 + tool[1], height + tool[2], turn]
             }
         }
     }
 
     /// Pulses that put the tool there; `None` if nothing does.
     pub(super) fn pulses(&self, pose: &Four, arm: Arm) -> Option<Four> {
-        let [x, y, z, r] = *pose;
-        let [tool_x, tool_y, height] = self.tool(r);
-        let (x, y, z) = (x - tool_x, y - tool_y, z - height);
-        let Kind::Scara { first, .. } = self.kind else { return Some(self.of_units(&[x, y, z, r])) };
-        let (offset, second) = (self.second_arm(0.0).0, self.second_arm(0.0).1);
+        let turn = pose[3];
+        let tool = self.tool(turn);
+        let [x, y, height] = [pose[0] - tool[0], pose[1] - tool[1], pose[2] - tool[2]];
+        let Kind::Scara { first, .. } = self.kind else { return Some(self.of_units(&[x, y, height, turn])) };
+        let (offset, second) = self.second_arm(0.0);
         let cos = (x * x + y * y - first * first - second * second) / (2.0 * first * second);
         if !cos.is_finite() || cos.abs() > 1.0 + 1e-9 {
             return None;
         }
         let bend = cos.clamp(-1.0, 1.0).acos() * if arm == Arm::Right { 1.0 } else { -1.0 };
-        let turn = y.atan2(x) - (second * bend.sin()).atan2(first + second * bend.cos());
-        let (a, b) = (half_turns(turn.to_degrees()), bend.to_degrees() - offset);
-        Some(self.of_units(&[a, b, z, r - a - b]))
+        let towards = y.atan2(x) - (second * bend.sin()).atan2(first + second * bend.cos());
+        let (one, two) = (half_turns(towards.to_degrees()), bend.to_degrees() - offset);
+        Some(self.of_units(&[one, two, height, turn - one - two]))
     }
 
     /// The hand system of a position; a Cartesian robot has none.

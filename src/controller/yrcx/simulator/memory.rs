@@ -195,8 +195,8 @@ impl Memory {
         let values = std::array::from_fn(|axis| {
             let [origin, along_x, along_y, opposite, top] =
                 [origin, along_x, along_y, opposite, top].map(|point| f64::from(point.values[axis]));
-            let plane = (1.0 - x) * (1.0 - y) * origin + x * (1.0 - y) * along_x + (1.0 - x) * y * along_y;
-            whole(plane + x * y * opposite + z * (top - origin))
+            let level = (1.0 - x) * (1.0 - y) * origin + x * (1.0 - y) * along_x + (1.0 - x) * y * along_y;
+            whole(level + x * y * opposite + z * (top - origin))
         });
         Ok(Point { values, ..origin })
     }
@@ -217,21 +217,14 @@ impl Memory {
 
     /// Puts a number into a variable; whole ones lose what comes after the point.
     pub(super) fn assign(&mut self, number: usize, value: f64) -> Result<(), Fault> {
-        match number.checked_sub(FIRST_REAL) {
-            Some(real) => {
-                let value = single(value);
-                if !value.is_finite() {
-                    return Err(too_large());
-                }
-                *self.real.get_mut(real).ok_or_else(too_large)? = value;
-            }
-            None => {
-                let value = value.trunc();
-                if value < f64::from(i32::MIN) || value > f64::from(i32::MAX) {
-                    return Err(too_large());
-                }
-                *self.whole.get_mut(number).ok_or_else(too_large)? = whole(value);
-            }
+        if let Some(real) = number.checked_sub(FIRST_REAL) {
+            let value = single(value);
+            let place = self.real.get_mut(real).filter(|_| value.is_finite());
+            *place.ok_or_else(too_large)? = value;
+        } else {
+            let value = value.trunc();
+            let fits = (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&value);
+            *self.whole.get_mut(number).filter(|_| fits).ok_or_else(too_large)? = whole(value);
         }
         Ok(())
     }

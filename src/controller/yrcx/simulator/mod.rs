@@ -77,6 +77,13 @@ use crate::controller::Now;
 /// Scans of one call; a longer gap passes at rest.
 const MAX_SCANS: u32 = 1_000_000;
 
+/// What the master does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Master {
+    Shows(Image),
+    Gone,
+}
+
 /// A controller.
 #[derive(Debug, Clone)]
 pub struct Simulator {
@@ -85,8 +92,8 @@ pub struct Simulator {
     dedicated: Dedicated,
     /// What the controller shows.
     shown: Image,
-    /// What the master shows: nothing new, an image, or that it is gone.
-    incoming: Option<Option<Image>>,
+    /// What is new about the master, for the next scan.
+    incoming: Option<Master>,
     /// Since when the next scan has something new to look at.
     touched: Option<Now>,
     /// The last scan.
@@ -112,9 +119,14 @@ impl Simulator {
     /// Takes what the master shows from `now` on; `None`: the link is gone, which is an alarm.
     pub fn input(&mut self, now: Now, image: Option<&Image>) {
         self.advance(now);
-        let known = self.incoming.unwrap_or_else(|| self.world.shown_by_master());
-        if self.world.link == Link::Waiting || known.as_ref() != image {
-            self.incoming = Some(image.copied());
+        let known = match self.world.link {
+            Link::Waiting => None,
+            Link::Up => Some(Master::Shows(self.world.inputs)),
+            Link::Down => Some(Master::Gone),
+        };
+        let incoming = image.map_or(Master::Gone, |image| Master::Shows(*image));
+        if self.incoming.or(known) != Some(incoming) {
+            self.incoming = Some(incoming);
             self.touched.get_or_insert(now);
         }
     }
@@ -154,8 +166,10 @@ impl Simulator {
         self.scanned = Some(at);
         self.touched = None;
         self.world.move_on(at);
-        if let Some(image) = self.incoming.take() {
-            self.world.set_link(image.as_ref());
+        match self.incoming.take() {
+            Some(Master::Shows(image)) => self.world.master_shows(image),
+            Some(Master::Gone) => self.world.master_gone(),
+            None => {}
         }
         self.dedicated.scan(&mut self.world);
         self.world.scan();

@@ -202,8 +202,9 @@ impl Motion {
     pub(super) fn stop(&mut self, now: Now, fault: Fault) {
         let Some(leg) = self.legs.front() else { return };
         if self.stop.is_none() {
-            let (from, speed) = leg.profile.at(now.saturating_sub(self.began).as_secs_f64());
-            self.stop = Some((fault, Profile::Brake { from, speed }));
+            let seconds = now.saturating_sub(self.began).as_secs_f64().min(leg.profile.seconds());
+            let (from, speed) = leg.profile.at(seconds);
+            self.stop = Some((fault, Profile::Brake { from, speed: speed.max(0.0) }));
             self.began = now;
         }
     }

@@ -94,15 +94,19 @@ impl Remote {
     }
 
     fn take(&mut self, world: &mut World, words: &Words) {
-        match Request::read(words).and_then(|request| Ok((commands::begin(world, &request)?, request))) {
-            Ok((work, request)) => {
+        let request = match Request::read(words) {
+            Ok(request) => request,
+            Err(fault) => return self.end(refusal(world, fault)),
+        };
+        match commands::begin(world, &request) {
+            Ok(work) => {
                 let scans = if matches!(work, Work::Done(_)) { self.random.u32(0..=self.run_scans) } else { 0 };
                 let not_before = world.now.saturating_add(SCAN.saturating_mul(scans));
+                let running = Running { request, work, not_before, held: true, ends: Vec::new() };
                 self.shown = RUN_STATUS;
-                self.state =
-                    State::Running(Box::new(Running { request, work, not_before, held: true, ends: Vec::new() }));
+                self.state = State::Running(Box::new(running));
             }
-            Err(fault) => self.end(refusal(world, fault)),
+            Err(fault) => self.end(abnormal_end(world, &request, fault)),
         }
     }
 
@@ -114,20 +118,12 @@ impl Remote {
             }
             return;
         };
-        let (held, request) = (running.held, running.request.clone());
+        let held = running.held;
         let words = match result {
-            Ok(values) => request.reply(Status::NormalEnd, &values),
-            Err(fault) => {
-                let positions = if request.row.pace == Pace::Jog && fault.alarm == STOP_INPUT {
-                    motions::positions(world, &request).unwrap_or_default()
-                } else {
-                    Values::default()
-                };
-                let words = refusal(world, fault);
-                if positions == Values::default() { words } else { with_positions(&request, &positions, &words) }
-            }
+            Ok(values) => running.request.reply(Status::NormalEnd, &values),
+            Err(fault) => abnormal_end(world, &running.request, fault),
         };
-        let taken_back = world.inputs.command()[0] == Status::Ready.word() && world.link != Link::Down;
+        let taken_back = world.link != Link::Down && world.inputs.command()[0] == Status::Ready.word();
         match (held, taken_back) {
             (true, _) => self.end(words),
             (false, true) => {
@@ -186,7 +182,21 @@ fn output(world: &World, request: &Request) -> Words {
     }
 }
 
-/// The words of an abnormal end.
+/// The words of an abnormal end. A jog that the stop input ends tells where it is (4.2.6).
+fn abnormal_end(world: &mut World, request: &Request, fault: Fault) -> Words {
+    let told = request.row.pace == Pace::Jog && fault.alarm == STOP_INPUT;
+    let alarm = refusal(world, fault);
+    match motions::positions(world, request) {
+        Ok(positions) if told => {
+            let mut words = request.reply(Status::AbnormalEnd, &positions);
+            words[..3].copy_from_slice(&alarm[..3]);
+            words
+        }
+        _ => alarm,
+    }
+}
+
+/// The words of a refusal, which is remembered.
 fn refusal(world: &mut World, fault: Fault) -> Words {
     let mut words = NO_WORDS;
     words[0] = Status::AbnormalEnd.word();
@@ -194,13 +204,5 @@ fn refusal(world: &mut World, fault: Fault) -> Words {
     words[2] = fault.alarm.category;
     world.alarms.refuse(&fault);
     world.why = Some(fault);
-    words
-}
-
-/// A jog that was stopped tells where it is (4.2.6).
-fn with_positions(request: &Request, positions: &Values, refusal: &Words) -> Words {
-    let mut words = request.reply(Status::AbnormalEnd, positions);
-    words[1] = refusal[1];
-    words[2] = refusal[2];
     words
 }

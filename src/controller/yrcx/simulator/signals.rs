@@ -11,7 +11,7 @@ use super::robot::Robot;
 use super::world::{Action, Link, Mode, World};
 use crate::controller::Now;
 use crate::controller::yrcx::image::{DEDICATED_WORD, Image};
-use crate::controller::yrcx::signal::{Signal, input, output};
+use crate::controller::yrcx::signal::{Signal, input, output, resting};
 
 /// Edges closer than this are not seen (chapter 1, section 3).
 const EDGE_INTERVAL: Duration = Duration::from_millis(100);
@@ -30,7 +30,7 @@ pub(super) struct Dedicated {
 
 impl Dedicated {
     pub(super) fn new() -> Self {
-        Self { last: World::resting().0[DEDICATED_WORD], edge: None, linked: true }
+        Self { last: resting().0[DEDICATED_WORD], edge: None, linked: true }
     }
 
     /// Looks at the inputs, and does what they ask for.
@@ -62,7 +62,7 @@ impl Dedicated {
         let pulses = PULSES.iter().filter(|(signal, _)| has(rose, *signal));
         for (signal, react) in pulses {
             // Several edges at once have no distance either, and the first image of a master has no edges.
-            let alone = (rose | fell).count_ones() == 1;
+            let alone = (rose | fell).is_power_of_two();
             let result = match (world.switches.inputs && !world.switches.boxed, too_soon || !alone || back) {
                 (false, _) => Err(ignored(*signal, "dedicated inputs have no effect now")),
                 (_, true) => Err(ignored(*signal, "it came less than 100 ms after another edge")),
@@ -140,13 +140,13 @@ pub(super) fn show(world: &mut World, image: &mut Image) {
         signal.set(image, on);
     }
     for port in 0..IMAGE_PORTS {
-        let word = &mut image.0[DEDICATED_WORD + port / 2];
-        let mut bytes = word.to_le_bytes();
+        let place = &mut image.0[DEDICATED_WORD + port / 2];
+        let mut bytes = place.to_le_bytes();
         if port < 2 {
             world.memory.set_port(SO, port_number(port), bytes[port % 2]);
         } else {
             bytes[port % 2] = world.memory.port(SO, port_number(port));
-            *word = u16::from_le_bytes(bytes);
+            *place = u16::from_le_bytes(bytes);
         }
     }
 }

@@ -6,7 +6,9 @@ use std::time::Duration;
 use jiff::SignedDuration;
 use jiff::civil::DateTime;
 
-use super::alarms::{AlarmLog, EMERGENCY_STOP, Fault, LINK_TOO_LATE, MOVING, NO_AXIS, NO_ORIGIN, NO_POWER, NO_ROBOT};
+use super::alarms::{
+    AlarmLog, EMERGENCY_STOP, Fault, LINK, LINK_TOO_LATE, MOVING, NO_AXIS, NO_ORIGIN, NO_POWER, NO_ROBOT,
+};
 use super::alarms::{NOT_AUTO, Place};
 use super::console;
 use super::memory::Memory;
@@ -17,7 +19,7 @@ use super::task::Task;
 use crate::controller::Now;
 use crate::controller::yrcx::alarm::Alarm;
 use crate::controller::yrcx::image::Image;
-use crate::controller::yrcx::signal::{input, resting};
+use crate::controller::yrcx::signal::input;
 
 /// The scan of the controller (chapter 2, 1.2).
 pub(super) const SCAN: Duration = Duration::from_millis(5);
@@ -140,6 +142,7 @@ impl World {
         let now = self.now;
         if self.link == Link::Waiting && self.link_within.is_some_and(|within| within <= now) {
             self.link = Link::Down;
+            self.inputs = Image::default();
             self.raise(&Fault::new(LINK_TOO_LATE, Place::Slot, "no master came in time"), false);
         }
         while self.events.front().is_some_and(|(at, _)| *at <= now) {
@@ -232,31 +235,19 @@ impl World {
         }
     }
 
-    /// The master shows something, or is gone.
-    pub(super) fn set_link(&mut self, image: Option<&Image>) {
-        match image {
-            Some(image) => {
-                self.link = Link::Up;
-                self.inputs = *image;
-            }
-            None if self.link == Link::Down => {}
-            None => {
-                self.link = Link::Down;
-                self.inputs = Image::default();
-                let why = "the master is gone";
-                self.raise(&Fault::new(super::alarms::LINK, Place::Slot, why), false);
-            }
+    /// The master shows something.
+    pub(super) fn master_shows(&mut self, image: Image) {
+        self.link = Link::Up;
+        self.inputs = image;
+    }
+
+    /// The link is gone.
+    pub(super) fn master_gone(&mut self) {
+        if self.link != Link::Down {
+            self.link = Link::Down;
+            self.inputs = Image::default();
+            self.raise(&Fault::new(LINK, Place::Slot, "the master is gone"), false);
         }
-    }
-
-    /// What the master shows; `None` if it is gone.
-    pub(super) fn shown_by_master(&self) -> Option<Image> {
-        (self.link != Link::Down).then_some(self.inputs)
-    }
-
-    /// What rests until a master is there.
-    pub(super) fn resting() -> Image {
-        resting()
     }
 
     /// Whether motor power may go on.

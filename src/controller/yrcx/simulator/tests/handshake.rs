@@ -103,7 +103,7 @@ fn what_ran_when_the_link_went_is_told_to_whoever_comes() {
     bench.begin(&to_19());
     bench.wait(100);
     bench.simulator.input(bench.now, None);
-    bench.now += Duration::from_millis(1000);
+    bench.now += Duration::from_secs(1);
     bench.simulator.advance(bench.now);
     // The next master shows a command at once, which is not taken before a status reset.
     bench.image.set_command(&words(&[0x0503]));
@@ -127,7 +127,7 @@ fn a_master_that_does_not_come_is_missed() {
     let mut simulator = Simulator::new(Start::parse("link_within_ms = 1000").unwrap());
     simulator.advance(Duration::from_millis(999));
     assert!(!output::ALARM.is_on(simulator.output()));
-    simulator.advance(Duration::from_millis(1000));
+    simulator.advance(Duration::from_secs(1));
     assert!(output::ALARM.is_on(simulator.output()));
     assert!(simulator.console(Duration::from_millis(1001), "state").unwrap().contains("12.552"));
 }

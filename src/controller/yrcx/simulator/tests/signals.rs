@@ -94,6 +94,15 @@ fn edges_closer_than_100_ms_are_not_seen() {
 }
 
 #[test]
+fn a_master_that_begins_with_si_00_off_stops_everything() {
+    let mut simulator = Simulator::new(Start::default());
+    simulator.input(Now::ZERO, Some(&Image::default()));
+    simulator.advance(Duration::from_millis(20));
+    let image = *simulator.output();
+    assert!(output::EMERGENCY_STOP.is_on(&image) && output::ALARM.is_on(&image) && !output::SERVO_ON.is_on(&image));
+}
+
+#[test]
 fn a_new_master_does_not_start_anything() {
     let mut bench = Bench::new("servo = false");
     bench.simulator.input(bench.now, None);
