@@ -43,6 +43,9 @@ transcripts! {
     status
     toyo_io
     toyo_motion
+    toyo_palletizing
+    toyo_parameters
+    toyo_points
     toyo_registers
     toyo_system
     usage

@@ -1,9 +1,10 @@
-//! Files that an operator hands over.
+//! Files that an operator hands over, or wants.
 
 use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
+use crate::command::local::Target;
 use crate::controller::toyo::findings::Finding;
 use crate::failure::Failure;
 
@@ -28,6 +29,24 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
 /// How a file is called in reports.
 pub fn shown(path: &Path) -> String {
     if path == Path::new("-") { "stdin".to_owned() } else { path.display().to_string() }
+}
+
+/// Where a file of one robot goes, if somebody wants one; known before anything is asked.
+pub fn target(file: Option<&Path>, force: bool, several: bool) -> Result<Option<Target>, Failure> {
+    let Some(file) = file else { return Ok(None) };
+    if several {
+        return Err(Failure::usage(format!("{} is for one robot", file.display()))
+            .hint("run the command once for each robot, with a file each"));
+    }
+    Target::new(file.to_owned(), force).map(Some)
+}
+
+/// Writes a file, whole or not at all, and says where.
+pub fn write(target: &Target, text: &str) -> Result<String, Failure> {
+    let mut draft = target.begin()?;
+    draft.write(text.as_bytes())?;
+    draft.commit()?;
+    Ok(target.path().display().to_string())
 }
 
 /// Every mistake of a file, a line each.

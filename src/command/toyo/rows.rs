@@ -12,7 +12,7 @@ use super::cells::Cells;
 use super::link;
 use super::numbers::{Numbers, number, read_contents};
 use super::stores::parameter_cell;
-use super::values::Changes;
+use super::values::{Changes, in_a_line, shown};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Form, Value};
@@ -197,11 +197,12 @@ impl<K: Kind> Command for Set<K> {
         let changes = Changes::read(&format!("row {}", self.row), &table.body(), &self.values)?;
         let read = Request::read_parameter(table, Some(self.row)).map_err(|error| link::wrong(&error))?;
         let values = changes.completed(link, &read).await?;
+        let body = table.body().record(values.clone()).map_err(|error| link::wrong(&error))?;
         let values = std::iter::once(Value::Number(self.row)).chain(values).collect();
         let cell = parameter_cell(table, values).map_err(|error| link::wrong(&error))?;
         let mut cells = Cells::default();
         link.store(screen, &cell, &mut cells).await?;
-        Ok(Stored { row: Row::of(&cell.wanted), cells })
+        Ok(Stored { row: Row::of(&cell.wanted), cells, text: in_a_line(&shown(&body)) })
     }
 }
 
@@ -235,6 +236,9 @@ pub struct Stored<K: Kind> {
     row: Row<K>,
     #[serde(flatten)]
     cells: Cells,
+    /// The values as typed.
+    #[serde(skip)]
+    text: String,
 }
 
 impl<K: Kind> Row<K> {
@@ -258,8 +262,8 @@ impl<K: Kind> Report for Rows<K> {
 
 impl<K: Kind> Report for Stored<K> {
     fn view(&self) -> View {
-        let named = K::COLUMNS.iter().zip(&self.row.cells).map(|(name, cell)| format!("{name} {}", cell.text));
-        View::text(format!("{}\n{}", named.collect::<Vec<_>>().join(", "), self.cells.in_words()))
+        let table = table::<K>().name;
+        View::text(format!("{table} {}: {}\n{}", self.row.row, self.text, self.cells.in_words()))
     }
 }
 

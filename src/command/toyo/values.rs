@@ -142,14 +142,15 @@ impl Changes {
     /// What was typed for a layout: all values in their order, or some of them as `name=value`. `what` names it.
     pub fn read(what: &str, layout: &Layout, typed: &[String]) -> Result<Self, Failure> {
         let places = places(layout);
-        let wrong = |error: String| Failure::usage(format!("{what}: {error}")).hint(usage(&places, layout));
+        let wrong = |error: String| Failure::usage(format!("{what}: {error}"));
+        let misplaced = |error: String| wrong(error).hint(usage(&places, layout));
         let named: Vec<Option<(&str, &str)>> = typed.iter().map(|text| assignment(text)).collect();
         let mut changes = vec![None; layout.fields.len()];
         if named.iter().all(Option::is_none) {
             if typed.len() != places.len() {
                 let values = if places.len() == 1 { "value" } else { "values" };
                 let message = format!("{} {values} needed, {} given", places.len(), typed.len());
-                return Err(wrong(message));
+                return Err(misplaced(message));
             }
             for (place, text) in places.iter().zip(typed) {
                 place.put(&mut changes, place.read(layout, text).map_err(wrong)?);
@@ -157,14 +158,15 @@ impl Changes {
             return Ok(Self(changes));
         }
         for (assignment, text) in named.into_iter().zip(typed) {
-            let (name, value) = assignment.ok_or_else(|| wrong(format!("'{text}' has no name, and others have")))?;
+            let (name, value) =
+                assignment.ok_or_else(|| misplaced(format!("'{text}' has no name, and others have")))?;
             let place = places.iter().find(|place| place.name.eq_ignore_ascii_case(name)).ok_or_else(|| {
                 let near = nearest(name, places.iter().map(|place| &place.name[..]));
                 let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-                wrong(format!("there is no value '{}'{near}", name.escape_debug()))
+                misplaced(format!("there is no value '{}'{near}", name.escape_debug()))
             })?;
             if changes[place.fields.start].is_some() {
-                return Err(wrong(format!("{} is given twice", place.name)));
+                return Err(misplaced(format!("{} is given twice", place.name)));
             }
             place.put(&mut changes, place.read(layout, value).map_err(wrong)?);
         }

@@ -16,7 +16,7 @@ use crate::output::view::View;
 #[derive(Debug, Args)]
 pub struct Get {
     /// Groups and ranges of them, 1 to 32; without any, all
-    #[arg(value_name = "GROUP", value_delimiter = ',', value_parser = |text: &str| Numbers::parse(field(), text))]
+    #[arg(value_name = "GROUP", value_delimiter = ',', value_parser = |text: &str| Numbers::parse(&field(), text))]
     groups: Vec<Numbers>,
 }
 
@@ -26,7 +26,7 @@ impl Command for Get {
     const ID: &'static str = "toyo.mvm.get";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Groups, Failure> {
-        let groups = Numbers::of(&self.groups, field());
+        let groups = Numbers::of(&self.groups, &field());
         let requests = groups.into_iter().map(reads).collect::<Result<Vec<Vec<Request>>, Failure>>()?.concat();
         let sheets = read_contents(context.link, context.screen, "reading sheets", &requests).await?;
         Ok(Groups { groups: sheets.chunks(SHEETS.len()).map(Group::of).collect() })

@@ -51,8 +51,8 @@ fn sheet(index: usize) -> &'static Parameter {
 }
 
 /// The number of a group, 1 to 32.
-fn field() -> &'static Field {
-    &sheet(0).key.fields[0]
+fn field() -> Field {
+    sheet(0).key.fields[0].named("group")
 }
 
 /// What reads the sheets of a group.
@@ -97,7 +97,7 @@ impl Group {
         let aim = record(3).and_then(|sheet| sheet.pairs().find(|(field, _)| field.name == "aim"));
         let raw = |value: &Value| if let Value::Word(word) = value { *word } else { "" };
         Self {
-            group: number(0, field().name),
+            group: number(0, "row"),
             origin_point: number(0, "origin"),
             p1_point: number(0, "p1"),
             p2_point: number(0, "p2"),
@@ -115,7 +115,7 @@ impl Group {
     /// A line a group.
     fn table(groups: &[Self]) -> View {
         let mut table = Table::new(
-            &["group", "P0 P1 P2 P3", "pieces", "counters", "approach", "z (mm)", "r (mm)", "destination r (mm)"],
+            &["group", "P0 P1 P2 P3", "pieces", "counters", "approach", "z (mm)", "r (mm)", "dest r (mm)"],
             "no groups",
         );
         for group in groups {

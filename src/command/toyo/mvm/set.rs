@@ -27,7 +27,7 @@ use crate::output::view::{Section, View};
 )]
 pub struct Set {
     /// Group, 1 to 32
-    #[arg(value_name = "GROUP", value_parser = |text: &str| number(field(), text))]
+    #[arg(value_name = "GROUP", value_parser = |text: &str| number(&field(), text))]
     group: i32,
     /// Such as origin=5, pieces1=10, approach=absolute
     #[arg(required = true, value_name = "NAME=VALUE")]

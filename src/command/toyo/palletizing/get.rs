@@ -7,9 +7,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Entry, parse_program, parse_record, reads};
-use crate::command::local::Target;
-use crate::command::toyo::Family;
 use crate::command::toyo::numbers::read_contents;
+use crate::command::toyo::{Family, files};
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::bulk::pallets;
 use crate::controller::toyo::table::Pallet;
@@ -43,23 +42,15 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Program, Failure> {
         let Context { link, screen, several, .. } = context;
-        if let Some(file) = self.toml.as_ref().filter(|_| several) {
-            return Err(Failure::usage(format!("{} is for the program of one robot", file.display()))
-                .hint("run the command once for each robot, with a file each"));
-        }
-        let target = self.toml.clone().map(|file| Target::new(file, self.force)).transpose()?;
+        let target = files::target(self.toml.as_deref(), self.force, several)?;
         let wanted = if self.records.is_empty() { RECORDS.iter().collect() } else { self.records.clone() };
         let contents = read_contents(link, screen, "reading records", &reads(self.program, &wanted)?).await?;
         let records: Vec<_> = wanted.into_iter().zip(contents).collect();
-        if let Some(target) = &target {
-            let mut draft = target.begin()?;
-            draft.write(pallets::write(&records).as_bytes())?;
-            draft.commit()?;
-        }
+        let file = target.map(|target| files::write(&target, &pallets::write(&records))).transpose()?;
         Ok(Program {
             program: self.program,
             records: records.iter().map(|(pallet, record)| Entry::of(pallet, record)).collect(),
-            file: target.map(|target| target.path().display().to_string()),
+            file,
         })
     }
 }

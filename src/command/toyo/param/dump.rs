@@ -9,10 +9,9 @@ use serde::Serialize;
 
 use super::entry::{Key, read_keys};
 use super::singles;
-use crate::command::local::Target;
-use crate::command::toyo::Family;
 use crate::command::toyo::numbers::Numbers;
 use crate::command::toyo::values::{in_a_line, shown};
+use crate::command::toyo::{Family, files};
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::bulk::{Setting, parameters};
 use crate::controller::toyo::layout::Record;
@@ -44,11 +43,7 @@ impl Command for Dump {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Dumped, Failure> {
         let Context { robot, link, screen, several } = context;
-        if let Some(file) = self.file.as_ref().filter(|_| several) {
-            return Err(Failure::usage(format!("{} is for the parameters of one robot", file.display()))
-                .hint("run the command once for each robot, with a file each"));
-        }
-        let target = self.file.clone().map(|file| Target::new(file, self.force)).transpose()?;
+        let target = files::target(self.file.as_deref(), self.force, several)?;
         let keys = keys();
         let contents = read_keys(link, screen, &keys).await?;
         let mut kept = Kept::default();
@@ -63,15 +58,7 @@ impl Command for Dump {
             parameters::write(&kept.settings),
             kept.remarks()
         );
-        let file = match &target {
-            Some(target) => {
-                let mut draft = target.begin()?;
-                draft.write(text.as_bytes())?;
-                draft.commit()?;
-                Some(target.path().display().to_string())
-            }
-            None => None,
-        };
+        let file = target.map(|target| files::write(&target, &text)).transpose()?;
         let Kept { settings, refused, unfit } = kept;
         let text = file.is_none().then_some(text);
         Ok(Dumped { saved: settings.len(), refused, unfit, taken_at, file, text })

@@ -91,7 +91,16 @@ pub async fn read_keys(link: &mut Link, screen: &Screen, keys: &[Key]) -> Result
         }
     }
     if !contents.is_empty() && contents.iter().all(Option::is_none) {
-        return Err(refusal::explained(link, Command::Rpar).await);
+        let failure = refusal::explained(link, Command::Rpar).await;
+        let rare = keys.iter().find(|(parameter, _)| !parameter.only_on.is_empty());
+        return Err(match (rare, &failure.hint) {
+            (Some((parameter, _)), Some(hint)) => {
+                let models = parameter.only_on.join(", ");
+                let hint = format!("only some controllers have {}: {models}; or {hint}", parameter.id);
+                failure.hint(hint)
+            }
+            _ => failure,
+        });
     }
     Ok(contents)
 }

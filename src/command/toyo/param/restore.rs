@@ -99,8 +99,9 @@ impl Command for Restore {
         let left_out = stores::left_out(&stores, self.resume.as_deref())?;
         let other_groups = left.iter().map(|setting| key_text((setting.parameter, setting.row()))).collect::<Vec<_>>();
         if self.group.is_empty() && !other_groups.is_empty() {
-            let count = other_groups.len();
-            screen.note(&format!("machine and special parameters are left out: {count} (--group machine,special)"));
+            let parameters = if other_groups.len() == 1 { "parameter" } else { "parameters" };
+            let left = format!("{} machine or special {parameters} left out", other_groups.len());
+            screen.note(&format!("{left} (--group machine,special)"));
         }
         for setting in &chosen[left_out..] {
             let found = if machine::is_task_steps(setting.parameter) && !link.is_dry() {

@@ -36,7 +36,7 @@ impl Command for Get {
     async fn run(&self, context: Context<'_, Family>) -> Result<Points, Failure> {
         let Context { link, screen, .. } = context;
         let task = tasks::choose(link, self.task).await?;
-        let points = read_all(link, screen, &Numbers::of(&self.points, field())).await?;
+        let points = read_all(link, screen, &Numbers::of(&self.points, &field())).await?;
         Ok(Points { task, points: points.iter().map(Row::of).collect() })
     }
 }

@@ -7,9 +7,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::get::Points;
-use super::{OTHER_TASK, Row, alone, read_all};
-use crate::command::local::Target;
-use crate::command::toyo::{Family, tasks};
+use super::{OTHER_TASK, Row, read_all};
+use crate::command::toyo::{Family, files, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::bulk::{Setting, points};
@@ -54,13 +53,7 @@ impl Command for List {
         if self.to < self.from {
             return Err(Failure::usage(format!("--to {} is before --from {}", self.to, self.from)));
         }
-        let target = match &self.csv {
-            Some(file) => {
-                alone(file, several)?;
-                Some(Target::new(file.clone(), self.force)?)
-            }
-            None => None,
-        };
+        let target = files::target(self.csv.as_deref(), self.force, several)?;
         let task = tasks::choose(link, self.task).await?;
         let records = read_all(link, screen, &(self.from..=self.to).collect::<Vec<_>>()).await?;
         let Some(target) = target else {
@@ -68,10 +61,8 @@ impl Command for List {
         };
         let setting = |record: &Record| Setting { parameter: points::table(), values: record.values().to_vec() };
         let settings: Vec<Setting> = records.iter().map(setting).collect();
-        let mut draft = target.begin()?;
-        draft.write(points::write(&settings, AXES).as_bytes())?;
-        draft.commit()?;
-        Ok(Listing::File(Saved { task, file: target.path().display().to_string(), saved: settings.len() }))
+        let file = files::write(&target, &points::write(&settings, AXES))?;
+        Ok(Listing::File(Saved { task, file, saved: settings.len() }))
     }
 }
 

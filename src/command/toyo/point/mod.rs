@@ -4,8 +4,6 @@ mod get;
 mod list;
 mod set;
 
-use std::path::Path;
-
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -49,7 +47,7 @@ pub struct Row {
 
 impl Row {
     fn of(record: &Record) -> Self {
-        Self { point: record.number(field().name).unwrap_or_default(), place: Place::of(record) }
+        Self { point: record.number("row").unwrap_or_default(), place: Place::of(record) }
     }
 
     /// With the columns of a CSV file that `point set --from` reads.
@@ -64,13 +62,13 @@ impl Row {
 }
 
 /// The number of a point, 1 to 999.
-fn field() -> &'static Field {
-    &table().key.fields[0]
+fn field() -> Field {
+    table().key.fields[0].named("point")
 }
 
 /// Points on a command line.
 fn parse_points(text: &str) -> Result<Numbers, String> {
-    Numbers::parse(field(), text)
+    Numbers::parse(&field(), text)
 }
 
 /// Reads points of the current task, one after the other. A dry run notes them and ends.
@@ -79,15 +77,6 @@ async fn read_all(link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Ve
         points.iter().map(|point| Request::read_parameter(table(), Some(*point))).collect();
     let requests = requests.map_err(|error| link::wrong(&error))?;
     numbers::read_contents(link, screen, "reading points", &requests).await
-}
-
-/// A file is for one robot: another one would replace it, or be given its points.
-fn alone(file: &Path, several: bool) -> Result<(), Failure> {
-    if several {
-        return Err(Failure::usage(format!("{} is for the points of one robot", file.display()))
-            .hint("run the command once for each robot, with a file each"));
-    }
-    Ok(())
 }
 
 #[cfg(test)]

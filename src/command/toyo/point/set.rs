@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::list::AXES;
-use super::{OTHER_TASK, Row, alone, field};
+use super::{OTHER_TASK, Row, field};
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::numbers::{number, runs};
 use crate::command::toyo::stores::{self, Fate, Store, Work, parameter_cell};
@@ -29,7 +29,7 @@ use crate::output::view::View;
 #[command(after_help = OTHER_TASK)]
 pub struct Set {
     /// Row of the coordinate table, 1 to 999
-    #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "POINT", value_parser = |text: &str| number(field(), text))]
+    #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "POINT", value_parser = |text: &str| number(&field(), text))]
     point: Option<i32>,
     /// X, Y, Z and R in mm, or some of them by name, such as z=12.5, which keeps the others
     #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "MM", allow_negative_numbers = true)]
@@ -57,9 +57,8 @@ impl Command for Set {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
-        let Context { link, screen, several, .. } = context;
+        let Context { link, screen, .. } = context;
         if let Some(file) = &self.from {
-            alone(file, several)?;
             let name = files::shown(file);
             let read = points::read(&files::read(file)?, AXES);
             let points = read.map_err(|errors| files::faulty(&name, &errors))?;
@@ -86,7 +85,7 @@ impl Command for Set {
 
 fn store(values: Vec<Value>) -> Result<Store, Failure> {
     let cell = parameter_cell(points::table(), values).map_err(|error| link::wrong(&error))?;
-    let row = cell.wanted.number(field().name).unwrap_or_default();
+    let row = cell.wanted.number("row").unwrap_or_default();
     Ok(Store { key: row.to_string(), cell, is_optional: false })
 }
 
