@@ -30,13 +30,19 @@ struct Machine {
 
 impl Machine {
     fn answer(&mut self, block: &str) -> String {
-        let ok = |()| "@OK".to_owned();
         match &block[1..5] {
-            "HSON" => ok(self.host = true),
-            "HSOF" => ok(self.host = false),
-            "SPST" | "HOME" => ok(self.runs = true),
-            "STOP" => ok(self.runs = false),
-            "JGST" => ok(self.jogs = !block.contains("X=SP") && !block.contains("X=RS")),
+            "HSON" => self.host = true,
+            "HSOF" => self.host = false,
+            "SPST" | "HOME" => self.runs = true,
+            "STOP" => self.runs = false,
+            "JGST" => self.jogs = !block.contains("X=SP") && !block.contains("X=RS"),
+            _ => return self.data(block),
+        }
+        "@OK".to_owned()
+    }
+
+    fn data(&mut self, block: &str) -> String {
+        match &block[1..5] {
             "MPST" => {
                 self.x += i32::from(self.jogs || self.runs);
                 format!("@MPST X=+{:04}.{:02} Y=+0000.00 Z=+0000.00 R=+0000.00", self.x / 100, self.x % 100)

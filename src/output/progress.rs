@@ -1,9 +1,8 @@
 //! Progress of long work on stderr: a bar on a terminal, a line now and then elsewhere.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use tokio::time::Instant;
 
 use super::{Screen, escape};
 
