@@ -36,16 +36,9 @@ impl Machine {
             "SPST" | "HOME" => self.runs = true,
             "STOP" => self.runs = false,
             "JGST" => self.jogs = !block.contains("X=SP") && !block.contains("X=RS"),
-            _ => return self.data(block),
-        }
-        "@OK".to_owned()
-    }
-
-    fn data(&mut self, block: &str) -> String {
-        match &block[1..5] {
             "MPST" => {
                 self.x += i32::from(self.jogs || self.runs);
-                format!("@MPST X=+{:04}.{:02} Y=+0000.00 Z=+0000.00 R=+0000.00", self.x / 100, self.x % 100)
+                return format!("@MPST X=+{:04}.{:02} Y=+0000.00 Z=+0000.00 R=+0000.00", self.x / 100, self.x % 100);
             }
             "STAS" => {
                 let page = match &block[10..] {
@@ -54,11 +47,12 @@ impl Machine {
                     "3" => 0x11,
                     _ => 0,
                 };
-                format!("{block} ST1={page:02X} ST2=00")
+                return format!("{block} ST1={page:02X} ST2=00");
             }
-            "RSTX" => "@RSTX 0001 NOP".to_owned(),
-            _ => "@NG".to_owned(),
+            "RSTX" => return "@RSTX 0001 NOP".to_owned(),
+            _ => return "@NG".to_owned(),
         }
+        "@OK".to_owned()
     }
 }
 

@@ -96,7 +96,7 @@ async fn transfer(context: Context<'_, Family>, work: Accepted, no_wait: bool) -
     }
     let end = work.wait(link, context.screen).await?;
     let needs_power_cycle = link.status_of(&[0]).await?.needs_power_cycle();
-    Ok(Transferred { accepted: true, elapsed_ms: Some(end.elapsed_ms), needs_power_cycle: Some(needs_power_cycle) })
+    Ok(Transferred { accepted: true, elapsed_ms: end.elapsed_ms, needs_power_cycle: Some(needs_power_cycle) })
 }
 
 /// What became of a transfer.
@@ -104,7 +104,7 @@ async fn transfer(context: Context<'_, Family>, work: Accepted, no_wait: bool) -
 pub struct Transferred {
     /// The controller took the order.
     accepted: bool,
-    /// From the acceptance to the end; null if nobody waited.
+    /// From the acceptance to the end; null if nobody waited, or if it was over before the first look.
     elapsed_ms: Option<u64>,
     /// Parameter 2 was changed: nothing is executed until the power was off; null if nobody waited.
     needs_power_cycle: Option<bool>,
@@ -112,13 +112,15 @@ pub struct Transferred {
 
 impl Report for Transferred {
     fn view(&self) -> View {
-        let Some(ms) = self.elapsed_ms else { return View::fields([("memory card", "started".into())]) };
-        let due =
-            if self.needs_power_cycle == Some(true) { Cell::from("due").tone(Tone::Bad) } else { "not due".into() };
+        let due = match self.needs_power_cycle {
+            None => return View::fields([("memory card", "started".into())]),
+            Some(true) => Cell::from("due").tone(Tone::Bad),
+            Some(false) => "not due".into(),
+        };
         View::fields([
             ("memory card", Cell::from("done").tone(Tone::Good)),
             ("power cycle", due),
-            ("elapsed (ms)", ms.into()),
+            ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
         ])
     }
 }

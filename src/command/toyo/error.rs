@@ -3,12 +3,11 @@
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use tokio::time::{Instant, sleep};
 
 use super::Family;
 use super::link::Link;
 use super::status::ErrorCode;
-use super::waiting::{LOOK_EVERY, status_page};
+use super::waiting::{becomes, status_page};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::errors;
@@ -45,7 +44,8 @@ impl Command for Show {
     async fn run(&self, context: Context<'_, Family>) -> Result<Present, Failure> {
         let link = context.link;
         if link.is_dry() {
-            foresee(link);
+            link.foresee(&status_page(0), "whether there is an error");
+            link.foresee(&status_page(1), "which");
             return std::future::pending().await;
         }
         Ok(Present { error: present(link).await?.map(Explained::of) })
@@ -56,11 +56,6 @@ impl Command for Show {
 async fn present(link: &mut Link) -> Result<Option<u8>, Failure> {
     let status = link.status_of(&[0, 1]).await?;
     Ok((status.has_error() || status.error != errors::NONE).then_some(status.error))
-}
-
-fn foresee(link: &mut Link) {
-    link.foresee(&status_page(0), "whether there is an error");
-    link.foresee(&status_page(1), "which");
 }
 
 /// The error that is present.
@@ -209,9 +204,6 @@ impl Report for Past {
 #[derive(Debug, Args)]
 pub struct Cancel {}
 
-/// How long a controller gets to let go of an error.
-const CANCEL_WITHIN: std::time::Duration = std::time::Duration::from_secs(1);
-
 impl Command for Cancel {
     type Family = Family;
     type Report = Cancelled;
@@ -224,18 +216,10 @@ impl Command for Cancel {
     async fn run(&self, context: Context<'_, Family>) -> Result<Cancelled, Failure> {
         let link = context.link;
         link.order(&Request::bare(table::Command::Cerr)).await?;
-        if link.is_dry() {
-            foresee(link);
-            return std::future::pending().await;
+        if becomes(link, (0, "whether it is gone"), |status| !status.has_error()).await? {
+            return Ok(Cancelled { left: None });
         }
-        let until = Instant::now() + CANCEL_WITHIN;
-        loop {
-            let left = present(link).await?;
-            if left.is_none() || Instant::now() >= until {
-                return Ok(Cancelled { left: left.map(Explained::of) });
-            }
-            sleep(LOOK_EVERY).await;
-        }
+        Ok(Cancelled { left: present(link).await?.map(Explained::of) })
     }
 }
 
@@ -299,7 +283,7 @@ mod tests {
     #[test]
     fn what_is_asked() {
         assert_eq!(blocks(&["error", "show"]).unwrap(), ["@STAS SNO=0", "@STAS SNO=1"]);
-        assert_eq!(blocks(&["error", "cancel"]).unwrap(), ["@CERR", "@STAS SNO=0", "@STAS SNO=1"]);
+        assert_eq!(blocks(&["error", "cancel"]).unwrap(), ["@CERR", "@STAS SNO=0"]);
         assert_eq!(blocks(&["error", "point"]).unwrap(), ["@MERP"]);
         assert_eq!(blocks(&["error", "history", "--limit", "2"]).unwrap(), ["@EHTR NO=01", "@EHTR NO=02"]);
         assert_eq!(blocks(&["error", "history"]).unwrap().len(), 20);

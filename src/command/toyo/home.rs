@@ -68,7 +68,7 @@ impl Command for Home {
             return Ok(Homed { accepted: true, position: None, elapsed_ms: None });
         }
         let end = accepted.wait(link, context.screen).await?;
-        Ok(Homed { accepted: true, position: end.place, elapsed_ms: Some(end.elapsed_ms) })
+        Ok(Homed { accepted: true, position: end.place, elapsed_ms: end.elapsed_ms })
     }
 }
 
@@ -79,7 +79,7 @@ pub struct Homed {
     accepted: bool,
     /// Where the axes stand; null if nobody waited.
     position: Option<Place>,
-    /// From the acceptance to the end; null if nobody waited.
+    /// From the acceptance to the end; null if nobody waited, or if it was over before the first look.
     elapsed_ms: Option<u64>,
 }
 

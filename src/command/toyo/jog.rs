@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
 use serde::Serialize;
-use tokio::time::{Instant, sleep, timeout_at};
+use tokio::time::{Instant, sleep, sleep_until, timeout_at};
 
 use super::Family;
 use super::link::{Link, Moving, jog};
@@ -187,21 +187,18 @@ impl Jog {
     ) -> Result<Infallible, Cut> {
         link.try_order(&self.order()).await?.map_err(|_| Cut::Refused)?;
         *is_accepted = true;
-        let (mut refused, mut longest) = (0, Duration::ZERO);
+        let mut longest = Duration::ZERO;
         loop {
             let began = Instant::now();
-            match look(link).await {
-                Ok((_, place)) => {
-                    refused = 0;
-                    live.say(format!("jogging {}", place.in_a_line()));
-                }
-                Err(Cut::Failed(failure)) if failure.kind == Kind::Refused && refused < MOST_REFUSED => refused += 1,
-                Err(cut) => return Err(cut),
-            }
+            let (_, place) = look(link).await?;
+            live.say(format!("jogging {}", place.in_a_line()));
             longest = longest.max(began.elapsed());
-            // The stop shall find the line at peace.
             let next = began + LOOK_EVERY.max(longest);
-            tokio::time::sleep_until(if next + longest > until { until } else { next }).await;
+            if next + longest > until {
+                // The stop shall find the line at peace.
+                return std::future::pending().await;
+            }
+            sleep_until(next).await;
         }
     }
 
@@ -234,13 +231,23 @@ impl Jog {
     }
 }
 
-/// Whether something is executed, and where the axes are.
+/// Whether something is executed, and where the axes are. A busy controller is asked again.
 async fn look(link: &mut Link) -> Result<(bool, Place), Cut> {
+    let mut refused = 0;
+    loop {
+        match try_look(link).await {
+            Err(Cut::Failed(failure)) if failure.kind == Kind::Refused && refused < MOST_REFUSED => refused += 1,
+            looked => return looked,
+        }
+    }
+}
+
+async fn try_look(link: &mut Link) -> Result<(bool, Place), Cut> {
     let status = link.status_of(&[0]).await?;
     if status.has_error() {
         return Err(Cut::Error);
     }
-    Ok((status.executing(), Place::of(&link.read(&position()).await?)))
+    Ok((status.executing(), Place::of(&link.place().await?)))
 }
 
 impl Command for Jog {

@@ -165,7 +165,7 @@ impl Command for Reset {
 /// Without --jog: a program, a return to origin; and an axis that moves although nothing is executed.
 #[derive(Debug, Args)]
 pub struct Stop {
-    /// Stop a JOG, as after an `armctl` that was killed while an axis was jogged
+    /// Stop a JOG, as after an armctl that was killed while an axis was jogged
     #[arg(long)]
     jog: bool,
 }
@@ -254,6 +254,18 @@ mod tests {
         assert_eq!(failure.kind, Kind::ConditionNotMet);
         assert_eq!(failure.message, "the order was accepted, but the mode has not changed within 1s");
         assert!(failure.hint.unwrap().contains("M10"));
+    }
+
+    #[test]
+    fn what_was_accepted_and_is_not_seen_is_open() {
+        let blind = |block: &str, _| if block == "@STAS SNO=3" { Fate::Lost } else { Fate::Pass };
+        let failure = Bench::spoilt("", blind).0.run(&["servo", "off"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::OutcomeUnknown);
+        assert!(failure.message.starts_with("the order was accepted, but what came of it was not seen: "));
+        let busy = |block: &str, count| {
+            if block == "@STAS SNO=3" && count < 4 { Fate::Answered("@NG") } else { Fate::Pass }
+        };
+        Bench::spoilt("", busy).0.data(&["servo", "off"]);
     }
 
     #[test]

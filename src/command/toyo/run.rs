@@ -202,14 +202,7 @@ async fn wait(link: &mut Link, screen: &Screen, order: table::Command) -> Result
         return Err(stopped(last.as_ref(), place));
     }
     let (step, instruction) = last.unzip();
-    Ok(Ran {
-        accepted: true,
-        stopped: Some(is_paused),
-        step,
-        instruction,
-        position: place,
-        elapsed_ms: Some(elapsed_ms),
-    })
+    Ok(Ran { accepted: true, stopped: Some(is_paused), step, instruction, position: place, elapsed_ms })
 }
 
 const DONE: &str = "the start was accepted";
@@ -251,7 +244,7 @@ pub struct Ran {
     instruction: Option<String>,
     /// Where the axes stand; null if nobody waited.
     position: Option<Place>,
-    /// From the acceptance to the end; null if nobody waited.
+    /// From the acceptance to the end; null if nobody waited, or if it was over before the first look.
     elapsed_ms: Option<u64>,
 }
 

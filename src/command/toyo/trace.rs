@@ -152,4 +152,16 @@ mod tests {
         assert!(holds(&record, b"@HSON\r\n") && holds(&record, b"@OK\r\n"), "{record:?}");
         assert!(!holds(&record, b"\x01@OK\r\n"));
     }
+
+    #[test]
+    fn text_waits_while_it_is_held() {
+        let access = Access { granted: Risk::Read, dry_run: false, trace: None };
+        let mut trace = Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 2), None).unwrap();
+        trace.hold();
+        trace.record(Direction::Sent, b"@HSON\r\n");
+        trace.record(Direction::Received, b"@OK\r\n");
+        assert_eq!(trace.held.as_ref().map(Vec::len), Some(2));
+        trace.release();
+        assert_eq!(trace.held, None);
+    }
 }

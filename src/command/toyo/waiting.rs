@@ -60,8 +60,8 @@ pub(super) struct Accepted {
 pub(super) struct End {
     /// Where the axes stand; `None` where nothing moves.
     pub place: Option<Place>,
-    /// From the acceptance to the end.
-    pub elapsed_ms: u64,
+    /// From the acceptance to the end; `None` if it was over before the first look.
+    pub elapsed_ms: Option<u64>,
     /// Whether it stands at a stop, and can go on.
     pub is_paused: bool,
 }
@@ -94,6 +94,7 @@ impl Accepted {
                         Look::Ended => {
                             link.has_ended();
                             let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
+                            let elapsed_ms = watch.seen.then_some(elapsed_ms);
                             return Ok(End { place, elapsed_ms, is_paused: status.paused() });
                         }
                         Look::Failed(trouble) => {
@@ -122,7 +123,7 @@ impl Accepted {
             teller.inputs = link.status_of(&[4]).await?.inputs;
             teller.step = step(link).await?.map_or(String::new(), |(number, text)| format!("step {number} {text}"));
         }
-        let place = if self.work == Work::Card { None } else { Some(link.read(&position()).await?) };
+        let place = if self.work == Work::Card { None } else { Some(link.place().await?) };
         Ok((Status { inputs: teller.inputs, ..status }, place))
     }
 
@@ -189,7 +190,7 @@ async fn resting_place(link: &mut Link, seen: Option<Place>) -> Option<Place> {
     let mut last = seen?;
     for _ in 0..LOOKS_TO_REST {
         tokio::time::sleep(LOOK_EVERY).await;
-        let Ok(record) = link.read(&position()).await else { break };
+        let Ok(record) = link.place().await else { break };
         let here = Place::of(&record);
         let is_at_rest = here == last;
         last = here;
@@ -220,13 +221,17 @@ pub(super) async fn becomes(
     }
     let until = Instant::now() + BEGIN_WITHIN;
     loop {
-        if is_so(link.status_of(&[page]).await?) {
-            return Ok(true);
+        let is_late = Instant::now() >= until;
+        match link.status_of(&[page]).await {
+            Ok(status) if is_so(status) => return Ok(true),
+            Ok(_) if is_late => return Ok(false),
+            Err(failure) if is_late || failure.kind != Kind::Refused => {
+                let message = format!("the order was accepted, but what came of it was not seen: {}", failure.message);
+                return Err(Failure { kind: Kind::OutcomeUnknown, message, ..failure }
+                    .hint("`toyo status` tells how the controller stands"));
+            }
+            _ => tokio::time::sleep(LOOK_EVERY).await,
         }
-        if Instant::now() >= until {
-            return Ok(false);
-        }
-        tokio::time::sleep(LOOK_EVERY).await;
     }
 }
 

@@ -5,6 +5,7 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 use super::{Link, Moving, SILENCE, jog, status_page};
+use crate::command::toyo::refusal;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::{Answer, Request};
 use crate::controller::toyo::session::Policy;
@@ -63,6 +64,11 @@ impl Link {
         stopped
     }
 
+    /// Where the axes are. A refusal is not explained: that takes time, and the controller is busy for a moment.
+    pub async fn place(&mut self) -> Result<Record, Failure> {
+        self.try_read(&Request::bare(Command::Mpst)).await?.map_err(|_| refusal::mute())
+    }
+
     /// Sends a stop at once if the line owes an answer, which [`Link::stop`] would wait for first.
     pub(super) async fn rush(&mut self, stop: &Request) {
         if let Some(bytes) = self.line.urgent(self.started.elapsed(), stop) {
@@ -111,7 +117,7 @@ impl Link {
         self.rush(stop).await;
         let answer = self.converse(stop, true).await?;
         let state = self.status_of(&[0]).await?;
-        let place = self.read(&Request::bare(Command::Mpst)).await?;
+        let place = self.place().await?;
         Ok(Attempt { is_refused: answer == Answer::Refused, is_busy: state.executing() || state.homing(), place })
     }
 }
