@@ -7,6 +7,7 @@
 pub mod common;
 pub mod interrupt;
 pub mod local;
+pub mod manifest;
 pub mod orders;
 pub mod overview;
 pub mod run;

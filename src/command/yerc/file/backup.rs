@@ -8,11 +8,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::Instant;
 
-use super::manifest::{Entry, Found, Hash, MANIFEST, Manifest, Reason, Saved};
+use super::manifest::{Entry, Manifest};
 use super::name::{self, Shown, TypeArg, type_word};
 use super::results::{FileResult, Results, Shape, State};
 use super::transfer;
 use crate::command::local::{LocalNames, Target, make_folder, own_folder};
+use crate::command::manifest::{self, Hash, MANIFEST, Reason, Saved};
 use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};
@@ -120,24 +121,21 @@ impl Command for Backup {
 impl Backup {
     /// The backup that this one goes on with, if any.
     fn earlier(&self, folder: &Path, robot: &Robot) -> Result<Option<Manifest>, Failure> {
-        match Found::look(folder)? {
-            Found::Nothing => Ok(None),
-            Found::Backup(_) if self.force => Ok(None),
-            Found::Backup(earlier) if self.resume => {
-                let Manifest { robot: name, target, .. } = &*earlier;
-                if target != robot.target.value.url() {
-                    return Err(Failure::usage(format!("{} is a backup of {name} ({target})", folder.display()))
-                        .hint("choose another folder for this robot"));
-                }
-                Ok(Some(*earlier))
-            }
-            Found::Backup(earlier) => {
-                let state = if earlier.complete { "a backup" } else { "a backup that is not whole" };
-                let message = format!("{} holds {state} of {}", folder.display(), earlier.robot);
-                Err(Failure::local(message)
-                    .hint("--resume goes on with it, --force makes a new one over it; or choose another folder"))
-            }
+        let Some(earlier): Option<Manifest> = manifest::look(folder)? else { return Ok(None) };
+        let Manifest { robot: name, target, complete, .. } = &earlier;
+        if self.force {
+            return Ok(None);
         }
+        if !self.resume {
+            let state = if *complete { "a backup" } else { "a backup that is not whole" };
+            return Err(Failure::local(format!("{} holds {state} of {name}", folder.display()))
+                .hint("--resume goes on with it, --force makes a new one over it; or choose another folder"));
+        }
+        if target != robot.target.value.url() {
+            return Err(Failure::usage(format!("{} is a backup of {name} ({target})", folder.display()))
+                .hint("choose another folder for this robot"));
+        }
+        Ok(Some(earlier))
     }
 }
 

@@ -6,11 +6,12 @@ use clap::Args;
 
 use super::content::Content;
 use super::deliver::{Delivery, Manner, deliver};
-use super::manifest::{Entry, MANIFEST, Manifest};
+use super::manifest::{Entry, Manifest};
 use super::name::{self, Shown, TypeArg};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
 use crate::command::local::own_folder;
+use crate::command::manifest::{self, MANIFEST};
 use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context};
@@ -59,7 +60,7 @@ impl Command for Restore {
     async fn run(&self, context: Context<'_, Family>) -> Result<Results, Failure> {
         let Context { link, screen, robot, several } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
-        let manifest = Manifest::read(&folder)?.ok_or_else(|| {
+        let manifest: Manifest = manifest::read(&folder)?.ok_or_else(|| {
             Failure::local(format!("{} holds no {MANIFEST}", folder.display()))
                 .hint("name the folder of a `yerc file backup`; single files go with `yerc file put`")
         })?;
