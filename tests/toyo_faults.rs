@@ -4,6 +4,8 @@
 //! checksum: one lost or doubled character is noticed, a lost and a doubled one in the same block are not, nor is noise
 //! that turns a digit into another. Under such faults only the number of executions counts.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
 use std::collections::HashMap;
 use std::time::Duration;
 
