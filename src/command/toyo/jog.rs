@@ -166,7 +166,7 @@ impl Jog {
 
     /// Moves until the time is over, or by all steps. Returns how many steps were done.
     async fn go(&self, link: &mut Link, live: &Live, start: Place) -> Result<u8, Cut> {
-        let Some(time) = self.within else { return self.step(link, live, start).await };
+        let Some(time) = self.within else { return self.inch(link, live, start).await };
         link.watch_closely();
         let until = Instant::now() + time;
         let mut is_accepted = false;
@@ -185,49 +185,60 @@ impl Jog {
         until: Instant,
         is_accepted: &mut bool,
     ) -> Result<Infallible, Cut> {
+        let began = Instant::now();
         link.try_order(&self.order()).await?.map_err(|_| Cut::Refused)?;
         *is_accepted = true;
-        let mut longest = Duration::ZERO;
+        // A look is two questions.
+        let mut longest = 2 * began.elapsed();
         loop {
             let began = Instant::now();
-            let (_, place) = look(link).await?;
-            live.say(format!("jogging {}", place.in_a_line()));
-            longest = longest.max(began.elapsed());
-            let next = began + LOOK_EVERY.max(longest);
-            if next + longest > until {
+            if began + longest > until {
                 // The stop shall find the line at peace.
                 return std::future::pending().await;
             }
-            sleep_until(next).await;
+            let (_, place) = look(link).await?;
+            live.say(format!("jogging {}", place.in_a_line()));
+            longest = longest.max(began.elapsed());
+            sleep_until(began + LOOK_EVERY.max(longest)).await;
         }
     }
 
     /// Moves by small steps, each when the axis stands again.
-    async fn step(&self, link: &mut Link, live: &Live, start: Place) -> Result<u8, Cut> {
+    async fn inch(&self, link: &mut Link, live: &Live, start: Place) -> Result<u8, Cut> {
         let steps = self.steps.unwrap_or(1);
         let mut last = start;
         for step in 1..=steps {
-            link.try_order(&self.order()).await?.map_err(|_| Cut::Refused)?;
-            let (before, began) = (last, Instant::now());
-            loop {
-                let (is_busy, here) = look(link).await?;
-                let stands = !is_busy && here == last;
-                last = here;
-                if stands && here != before {
-                    break;
+            last = self.step(link, last).await.map_err(|cut| match cut {
+                Cut::Failed(failure) => {
+                    Cut::Failed(Failure { message: format!("step {step} of {steps}: {}", failure.message), ..failure })
                 }
-                if stands && began.elapsed() >= BEGIN_WITHIN {
-                    let message = format!("step {step} of {steps} was accepted, but the axis has not moved");
-                    return Err(Cut::Failed(
-                        Failure::new(Kind::ConditionNotMet, message)
-                            .hint("`toyo param get P12` shows how far a step goes, `toyo status` what is in the way"),
-                    ));
-                }
-                sleep(STEP_LOOK_EVERY).await;
-            }
+                cut => cut,
+            })?;
             live.say(format!("step {step} of {steps} {}", last.in_a_line()));
         }
         Ok(steps)
+    }
+
+    /// Moves by one small step; where the axis then stands.
+    async fn step(&self, link: &mut Link, start: Place) -> Result<Place, Cut> {
+        link.try_order(&self.order()).await?.map_err(|_| Cut::Refused)?;
+        let (mut last, began) = (start, Instant::now());
+        loop {
+            let (is_busy, here) = look(link).await?;
+            let stands = !is_busy && here == last;
+            last = here;
+            if stands && here != start {
+                return Ok(here);
+            }
+            if stands && began.elapsed() >= BEGIN_WITHIN {
+                let message = "it was accepted, but the axis has not moved";
+                return Err(Cut::Failed(
+                    Failure::new(Kind::ConditionNotMet, message)
+                        .hint("`toyo param get P12` shows how far a step goes, `toyo status` what is in the way"),
+                ));
+            }
+            sleep(STEP_LOOK_EVERY).await;
+        }
     }
 }
 

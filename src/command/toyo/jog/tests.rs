@@ -87,7 +87,9 @@ fn small_steps_are_done_one_by_one() {
             Fate::Pass
         });
     let failure = bench.run(&["jog", "x", "+", "inch", "--steps", "3"]).unwrap_err();
-    assert!(failure.message.starts_with("step 1 of 3 was accepted, but the axis has not moved; the axis was stopped"));
+    assert!(
+        failure.message.starts_with("step 1 of 3: it was accepted, but the axis has not moved; the axis was stopped")
+    );
     assert_eq!(count(&heard, "@JGST X=+C Y=SP Z=SP R=SP"), 1);
     ends_with_a_stop(&heard);
 }
@@ -211,4 +213,29 @@ fn ctrl_c_at_any_moment_stops_the_axis() {
         bench.wait(Duration::from_secs(10));
         assert_eq!(bench.data(&["position"]), here, "{ms}");
     }
+}
+
+#[test]
+fn a_small_step_whose_answer_is_lost_is_not_repeated() {
+    let step = "@JGST X=+C Y=SP Z=SP R=SP";
+    let (mut bench, heard) =
+        Bench::spoilt(
+            READY,
+            move |block, count| {
+                if block == step && count == 2 { Fate::Unanswered } else { Fate::Pass }
+            },
+        );
+    let failure = bench.run(&["jog", "X", "+", "inch", "--steps", "5"]).unwrap_err();
+    assert_eq!((failure.kind, count(&heard, step)), (Kind::OutcomeUnknown, 2));
+    assert!(failure.message.starts_with("step 2 of 5: ") && failure.message.contains("stands at X 0.02"));
+    ends_with_a_stop(&heard);
+}
+
+#[test]
+fn the_shortest_jog_is_one_too() {
+    let (mut bench, heard) = Bench::spoilt(READY, |_, _| Fate::Pass);
+    let data = bench.data(&["jog", "X", "+", "high", "--for", "100ms"]);
+    // 50 mm/s, reached after 0.1 s.
+    assert!((2.0..8.0).contains(&data["moved_mm"].as_f64().unwrap()), "{data}");
+    ends_with_a_stop(&heard);
 }
