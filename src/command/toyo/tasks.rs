@@ -4,7 +4,7 @@ use super::link::Link;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::Command;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 
 /// Asks which task is the current one, and makes another one that for a while; says which is the current one then.
 pub async fn choose(link: &mut Link, wanted: Option<u8>) -> Result<u8, Failure> {
@@ -25,6 +25,17 @@ pub async fn choose(link: &mut Link, wanted: Option<u8>) -> Result<u8, Failure> 
         }
         None => Ok(found),
     }
+}
+
+/// Puts back what was changed for a while, whatever became of the work. After Ctrl-C that is left to the end of the link.
+pub async fn done<T>(link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
+    if outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Interrupted) {
+        return outcome;
+    }
+    let put_back = link.put_back().await;
+    let value = outcome?;
+    put_back.map_err(|failure| Failure { message: format!("it was done, but {}", failure.message), ..failure })?;
+    Ok(value)
 }
 
 fn choice(task: u8) -> Request {

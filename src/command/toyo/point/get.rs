@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{OTHER_TASK, Row, field, parse_points, read_all};
+use crate::command::toyo::Family;
 use crate::command::toyo::numbers::Numbers;
-use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::failure::Failure;
@@ -35,8 +35,7 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Points, Failure> {
         let Context { link, screen, .. } = context;
-        let task = tasks::choose(link, self.task).await?;
-        let points = read_all(link, screen, &Numbers::of(&self.points, &field())).await?;
+        let (task, points) = read_all(link, screen, self.task, &Numbers::of(&self.points, &field())).await?;
         Ok(Points { task, points: points.iter().map(Row::of).collect() })
     }
 }

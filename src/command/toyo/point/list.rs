@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::get::Points;
 use super::{OTHER_TASK, Row, read_all};
-use crate::command::toyo::{Family, files, tasks};
+use crate::command::toyo::{Family, files};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::bulk::{Setting, points};
@@ -54,8 +54,8 @@ impl Command for List {
             return Err(Failure::usage(format!("--to {} is before --from {}", self.to, self.from)));
         }
         let target = files::target(self.csv.as_deref(), self.force, several)?;
-        let task = tasks::choose(link, self.task).await?;
-        let records = read_all(link, screen, &(self.from..=self.to).collect::<Vec<_>>()).await?;
+        let points: Vec<i32> = (self.from..=self.to).collect();
+        let (task, records) = read_all(link, screen, self.task, &points).await?;
         let Some(target) = target else {
             return Ok(Listing::Points(Points { task, points: records.iter().map(Row::of).collect() }));
         };

@@ -7,10 +7,10 @@ mod set;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::link::{self, Link};
 use super::numbers::{self, Numbers};
 use super::position::Place;
+use super::{Family, tasks};
 use crate::command::commands;
 use crate::controller::toyo::bulk::points::table;
 use crate::controller::toyo::field::Field;
@@ -71,12 +71,20 @@ fn parse_points(text: &str) -> Result<Numbers, String> {
     Numbers::parse(&field(), text)
 }
 
-/// Reads points of the current task, one after the other. A dry run notes them and ends.
-async fn read_all(link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Vec<Record>, Failure> {
+/// Reads points of a task, or of the current one, one after the other; says which task that is. A dry run notes them
+/// and ends.
+async fn read_all(
+    link: &mut Link,
+    screen: &Screen,
+    task: Option<u8>,
+    points: &[i32],
+) -> Result<(u8, Vec<Record>), Failure> {
     let requests: Result<Vec<Request>, _> =
         points.iter().map(|point| Request::read_parameter(table(), Some(*point))).collect();
     let requests = requests.map_err(|error| link::wrong(&error))?;
-    numbers::read_contents(link, screen, "reading points", &requests).await
+    let task = tasks::choose(link, task).await?;
+    let read = numbers::read_contents(link, screen, "reading points", &requests).await;
+    Ok((task, tasks::done(link, read).await?))
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::list::AXES;
 use super::{OTHER_TASK, Row, field};
 use crate::command::toyo::cells::Cells;
+use crate::command::toyo::link::Link;
 use crate::command::toyo::numbers::{number, runs};
 use crate::command::toyo::stores::{self, Fate, Store, Work, parameter_cell};
 use crate::command::toyo::values::Changes;
@@ -19,6 +20,7 @@ use crate::controller::toyo::bulk::points;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
+use crate::output::Screen;
 use crate::output::view::View;
 
 /// Writes a point, or all that a CSV file has.
@@ -58,29 +60,39 @@ impl Command for Set {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
         let Context { link, screen, .. } = context;
-        if let Some(file) = &self.from {
-            let name = files::shown(file);
-            let read = points::read(&files::read(file)?, AXES);
-            let points = read.map_err(|errors| files::faulty(&name, &errors))?;
-            let points = points.into_iter().map(|(point, _)| store(point.values));
-            let points = points.collect::<Result<Vec<Store>, Failure>>()?;
-            if points.is_empty() {
-                return Err(Failure::usage(format!("{name} has no points")));
-            }
-            let left_out = stores::left_out(&points, self.resume.as_deref())?;
+        let Some(file) = &self.from else {
+            let point = self.point.unwrap_or_default();
+            let changes = Changes::read(&format!("point {point}"), &points::table().body(), &self.values)?;
             let task = tasks::choose(link, self.task).await?;
-            let fates = stores::store_all(link, screen, WORK, &points, left_out).await?;
-            return Ok(Stored::new(task, &points, &fates));
+            let stored = store_one(link, screen, task, point, &changes).await;
+            return tasks::done(link, stored).await;
+        };
+        let name = files::shown(file);
+        let read = points::read(&files::read(file)?, AXES).map_err(|errors| files::faulty(&name, &errors))?;
+        let points = read.into_iter().map(|(point, _)| store(point.values)).collect::<Result<Vec<Store>, Failure>>()?;
+        if points.is_empty() {
+            return Err(Failure::usage(format!("{name} has no points")));
         }
-        let point = self.point.unwrap_or_default();
-        let changes = Changes::read(&format!("point {point}"), &points::table().body(), &self.values)?;
+        let left_out = stores::left_out(&points, self.resume.as_deref())?;
         let task = tasks::choose(link, self.task).await?;
-        let read = Request::read_parameter(points::table(), Some(point)).map_err(|error| link::wrong(&error))?;
-        let coordinates = changes.completed(link, &read).await?;
-        let points = [store(std::iter::once(Value::Number(point)).chain(coordinates).collect())?];
-        let fates = stores::store_all(link, screen, WORK, &points, 0).await?;
-        Ok(Stored::new(task, &points, &fates))
+        let fates = stores::store_all(link, screen, WORK, &points, left_out).await;
+        Ok(Stored::new(task, &points, &tasks::done(link, fates).await?))
     }
+}
+
+/// Stores one point, with what it keeps.
+async fn store_one(
+    link: &mut Link,
+    screen: &Screen,
+    task: u8,
+    point: i32,
+    changes: &Changes,
+) -> Result<Stored, Failure> {
+    let read = Request::read_parameter(points::table(), Some(point)).map_err(|error| link::wrong(&error))?;
+    let coordinates = changes.completed(link, &read).await?;
+    let points = [store(std::iter::once(Value::Number(point)).chain(coordinates).collect())?];
+    let fates = stores::store_all(link, screen, WORK, &points, 0).await?;
+    Ok(Stored::new(task, &points, &fates))
 }
 
 fn store(values: Vec<Value>) -> Result<Store, Failure> {

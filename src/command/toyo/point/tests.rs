@@ -75,3 +75,50 @@ fn every_mistake_of_a_file_is_told_and_nothing_sent() {
     assert_eq!(lines.len(), 2);
     assert!(lines[0].ends_with(":2:1: 4 cells under 5 columns"), "{}", lines[0]);
 }
+
+/// A bench whose simulator starts like this.
+fn bench(target: &str, state: &str) -> (tempfile::NamedTempFile, Bench) {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), state).unwrap();
+    let bench = Bench::new(&format!("{target}state={}", file.path().display()));
+    (file, bench)
+}
+
+fn five_points() -> tempfile::NamedTempFile {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let rows: String = (1..=5).map(|row| format!("{row},{row},0,0,0\n")).collect();
+    std::fs::write(file.path(), format!("point,x_mm,y_mm,z_mm,r_mm\n{rows}")).unwrap();
+    file
+}
+
+#[test]
+fn a_worn_cell_ends_it_with_an_account() {
+    let (_state, mut bench) = bench("sim:?", "eeprom_limit = 1\n");
+    bench.data(&["point", "set", "3", "9", "9", "9", "9"]);
+    let points = five_points();
+    let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
+    assert_eq!(failure.kind.exit(), 5);
+    let (message, hint) = (failure.message, failure.hint.unwrap());
+    assert!(message.contains("holds something else; done: points 1 to 2 (2 written, 0 unchanged)"), "{message}");
+    assert!(message.ends_with("written or not: point 3; not written: points 4 to 5"), "{message}");
+    assert!(hint.ends_with("then --resume=3 goes on there"), "{hint}");
+}
+
+#[test]
+fn a_refusal_on_the_way_says_why_and_what_is_done() {
+    let event = "[[event]]\nat_ms = 1200\ndo = \"pendant on\"\n";
+    let (_state, mut bench) = bench("sim:?baud=9600&", event);
+    let points = five_points();
+    let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
+    assert_eq!(failure.kind.exit(), 3);
+    assert!(failure.message.contains("the teach pendant is ON; done: points 1 to "), "{failure}");
+}
+
+#[test]
+fn a_task_that_was_chosen_is_put_back() {
+    let mut bench = Bench::new("sim:");
+    bench.data(&["task", "set", "3"]);
+    assert_eq!(bench.data(&["point", "set", "1", "1", "2", "3", "4", "--task", "2"])["task"], 2);
+    assert_eq!(bench.data(&["point", "get", "1", "--task", "2"])["points"][0]["x_mm"], 1.0);
+    assert_eq!(bench.data(&["point", "get", "1"])["task"], 3);
+}

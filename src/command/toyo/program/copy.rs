@@ -64,7 +64,7 @@ impl Command for Copy {
             return self.rehearse(link).await;
         }
         let outcome = self.copy(link, screen).await;
-        steps::done(link, outcome).await
+        tasks::done(link, outcome).await
     }
 }
 

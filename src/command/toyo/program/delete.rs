@@ -53,7 +53,7 @@ impl Command for Delete {
             return self.rehearse(link, last).await;
         }
         let outcome = self.delete(link, screen, last).await;
-        steps::done(link, outcome).await
+        tasks::done(link, outcome).await
     }
 }
 

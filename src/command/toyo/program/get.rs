@@ -75,7 +75,7 @@ impl Command for Get {
             return self.rehearse(link).await;
         }
         let outcome = self.read(link, screen).await;
-        let (task, room, read) = steps::done(link, outcome).await?;
+        let (task, room, read) = tasks::done(link, outcome).await?;
         let rows = if self.explain { rows(link, &read).await? } else { Rows::new() };
         let last = usize::from(self.from) + read.len() - 1;
         let is_whole = self.from == 1 && last == usize::from(room);

@@ -52,7 +52,7 @@ impl Command for Insert {
             return self.rehearse(link, screen, &instruction).await;
         }
         let outcome = self.insert(link, screen, &instruction).await;
-        steps::done(link, outcome).await
+        tasks::done(link, outcome).await
     }
 }
 

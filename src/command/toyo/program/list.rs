@@ -47,7 +47,7 @@ impl Command for List {
             return std::future::pending().await;
         }
         let outcome = self.list(link, screen).await;
-        steps::done(link, outcome).await
+        tasks::done(link, outcome).await
     }
 }
 

@@ -83,7 +83,7 @@ impl Command for Put {
             return self.rehearse(link, screen, &program, from).await;
         }
         let outcome = self.store(link, screen, &bytes, from, last).await;
-        steps::done(link, outcome).await
+        tasks::done(link, outcome).await
     }
 }
 

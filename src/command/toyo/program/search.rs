@@ -46,7 +46,7 @@ impl Command for Search {
             return std::future::pending().await;
         }
         let outcome = self.search(link).await;
-        steps::done(link, outcome).await
+        tasks::done(link, outcome).await
     }
 }
 

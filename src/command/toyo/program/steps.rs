@@ -107,14 +107,3 @@ pub async fn foresee_open(link: &mut Link) -> Result<(), Failure> {
     let (change, back) = (Request::bare(Command::Mpro), Request::bare(Command::Maut));
     link.borrow(&change, back, "if it is in automatic or step mode; later the mode that was found").await
 }
-
-/// Puts back what was changed for a while, whatever became of the work. After Ctrl-C that is left to the end of the link.
-pub async fn done<T>(link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
-    if outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Interrupted) {
-        return outcome;
-    }
-    let put_back = link.put_back().await;
-    let value = outcome?;
-    put_back.map_err(|failure| Failure { message: format!("it was done, but {}", failure.message), ..failure })?;
-    Ok(value)
-}
