@@ -216,6 +216,29 @@ fn interrupted_during_a_move_that_is_left_alone() {
 }
 
 #[test]
+fn interrupted_while_points_are_stored() {
+    let desk = Desk::new();
+    let rows: String = (1..=999).map(|point| format!("{point},{point},0,0,0\n")).collect();
+    std::fs::write(desk.path().join("many.csv"), format!("point,x_mm,y_mm,z_mm,r_mm\n{rows}")).expect("a file");
+    // At this rate it takes half a minute.
+    let line = ["-t", "sim:?baud=115200", "-vv", "toyo", "point", "set", "--from", "many.csv", "--task", "2"];
+    let mut child = spawn(desk.armctl(&line));
+    let mut stderr = BufReader::new(child.stderr.take().expect("stderr is a pipe")).lines().map_while(Result::ok);
+    assert!(stderr.any(|line| line.contains("@WPAR T1 PT=003")));
+    interrupt(&child, "INT");
+    let rest: Vec<String> = stderr.collect();
+    assert_eq!(child.wait().expect("it ends").code(), Some(130));
+    let orders: Vec<&str> =
+        rest.iter().filter_map(|line| line.strip_prefix("-> ")?.split("  #").next()).rev().take(2).collect();
+    assert_eq!(orders, ["@HSOF", "@CTSK TASK=01"], "what was changed for a while is put back");
+    let told = rest.iter().find(|line| line.starts_with("interrupted: ")).expect("it is told");
+    let next = told.split("written or not: point ").nth(1).and_then(|rest| rest.split(';').next()).expect("a point");
+    let last = next.parse::<i32>().expect("a number") - 1;
+    assert!(told.contains(&format!("done: points 1 to {last} ({last} written, 0 unchanged)")), "{told}");
+    assert!(rest.contains(&format!("hint: --resume={next} goes on there")), "{rest:?}");
+}
+
+#[test]
 fn a_server_says_where_it_is_and_ends_on_a_signal() {
     let desk = Desk::new();
     for signal in ["INT", "TERM"] {
