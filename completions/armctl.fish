@@ -24,7 +24,7 @@ function __fish_armctl_using_subcommand
     contains -- $cmd[1] $argv
 end
 
-complete -c armctl -n "__fish_armctl_needs_command" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_needs_command" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_needs_command" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_needs_command" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_needs_command" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -56,6 +56,7 @@ complete -c armctl -n "__fish_armctl_needs_command" -l dry-run -d 'Send nothing;
 complete -c armctl -n "__fish_armctl_needs_command" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_needs_command" -s V -l version -d 'Print version'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "yerc" -d 'Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "toyo" -d 'Toyo over RS-232C host communication'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "status" -d 'One line a robot: reachable, mode, servo, state, alarm, position'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "robots" -d 'The inventory: list, show, add, remove'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "sim" -d 'Serve the simulators on real sockets'
@@ -65,7 +66,7 @@ complete -c armctl -n "__fish_armctl_needs_command" -f -a "completions" -d 'Prin
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "man" -d 'Write the man pages'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "schema" -d 'Print the JSON Schema of a report'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "help" -d 'Explain a topic, or a command'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -115,7 +116,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "hours" -d 'Running times: power, servo, playback, motion, applications'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "info" -d 'Software version, robot models, parameters'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "raw" -d 'Send any request and explain the answer'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -145,7 +146,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -179,7 +180,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -f -a "history" -d 'The alarms of the past, the latest of each class first'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -f -a "reset" -d 'Reset the alarm'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -f -a "cancel" -d 'Cancel the error'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -212,7 +213,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -f -a "show" -d 'What runs: job, line, step and speed override of a task'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -f -a "select" -d 'Choose the job that a start will run'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -f -a "start" -d 'Start the selected job'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -254,7 +255,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l coordinates -d 'In pulses, in base coordinates (robots only), or both [default: what the group has]' -r -f -a "pulse\t'Pulses of each axis'
 base\t'X Y Z Rx Ry Rz in base coordinates'
 both\t'Both'"
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -285,7 +286,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l group -d 'Control group: R1 …, B1 …, S1 …, or all that exist' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -316,7 +317,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l group -d 'Control group: R1 …, B1 …, S1 …' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -347,7 +348,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l group -d 'Control group: R1 …, B1 …, S1 …' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -377,7 +378,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -411,7 +412,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -f -a "set" -d 'Write variables: B0=255 R3=1.5 S7=HELLO P1=base:x=…'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -f -a "dump" -d 'Save variables to a JSON file'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -f -a "restore" -d 'Write back what a dump holds'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -443,7 +444,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -f -a "get" -d 'Read signals: 20010, #20010..#20017, or --group 2001'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -f -a "set" -d 'Switch network inputs: 27010=on, or --group 2701=0xA5'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -475,7 +476,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -f -a "get" -d 'Read registers: 0 to 999'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -f -a "set" -d 'Write registers: 0 to 559'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -505,7 +506,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -535,7 +536,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -565,7 +566,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -595,7 +596,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -625,7 +626,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -661,7 +662,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -f -a "pulse" -d 'To pulses: joint, linear'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l group -d 'Servo, playback and motion time of a robot or station; all: every counter that exists' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l application -d 'Operation time of an application' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -693,7 +694,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l group -d 'A robot or station, or all that exist with their applications [default: all]' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l application -d 'An application' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -728,7 +729,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l attribute -d 'Attribute: which field; 0 for all' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l service -d 'Service: 0x01 or 0x0E read, 0x02 or 0x10 write, 0x33 and 0x34 read and write several' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l data -d 'Data of the request in hexadecimal; blanks, colons and 0x may stand between' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -760,7 +761,1185 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand status" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "status" -d 'All five status pages in words'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "home" -d 'Return to the origin'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "position" -d 'Where the axes are'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "host" -d 'Take or give back the command of the controller'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "mode" -d 'Choose how programs run, or which kind of them'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "servo" -d 'Switch servo power'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "stop" -d 'Stop what runs, or what is jogged'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "reset" -d 'Put programs back to their beginning'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "error" -d 'Errors'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "run" -d 'Run programs, and move to a point'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "jog" -d 'Move one axis, for a time or by small steps'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "param" -d 'Parameters: read, change, save, restore'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "point" -d 'Points of the coordinate table'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "speed-table" -d 'Speeds that programs name by their row'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "accel-table" -d 'Acceleration times that programs name by their row'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "mvm" -d 'Groups of the MVM table, from which MVM moves along a matrix'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "torque-table" -d 'Torque limits that programs name by their row'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "program" -d 'Sequential programs: read, write, edit, check'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "palletizing" -d 'Palletizing programs'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "easy" -d 'Easy programs'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "io" -d 'Input, output and internal ports'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "counter" -d 'Counters'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "timer" -d 'Timers'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "override" -d 'The share of their speeds that programs run at'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "task" -d 'The task that programs and points are those of'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "offset" -d 'How far coordinates are shifted at present'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "coordinate" -d 'Supply coordinates to a program'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "bus" -d 'Settings and errors of CC-Link'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "card" -d 'The memory card'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "init" -d 'Clear memory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "robot-type" -d 'Set the robot type of an axis'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "info" -d 'Robot type, versions, axes, task, override'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "raw" -d 'Send any block, and explain the answer'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "ports" -d 'The serial ports of this machine'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "sim" -d 'Programs at the desk, without any controller'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l sync -d 'Search the origin of synchronized axes instead, with this drive axis, 1 to 3 (KCA-20-M00 and -M01)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l no-wait -d 'Return as soon as the controller has accepted it'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l jog -d 'Stop a JOG, as after an armctl that was killed while an axis was jogged'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -f -a "show" -d 'The error that is present, with cause and remedy'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -f -a "history" -d 'The errors of the past, the latest first'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -f -a "cancel" -d 'Cancel the error'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -f -a "point" -d 'The point at which the error came up'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -f -a "sequential" -d 'Start the sequential program'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -f -a "palletizing" -d 'Start palletizing'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -f -a "easy" -d 'Start the easy program'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -f -a "point" -d 'Move to a row of the coordinate table'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l for -d 'How long it moves, 100ms to 60s (low and high)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l steps -d 'How many small steps, one after the other (inch)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -f -a "get" -d 'Read parameters by name or id: soft-limit-plus P01 M09'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -f -a "set" -d 'Change a parameter: soft-limit-plus 100 200 0 0'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -f -a "list" -d 'Read all parameters'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -f -a "dump" -d 'Save all parameters and tables as TOML'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -f -a "restore" -d 'Write back what a file of parameters holds'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -f -a "get" -d 'Read points: 1-10,20'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -f -a "set" -d 'Write a point, or all that a CSV file has'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -f -a "list" -d 'Read all points, also into a CSV file'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -f -a "get" -d 'Read rows: 1-5,20; without any, all 20'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -f -a "set" -d 'Write a row: 5 250'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -f -a "get" -d 'Read rows: 1-5,20; without any, all 20'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -f -a "set" -d 'Write a row: 5 0.25'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -f -a "get" -d 'Read groups: 1-3; without any, all 32'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -f -a "set" -d 'Change values of a group: 1 origin=5 pieces1=10'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -f -a "get" -d 'Read rows: 1-3; without any, all 8'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -f -a "set" -d 'Write a row: 3 2.5 2.0'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -f -a "list" -d 'The tasks, with the steps their programs have room for and use'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -f -a "get" -d 'Read a program as text'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -f -a "put" -d 'Write a program from a file, after checking it whole'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -f -a "insert" -d 'Insert a step; those behind it move on'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -f -a "delete" -d 'Delete steps; those behind them move up'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -f -a "copy" -d 'Copy steps, also between tasks'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -f -a "search" -d 'Find the step of a tag'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -f -a "show" -d 'The step at which the program stands'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -f -a "check" -d 'Check program files; takes no robot'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -f -a "get" -d 'Read the records of a program, also into a TOML file'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -f -a "set" -d 'Write a record, or those of a TOML file: 1 source-p1 x=100'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -f -a "copy" -d 'Copy a program to another place'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -f -a "select" -d 'Choose the program that run palletizing starts'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -f -a "progress" -d 'How far the program is that runs'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -f -a "get" -d 'Read programs: 1-3; without any, all 8'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -f -a "set" -d 'Write a program: 1 START LOOP END'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -f -a "copy" -d 'Copy a program to another place'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -f -a "select" -d 'Choose the program that run easy starts'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -f -a "progress" -d 'How far the program is that runs'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -f -a "in" -d 'Input ports'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -f -a "out" -d 'Output ports'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -f -a "internal" -d 'Internal ports'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -f -a "set" -d 'Set outputs: 1.3=on, or 1=.......1 for the bits of a whole port'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -f -a "direct" -d 'Order one of the direct outputs F1 to F4'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -f -a "get" -d 'Read counters 1 to 99'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -f -a "set" -d 'Set a counter'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -f -a "get" -d 'Read timers 1 to 9'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -f -a "get" -d 'Read the override'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -f -a "set" -d 'Write the override to the EEPROM; it counts while no program runs'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -f -a "get" -d 'Which task is the current one'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -f -a "set" -d 'Choose the task whose program and points are read, written and cleared'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -f -a "set" -d 'Supply coordinates to an RSMV, which moves there'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -f -a "read" -d 'Read everything from the card, over what the controller holds'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -f -a "write" -d 'Write everything that the controller holds to the card'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -f -a "run" -d 'Run a program file and print what happens and when; takes no robot'
+complete -c armctl -n "__fish_armctl_using_subcommand status" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand status" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand status" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand status" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -790,7 +1969,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand status" -s v -l verbose -d
 complete -c armctl -n "__fish_armctl_using_subcommand status" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand status" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand status" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -824,7 +2003,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_see
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -f -a "show" -d 'One robot with every setting in force'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -f -a "add" -d 'Add a robot'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -f -a "remove" -d 'Remove a robot'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -854,7 +2033,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -887,7 +2066,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l family -d 'Its family, where the URL does not tell' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l with-tag -d 'A word to choose it by (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -919,7 +2098,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -949,43 +2128,44 @@ complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
 json\t'One envelope, or an array of them'
 jsonl\t'An envelope a line, with the time'
 csv\t'Comma-separated values'"
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l jq -d 'Print what a jq filter makes of the JSON' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
 always\t'Even into a file'
 never\t'Not at all'"
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
 leave\t'Disconnect only; the motion goes on'"
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l count -d 'Stop after so many reads' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l for -d 'How long --until waits before it gives up with exit code 8' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l sim -d 'Talk to the built-in simulator, in this process'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l all -d 'Talk to every robot of the inventory'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l json -d 'Print JSON (the same as -o json)'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s q -l quiet -d 'Only errors and questions on stderr'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc" -f -a "yerc" -d 'An FS100 or DX200 on two UDP ports'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -f -a "yerc" -d 'An FS100 or DX200 on two UDP ports'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -f -a "toyo" -d 'A Toyo controller on a TCP port, like a serial device server, or on a pseudo-terminal'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l bind -d 'Address to listen on, with the port of the robot server; port 0 lets the system choose' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l file-port -d 'Port of the file server; one above the robot server\'s unless given' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l model -d 'Controller model, fs100 or dx200' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l state -d 'Start state (TOML): modes, variables, jobs, files, alarms, timed events' -r -F
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l fault -d 'Faults on the line, such as drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -1016,41 +2196,80 @@ complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subco
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l bind -d 'Address to listen on, with the TCP port; port 0 lets the system choose' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l link -d 'Name the pseudo-terminal by a symbolic link, which is removed at the end' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l axes -d 'Axes of the robot' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l baud -d 'Let characters take as long as on a line of so many bits a second, such as 9600; at once unless given' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l state -d 'Start state (TOML): modes, memory, inputs, errors, timed events' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l fault -d 'Faults on the line, such as noise=1%,parity=1%,drop=1%,dup=1%,delay=0..50ms,busy=4%,echo,seed=7' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
 json\t'One envelope, or an array of them'
 jsonl\t'An envelope a line, with the time'
 csv\t'Comma-separated values'"
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l jq -d 'Print what a jq filter makes of the JSON' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
 always\t'Even into a file'
 never\t'Not at all'"
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
 leave\t'Disconnect only; the motion goes on'"
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l count -d 'Stop after so many reads' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l for -d 'How long --until waits before it gives up with exit code 8' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l sim -d 'Talk to the built-in simulator, in this process'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l all -d 'Talk to every robot of the inventory'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l json -d 'Print JSON (the same as -o json)'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s q -l quiet -d 'Only errors and questions on stderr'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc" -f -a "yerc" -d 'Frames of the high-speed Ethernet server, as from a packet capture'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l pty -d 'Serve on a pseudo-terminal instead, whose path is printed (not on Windows)'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l console -d 'Take lines on stdin; `help` lists them'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -f -a "yerc" -d 'Frames of the high-speed Ethernet server, as from a packet capture'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -f -a "toyo" -d 'Lines of the host communication, of either side'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l command -d 'Command whose answer it is, such as 0x75' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l instance -d 'Instance that was asked for' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l attribute -d 'Attribute that was asked for' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -1080,38 +2299,69 @@ complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
 json\t'One envelope, or an array of them'
 jsonl\t'An envelope a line, with the time'
 csv\t'Comma-separated values'"
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l jq -d 'Print what a jq filter makes of the JSON' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
 always\t'Even into a file'
 never\t'Not at all'"
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
 leave\t'Disconnect only; the motion goes on'"
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l count -d 'Stop after so many reads' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l for -d 'How long --until waits before it gives up with exit code 8' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l sim -d 'Talk to the built-in simulator, in this process'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l all -d 'Talk to every robot of the inventory'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l json -d 'Print JSON (the same as -o json)'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s q -l quiet -d 'Only errors and questions on stderr'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc" -f -a "yerc" -d 'A status code (one byte) or added status code (two bytes) of an FS100 or DX200'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -f -a "yerc" -d 'A status code (one byte) or added status code (two bytes) of an FS100 or DX200'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -f -a "toyo" -d 'An error code of a Toyo controller'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -1141,7 +2391,37 @@ complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_s
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand completions" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand completions" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand completions" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand completions" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -1172,7 +2452,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand completions" -s y -l yes -
 complete -c armctl -n "__fish_armctl_using_subcommand completions" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand completions" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand man" -l dir -d 'The folder, such as /usr/local/share/man/man1; it must exist' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand man" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand man" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand man" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand man" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand man" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -1202,7 +2482,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand man" -s v -l verbose -d 'S
 complete -c armctl -n "__fish_armctl_using_subcommand man" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand man" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand man" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand schema" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand schema" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand schema" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand schema" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
@@ -1232,7 +2512,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand schema" -s v -l verbose -d
 complete -c armctl -n "__fish_armctl_using_subcommand schema" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand schema" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand schema" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand help" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31?model=fs100 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand help" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand help" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand help" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand help" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F

@@ -283,7 +283,7 @@ const YERC: [&str; 41] = [
     "raw",
 ];
 
-const TOYO: [&str; 73] = [
+const TOYO: [&str; 71] = [
     "status",
     "home",
     "position",
@@ -354,8 +354,6 @@ const TOYO: [&str; 73] = [
     "info",
     "raw",
     "ports",
-    "backup",
-    "restore",
     "sim run",
 ];
 
