@@ -46,6 +46,7 @@ transcripts! {
     toyo_palletizing
     toyo_parameters
     toyo_points
+    toyo_programs
     toyo_registers
     toyo_system
     usage
