@@ -9,6 +9,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link::Link;
+use super::refusal;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::Command;
@@ -58,7 +59,8 @@ impl Link {
     /// Stores one cell, unless it holds that already. A dry run notes the question and the order, and goes on.
     ///
     /// # Errors
-    /// As those of [`Link::order`]; [`Kind::Malformed`] if something else is there afterwards.
+    /// As those of [`Link::order`]; [`Kind::OutcomeUnknown`] if it cannot be read back, and [`Kind::Malformed`] if
+    /// something else is there afterwards.
     pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<(), Failure> {
         if self.is_dry() {
             self.foresee(&cell.read, "to compare");
@@ -87,7 +89,11 @@ impl Link {
                 "warning: {name} was written {LOOP} times in a row; a cell of the EEPROM wears out after about a million"
             ));
         }
-        if !self.holds(cell).await? {
+        let is_stored = self.holds(cell).await.map_err(|failure| {
+            let message = format!("{} was accepted, but not read back: {}", cell.write.text(), failure.message);
+            Failure::new(Kind::OutcomeUnknown, message).hint(refusal::telltale(cell.write.command()))
+        })?;
+        if !is_stored {
             return Err(Failure::new(
                 Kind::Malformed,
                 format!("the controller accepted {} and holds something else", cell.write.text()),

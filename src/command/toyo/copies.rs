@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::cells::Cells;
 use super::link::Link;
 use super::numbers::read_contents;
+use super::refusal;
 use crate::command::Report;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
@@ -53,7 +54,10 @@ impl Copy {
             return Ok(Copied { what, from, to, cells: Cells { cells_written: 0, cells_unchanged: all } });
         }
         link.order(&order).await?;
-        let found = read_contents(link, screen, "reading it back", &target).await?;
+        let found = read_contents(link, screen, "reading it back", &target).await.map_err(|failure| {
+            let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
+            Failure::new(Kind::OutcomeUnknown, message).hint(refusal::telltale(order.command()))
+        })?;
         if differences(&wanted, &found) > 0 {
             return Err(Failure::new(
                 Kind::Malformed,

@@ -1,6 +1,6 @@
 //! What `toyo param` sends, and what it refuses.
 
-use crate::command::toyo::testing::{Bench, all_blocks, blocks, objection};
+use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, objection};
 use crate::gate::Demand;
 
 use super::machine;
@@ -149,6 +149,49 @@ fn a_dump_is_restored_to_the_last_value() {
     };
     assert_eq!(lines(&first), lines(&second));
     assert_eq!(other.data(&["param", "restore", &first])["cells_written"], 0);
+}
+
+#[test]
+fn a_busy_controller_is_asked_again() {
+    let (mut bench, _) = Bench::spoilt("", |block, count| match block {
+        "@RPAR U21" if count == 1 => Fate::Answered("@NG"),
+        "@RPAR U22" => Fate::Answered("@NG"),
+        _ => Fate::Pass,
+    });
+    let listed = bench.data(&["param", "list", "--group", "special"]);
+    let refused: Vec<_> = listed["parameters"].as_array().unwrap().iter().map(|entry| &entry["refused"]).collect();
+    assert_eq!(refused, [false, false, true]);
+}
+
+#[test]
+fn a_file_of_another_controller_is_stored_as_far_as_it_goes() {
+    let (_folder, path) = written(
+        "[parameters]\nM09 = 'J'\nP17 = { ax1 = 1.00, ax2 = 0.00, ax3 = 0.00, ax4 = 0.00 }\n[speed-table]\n1 = 5.0\n",
+    );
+    let mut bench = Bench::new("sim:");
+    let (data, failure) = bench.run(&["param", "restore", &path]).unwrap();
+    let results: Vec<_> = data["parameters"].as_array().unwrap().iter().map(|row| &row["result"]).collect();
+    assert_eq!(results, ["written", "not_there", "written"]);
+    let failure = failure.unwrap();
+    assert_eq!(
+        (failure.kind.exit(), &failure.message[..]),
+        (3, "the controller does not have P17; the rest is stored")
+    );
+}
+
+#[test]
+fn what_may_not_be_written_stands_in_a_dump_as_a_comment() {
+    let (mut bench, _) = Bench::spoilt("", |block, _| match block {
+        "@RPAR M17" => Fate::Answered("@RPAR M17 STN=00 BRT=156K OPT=0000"),
+        _ => Fate::Pass,
+    });
+    let dumped = bench.data(&["param", "dump"]);
+    assert_eq!(dumped["unfit"][0]["key"], "M17");
+    let text = dumped["text"].as_str().unwrap();
+    let comment = "# M17 is station=0 rate=156K options=0, which may not be written: \
+                   station: 0 is out of range (a number, 1 to 61)";
+    assert!(text.contains(comment), "{text}");
+    assert!(!text.contains("cc-link = "));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What `toyo point` sends, and what becomes of it.
 
-use crate::command::toyo::testing::{Bench, blocks, objection};
+use crate::command::toyo::testing::{Bench, Fate, blocks, objection};
 
 #[test]
 fn points_and_ranges_are_read_once_each() {
@@ -76,14 +76,6 @@ fn every_mistake_of_a_file_is_told_and_nothing_sent() {
     assert!(lines[0].ends_with(":2:1: 4 cells under 5 columns"), "{}", lines[0]);
 }
 
-/// A bench whose simulator starts like this.
-fn bench(target: &str, state: &str) -> (tempfile::NamedTempFile, Bench) {
-    let file = tempfile::NamedTempFile::new().unwrap();
-    std::fs::write(file.path(), state).unwrap();
-    let bench = Bench::new(&format!("{target}state={}", file.path().display()));
-    (file, bench)
-}
-
 fn five_points() -> tempfile::NamedTempFile {
     let file = tempfile::NamedTempFile::new().unwrap();
     let rows: String = (1..=5).map(|row| format!("{row},{row},0,0,0\n")).collect();
@@ -93,7 +85,7 @@ fn five_points() -> tempfile::NamedTempFile {
 
 #[test]
 fn a_worn_cell_ends_it_with_an_account() {
-    let (_state, mut bench) = bench("sim:?", "eeprom_limit = 1\n");
+    let (mut bench, _) = Bench::spoilt("eeprom_limit = 1", |_, _| Fate::Pass);
     bench.data(&["point", "set", "3", "9", "9", "9", "9"]);
     let points = five_points();
     let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
@@ -107,11 +99,34 @@ fn a_worn_cell_ends_it_with_an_account() {
 #[test]
 fn a_refusal_on_the_way_says_why_and_what_is_done() {
     let event = "[[event]]\nat_ms = 1200\ndo = \"pendant on\"\n";
-    let (_state, mut bench) = bench("sim:?baud=9600&", event);
+    let (mut bench, _) = Bench::spoilt(event, |_, _| Fate::Pass);
     let points = five_points();
     let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
     assert_eq!(failure.kind.exit(), 3);
     assert!(failure.message.contains("the teach pendant is ON; done: points 1 to "), "{failure}");
+}
+
+#[test]
+fn what_was_accepted_and_not_read_back_is_open() {
+    let (mut bench, heard) = Bench::spoilt("", |block, count| match block {
+        "@RPAR T1 PT=003" if count > 1 => Fate::Lost,
+        _ => Fate::Pass,
+    });
+    let points = five_points();
+    let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
+    assert_eq!(failure.kind.exit(), 6);
+    assert!(failure.message.contains("was accepted, but not read back: "), "{failure}");
+    assert!(failure.message.ends_with("written or not: point 3; not written: points 4 to 5"), "{failure}");
+    assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@WPAR")).count(), 3);
+}
+
+#[test]
+fn a_silent_controller_had_nothing_written() {
+    let (mut bench, _) = Bench::spoilt("", |block, _| if block == "@RPAR T1 PT=001" { Fate::Lost } else { Fate::Pass });
+    let points = five_points();
+    let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
+    assert_eq!(failure.kind.exit(), 4);
+    assert!(failure.message.ends_with("; nothing was written; not written: points 1 to 5"), "{failure}");
 }
 
 #[test]
