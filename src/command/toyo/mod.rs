@@ -1,5 +1,6 @@
 //! `toyo`: Toyo controllers over RS-232C host communication.
 
+mod backup;
 mod bus;
 mod card;
 mod cells;
@@ -97,6 +98,10 @@ commands! {
         Palletizing(Verbs<palletizing::Palletizing>),
         /// Easy programs
         Easy(Verbs<easy::Easy>),
+        /// Save all that is stored in the controller in a folder
+        Backup(backup::Backup),
+        /// Write back what a backup holds
+        Restore(backup::Restore),
         /// Input, output and internal ports
         Io(Verbs<io::Io>),
         /// Counters

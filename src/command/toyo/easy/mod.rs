@@ -45,12 +45,13 @@ fn values() -> Layout {
     Layout::new("START={} LOOP={} END={}", &Command::Wesy.row().requests[0].fields[2..])
 }
 
-fn read(program: i32) -> Result<Request, Failure> {
+/// What reads a program.
+pub fn read(program: i32) -> Result<Request, Failure> {
     Request::new(Command::Resy, vec![Value::Number(program), Value::Number(0)]).map_err(|error| wrong(&error))
 }
 
 /// A program with its values.
-fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+pub fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
     let all: Vec<Value> = [Value::Number(program), Value::Number(0)].into_iter().chain(values).collect();
     let write = Request::new(Command::Wesy, all.clone()).map_err(|error| wrong(&error))?;
     let wanted = Command::Resy.row().answers[0].record(all).map_err(|error| wrong(&error))?;

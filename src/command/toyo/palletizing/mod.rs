@@ -8,11 +8,13 @@ mod set;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::cells::Cell;
 use super::link::wrong;
+use super::stores::Store;
 use super::values::{self, Shown};
 use super::{Family, numbers};
 use crate::command::commands;
-use crate::controller::toyo::field::Field;
+use crate::controller::toyo::field::{Field, Value};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::nearest::nearest;
 use crate::controller::toyo::request::Request;
@@ -57,9 +59,19 @@ fn parse_record(text: &str) -> Result<&'static Pallet, String> {
 }
 
 /// What reads records of a program.
-fn reads(program: i32, records: &[&Pallet]) -> Result<Vec<Request>, Failure> {
+pub fn reads(program: i32, records: &[&Pallet]) -> Result<Vec<Request>, Failure> {
     let read = |record: &&Pallet| Request::read_pallet(program, record);
     records.iter().map(read).collect::<Result<_, _>>().map_err(|error| wrong(&error))
+}
+
+/// A record of a program as something that is stored.
+pub fn store(program: i32, record: &'static Pallet, values: Vec<Value>) -> Result<Store, Failure> {
+    let cell = Cell {
+        read: Request::read_pallet(program, record).map_err(|error| wrong(&error))?,
+        write: Request::write_pallet(program, record, &values).map_err(|error| wrong(&error))?,
+        wanted: record.layout.record(values).map_err(|error| wrong(&error))?,
+    };
+    Ok(Store { key: record.name.to_owned(), cell, is_optional: false })
 }
 
 /// A record of a program.

@@ -7,9 +7,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Entry, parse_program, parse_record};
-use crate::command::toyo::cells::{Cell, Cells};
+use crate::command::toyo::cells::Cells;
 use crate::command::toyo::link::wrong;
-use crate::command::toyo::stores::{self, Fate, Store, Work};
+use crate::command::toyo::stores::{self, Fate, Work};
 use crate::command::toyo::values::Changes;
 use crate::command::toyo::{Family, files};
 use crate::command::{Command, Context, Report};
@@ -73,13 +73,9 @@ impl Command for Set {
         let mut entries = Vec::with_capacity(records.len());
         let mut stores = Vec::with_capacity(records.len());
         for (record, values) in records {
-            let cell = Cell {
-                read: Request::read_pallet(self.program, record).map_err(|error| wrong(&error))?,
-                write: Request::write_pallet(self.program, record, &values).map_err(|error| wrong(&error))?,
-                wanted: record.layout.record(values).map_err(|error| wrong(&error))?,
-            };
-            entries.push(Entry::of(record, &cell.wanted));
-            stores.push(Store { key: record.name.to_owned(), cell, is_optional: false });
+            let store = super::store(self.program, record, values)?;
+            entries.push(Entry::of(record, &store.cell.wanted));
+            stores.push(store);
         }
         let fates = stores::store_all(link, screen, WORK, &stores, 0).await?;
         let records = entries.into_iter().zip(&fates).map(|(entry, fate)| StoredRecord { entry, result: *fate });

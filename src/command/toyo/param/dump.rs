@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::entry::{Key, read_keys};
 use super::singles;
+use crate::command::toyo::link::Link;
 use crate::command::toyo::numbers::Numbers;
 use crate::command::toyo::values::{in_a_line, shown};
 use crate::command::toyo::{Family, files};
@@ -17,8 +18,8 @@ use crate::controller::toyo::bulk::{Setting, parameters};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::table::parameters::PARAMETERS;
 use crate::failure::Failure;
-use crate::output::escape;
 use crate::output::view::View;
+use crate::output::{Screen, escape};
 
 /// Saves all parameters, and the tables of speeds, times, MVM groups and torque limits, as TOML.
 ///
@@ -44,19 +45,13 @@ impl Command for Dump {
     async fn run(&self, context: Context<'_, Family>) -> Result<Dumped, Failure> {
         let Context { robot, link, screen, several } = context;
         let target = files::target(self.file.as_deref(), self.force, several)?;
-        let keys = keys();
-        let contents = read_keys(link, screen, &keys).await?;
-        let mut kept = Kept::default();
-        for ((parameter, row), content) in keys.into_iter().zip(contents) {
-            kept.add((parameter, row), content);
-        }
+        let kept = Kept::read(link, screen).await?;
         let now = Timestamp::now();
         let taken_at = now.round(jiff::Unit::Second).unwrap_or(now).to_string();
         let text = format!(
-            "# Parameters of a Toyo controller, saved by armctl; `toyo param restore` writes them back.\n# {}, {taken_at}\n\n{}{}",
+            "# Parameters of a Toyo controller, saved by armctl; `toyo param restore` writes them back.\n# {}, {taken_at}\n\n{}",
             escape::line(&robot.label()),
-            parameters::write(&kept.settings),
-            kept.remarks()
+            kept.text(),
         );
         let file = target.map(|target| files::write(&target, &text)).transpose()?;
         let Kept { settings, refused, unfit } = kept;
@@ -76,24 +71,43 @@ fn keys() -> Vec<Key> {
 
 /// What was read.
 #[derive(Debug, Default)]
-struct Kept {
-    settings: Vec<Setting>,
-    refused: Vec<String>,
-    unfit: Vec<Unfit>,
+pub struct Kept {
+    /// What may be written back.
+    pub settings: Vec<Setting>,
+    /// What the controller refuses, mostly because it does not have it.
+    pub refused: Vec<String>,
+    /// What holds something that may not be written.
+    pub unfit: Vec<Unfit>,
 }
 
 /// A value that the controller holds although it may not be written.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Unfit {
     /// `M17`, or a row as `T2.5`.
-    key: String,
+    pub key: String,
     /// As it is.
-    value: String,
+    pub value: String,
     /// Why it may not be written.
-    why: String,
+    pub why: String,
 }
 
 impl Kept {
+    /// Reads all parameters, and all tables but that of points. A dry run notes them and ends.
+    pub async fn read(link: &mut Link, screen: &Screen) -> Result<Self, Failure> {
+        let keys = keys();
+        let contents = read_keys(link, screen, &keys).await?;
+        let mut kept = Self::default();
+        for (key, content) in keys.into_iter().zip(contents) {
+            kept.add(key, content);
+        }
+        Ok(kept)
+    }
+
+    /// As TOML, with what is not in it in comments.
+    pub fn text(&self) -> String {
+        format!("{}{}", parameters::write(&self.settings), self.remarks())
+    }
+
     fn add(&mut self, (parameter, row): Key, content: Option<Record>) {
         let key = key_text((parameter, row));
         let Some(content) = content else { return self.refused.push(key) };

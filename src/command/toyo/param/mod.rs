@@ -8,6 +8,9 @@ mod machine;
 mod restore;
 mod set;
 
+pub use dump::{Kept, Unfit};
+pub use restore::store;
+
 use super::Family;
 use crate::command::commands;
 use crate::controller::toyo::nearest::nearest;

@@ -140,7 +140,8 @@ impl Restore {
     }
 }
 
-fn store(setting: &Setting) -> Result<Store, Failure> {
+/// A setting as something that is stored.
+pub fn store(setting: &Setting) -> Result<Store, Failure> {
     let wrong = |error| link::wrong(&error);
     let cell = Cell {
         read: setting.read().map_err(wrong)?,

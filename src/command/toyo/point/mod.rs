@@ -4,6 +4,8 @@ mod get;
 mod list;
 mod set;
 
+pub use list::AXES;
+
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -73,7 +75,7 @@ fn parse_points(text: &str) -> Result<Numbers, String> {
 
 /// Reads points of a task, or of the current one, one after the other; says which task that is. A dry run notes them
 /// and ends.
-async fn read_all(
+pub async fn read_all(
     link: &mut Link,
     screen: &Screen,
     task: Option<u8>,

@@ -9,7 +9,7 @@ mod list;
 mod put;
 mod search;
 mod show;
-mod steps;
+pub mod steps;
 #[cfg(test)]
 mod tests;
 pub mod text;

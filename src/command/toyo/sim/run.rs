@@ -8,8 +8,10 @@ use clap::Args;
 use super::trace::{End, Recorder, Source, Trace};
 use crate::command::Desk;
 use crate::command::toyo::files;
+use crate::command::toyo::point::AXES;
 use crate::command::toyo::program::text;
-use crate::controller::toyo::bulk::{self, Placed};
+use crate::controller::toyo::bulk::{self, Placed, Setting};
+use crate::controller::toyo::field::Value;
 use crate::controller::toyo::findings::Finding;
 use crate::controller::toyo::program::{MOST_STEPS, check};
 use crate::controller::toyo::simulator::{Simulator, Start, What};
@@ -32,9 +34,10 @@ pub struct Run {
     /// Program of another task, such as 2=gate.txt; a TSTR starts it (repeatable)
     #[arg(long, value_name = "TASK=FILE", value_parser = other_task)]
     task: Vec<(usize, PathBuf)>,
-    /// Points (CSV), as `point list -o csv` prints them
-    #[arg(long, value_name = "FILE")]
-    points: Option<PathBuf>,
+    /// Points (CSV), as `point list --csv` writes them; of another task than 1 with its number before: 2=gate.csv
+    /// (repeatable)
+    #[arg(long, value_name = "[TASK=]FILE", value_parser = points_of)]
+    points: Vec<(usize, PathBuf)>,
     /// Parameters and tables (TOML), as `param dump` writes them
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
@@ -83,6 +86,15 @@ fn other_task(text: &str) -> Result<(usize, PathBuf), String> {
         Some((task, file)) if (2..=4).contains(&task) && !file.is_empty() => Ok((task, file.into())),
         _ => Err("write a task from 2 to 4 and a file, such as 2=gate.txt".to_owned()),
     }
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "the parser of the command line wants it")]
+fn points_of(text: &str) -> Result<(usize, PathBuf), String> {
+    let task = text.split_once('=').and_then(|(task, file)| Some((task.parse().ok()?, file)));
+    Ok(match task {
+        Some((task, file)) if (1..=4).contains(&task) => (task, file.into()),
+        _ => (1, text.into()),
+    })
 }
 
 fn input(text: &str) -> Result<Input, String> {
@@ -147,13 +159,17 @@ impl Run {
         if let Some(path) = &self.params {
             written.extend(writes(path, bulk::parameters::read(&files::read(path)?))?);
         }
-        if let Some(path) = &self.points {
-            written.extend(writes(path, bulk::points::read(&files::read(path)?, 4))?);
-        }
         // As what was there before power came on, so that parameter 2 is in force.
         let mut document: toml::Table = state.parse().map_err(|error| Failure::usage(format!("{error}")))?;
         if let toml::Value::Array(list) = document.entry("write").or_insert_with(|| toml::Value::Array(Vec::new())) {
             list.extend(written.into_iter().map(toml::Value::String));
+        }
+        for (task, path) in &self.points {
+            let name = files::shown(path);
+            let read = bulk::points::read(&files::read(path)?, AXES).map_err(|errors| files::faulty(&name, &errors))?;
+            for (point, _) in read {
+                place(&mut document, *task, &point);
+            }
         }
         if let toml::Value::Table(steps) = document.entry("steps").or_insert_with(|| toml::Table::new().into()) {
             for Source { task, program, .. } in sources {
@@ -229,6 +245,22 @@ fn writes(path: &Path, read: Result<Vec<Placed>, Vec<Finding>>) -> Result<Vec<St
         commands.push(command);
     }
     Ok(commands)
+}
+
+/// Puts a point into a start state.
+fn place(state: &mut toml::Table, task: usize, point: &Setting) {
+    fn table(within: &mut toml::Table, key: String) -> Option<&mut toml::Table> {
+        within.entry(key).or_insert_with(|| toml::Table::new().into()).as_table_mut()
+    }
+    let millimetres = |value: &Value| {
+        let hundredths = if let Value::Number(hundredths) = value { *hundredths } else { 0 };
+        toml::Value::Float(f64::from(hundredths) / 100.0)
+    };
+    let coordinates = point.values.iter().skip(1).map(millimetres).collect();
+    let rows = table(state, "points".to_owned()).and_then(|points| table(points, task.to_string()));
+    if let (Some(rows), Some(row)) = (rows, point.row()) {
+        rows.insert(row.to_string(), toml::Value::Array(coordinates));
+    }
 }
 
 /// The program in a file.

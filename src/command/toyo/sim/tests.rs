@@ -141,9 +141,11 @@ fn parameters_and_other_tasks_come_from_files() {
         ("a.txt", "TSTR TASK=2\nIN STN=0 PN1=.......1 AND\nMOVP a PT=1 CN=0 S V=5 POST\nEND\n"),
         ("b.txt", "OUT STN=0 PN2=1.......\nEND\n"),
         ("points.csv", POINTS),
+        ("more.csv", "point,x_mm,y_mm,z_mm,r_mm\n1,1,2,3,4\n"),
         ("params.toml", "[speed-table]\n5 = 10.0\n"),
     ]);
-    let words_of = ["./a.txt", "--task", "2=./b.txt", "--points", "./points.csv", "--params", "./params.toml"];
+    let words_of = ["./a.txt", "--task", "2=./b.txt", "--points", "./points.csv", "--points", "2=./more.csv"];
+    let words_of = [&words_of[..], &["--params", "./params.toml"]].concat();
     let data = desk.data(&[&words_of[..], &["--input", "at 1s 0/01/1 on"]].concat());
     assert_eq!(data["outputs"][0]["bits"], "10000000");
     assert!(data["elapsed_s"].as_f64().unwrap() > 10.0, "100 mm at 10 mm/s");

@@ -1,5 +1,6 @@
 //! Points, parameters and palletizing programs as files: text to values and back, without files.
 
+pub mod easy;
 pub mod pallets;
 pub mod parameters;
 pub mod points;

@@ -1,0 +1,239 @@
+//! The parts of a controller, and what became of each.
+
+use std::fmt;
+use std::str::FromStr;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::manifest::LeftOut;
+use crate::command::toyo::cells::Cells;
+use crate::controller::toyo::nearest::nearest;
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Table, Tone};
+
+/// What is stored in a file of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// Parameters, and all tables but the points.
+    Parameters,
+    /// The easy programs.
+    Easy,
+    /// A palletizing program, 1 to 16.
+    Palletizing(u8),
+    /// The points of a task, 1 to 4.
+    Points(u8),
+    /// The sequential program of a task, 1 to 4.
+    Program(u8),
+}
+
+/// Some parts, as an operator names them: one, or all of a kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Parts {
+    kind: &'static str,
+    number: Option<u8>,
+}
+
+/// Words for parts, with how many there can be.
+const KINDS: [(&str, u8); 5] = [("parameters", 0), ("easy", 0), ("palletizing", 16), ("points", 4), ("program", 4)];
+
+impl Part {
+    /// All that a controller with these tasks can have, in the order of reading and writing.
+    pub fn all(points: &[u8], programs: &[u8]) -> Vec<Self> {
+        let mut parts = vec![Self::Parameters, Self::Easy];
+        parts.extend((1..=16).map(Self::Palletizing));
+        for task in 1..=4 {
+            parts.extend(points.contains(&task).then_some(Self::Points(task)));
+            parts.extend(programs.contains(&task).then_some(Self::Program(task)));
+        }
+        parts
+    }
+
+    /// Its file in the folder.
+    pub fn file(self) -> String {
+        let ending = match self {
+            Self::Parameters | Self::Easy | Self::Palletizing(_) => "toml",
+            Self::Points(_) => "csv",
+            Self::Program(_) => "txt",
+        };
+        format!("{self}.{ending}")
+    }
+
+    fn words(self) -> (&'static str, Option<u8>) {
+        match self {
+            Self::Parameters => ("parameters", None),
+            Self::Easy => ("easy", None),
+            Self::Palletizing(number) => ("palletizing", Some(number)),
+            Self::Points(task) => ("points", Some(task)),
+            Self::Program(task) => ("program", Some(task)),
+        }
+    }
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.words() {
+            (word, None) => f.write_str(word),
+            ("palletizing", Some(number)) => write!(f, "palletizing-{number:02}"),
+            (word, Some(number)) => write!(f, "{word}-{number}"),
+        }
+    }
+}
+
+impl FromStr for Part {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let parts: Parts = name.parse()?;
+        Ok(match (parts.kind, parts.number) {
+            ("parameters", _) => Self::Parameters,
+            ("easy", _) => Self::Easy,
+            ("palletizing", Some(number)) => Self::Palletizing(number),
+            ("points", Some(task)) => Self::Points(task),
+            ("program", Some(task)) => Self::Program(task),
+            (kind, _) => return Err(format!("'{name}' is no single part; write {kind}-1")),
+        })
+    }
+}
+
+impl Parts {
+    /// Whether a part is one of these.
+    pub fn has(self, part: Part) -> bool {
+        let (kind, number) = part.words();
+        kind == self.kind && (self.number.is_none() || self.number == number)
+    }
+}
+
+impl FromStr for Parts {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let (word, number) = name.split_once('-').map_or((name, None), |(word, number)| (word, Some(number)));
+        let Some((kind, most)) = KINDS.into_iter().find(|(kind, _)| *kind == word) else {
+            let near = nearest(word, KINDS.iter().map(|(kind, _)| *kind));
+            let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+            return Err(format!("there is no part '{name}'{near}"));
+        };
+        let Some(number) = number else { return Ok(Self { kind, number: None }) };
+        match number.parse().ok().filter(|number| (1..=most).contains(number)) {
+            Some(number) => Ok(Self { kind, number: Some(number) }),
+            None if most == 0 => Err(format!("there is one part {kind} only")),
+            None => Err(format!("{kind} has numbers from 1 to {most}")),
+        }
+    }
+}
+
+/// What became of a part.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct PartResult {
+    /// `parameters`, `points-1`, `palletizing-03`.
+    pub part: String,
+    /// What was done.
+    pub state: State,
+    /// Its file in the folder.
+    pub file: Option<String>,
+    /// What of it is not in the file, or not on the controller.
+    pub left_out: Vec<LeftOut>,
+    /// EEPROM cells, where some are written.
+    pub cells: Option<Cells>,
+    /// Why it failed.
+    pub error: Option<Failure>,
+}
+
+/// How far a part got.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum State {
+    /// Saved, or restored.
+    Done,
+    /// There already, from a backup that was cut off.
+    Kept,
+    /// It failed; see `error`.
+    Failed,
+    /// Something before it ended the work.
+    NotTried,
+}
+
+impl PartResult {
+    /// Before it is tried.
+    pub fn pending(part: impl fmt::Display) -> Self {
+        Self {
+            part: part.to_string(),
+            state: State::NotTried,
+            file: None,
+            left_out: Vec::new(),
+            cells: None,
+            error: None,
+        }
+    }
+
+    /// It failed. Says whether the next part can be tried: after a "no" to this one it can, on a broken line it cannot.
+    pub fn fail(&mut self, failure: Failure) -> bool {
+        let goes_on = matches!(failure.kind, Kind::Refused | Kind::Malformed | Kind::Usage | Kind::RefusedHere);
+        self.state = State::Failed;
+        self.error = Some(failure);
+        goes_on
+    }
+}
+
+/// A line for each part.
+pub fn table(parts: &[PartResult], done: &'static str) -> Table {
+    let mut table = Table::new(&["part", "result"], "no parts");
+    for part in parts {
+        let result = match (part.state, &part.error, part.cells) {
+            (State::Failed, Some(error), _) => Cell::from(error.message.as_str()).tone(Tone::Bad),
+            (State::Failed, None, _) => Cell::from("failed").tone(Tone::Bad),
+            (State::NotTried, ..) => Cell::from("not tried").tone(Tone::Warning),
+            (State::Kept, ..) => Cell::from("kept"),
+            (State::Done, _, Some(cells)) => Cell::from(cells.in_words()).tone(Tone::Good),
+            (State::Done, _, None) => Cell::from(done).tone(Tone::Good),
+        };
+        let left_out: Vec<&str> = part.left_out.iter().map(|left| left.key.as_str()).collect();
+        let left_out = if left_out.is_empty() { String::new() } else { format!("; without {}", left_out.join(", ")) };
+        table.row([part.part.as_str().into(), Cell { text: result.text + &left_out, ..result }]);
+    }
+    table
+}
+
+/// Why work on parts is no success: the gravest failure, and how many parts there are of which kind.
+pub fn failure(parts: &[PartResult]) -> Option<Failure> {
+    let failed = parts.iter().filter_map(|part| Some((&part.part, part.error.as_ref()?)));
+    let (name, gravest) = failed.clone().last()?;
+    let count = |state| parts.iter().filter(|part| part.state == state).count();
+    let not_tried = match count(State::NotTried) {
+        0 => String::new(),
+        left => format!(", {left} not tried"),
+    };
+    let total = parts.len();
+    let message = format!("{} of {total} parts failed{not_tried}: {name}: {}", count(State::Failed), gravest.message);
+    Some(Failure { message, ..gravest.clone() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_part_has_a_name() {
+        let all = Part::all(&[1, 2], &[1, 3]);
+        let names: Vec<String> = all.iter().map(ToString::to_string).collect();
+        assert_eq!(names[..3], ["parameters", "easy", "palletizing-01"]);
+        assert_eq!(names[18..], ["points-1", "program-1", "points-2", "program-3"]);
+        for part in all {
+            assert_eq!(part.to_string().parse(), Ok(part));
+        }
+        assert_eq!(Part::Program(2).file(), "program-2.txt");
+    }
+
+    #[test]
+    fn parts_are_chosen_alone_or_all_of_a_kind() {
+        let parts = |name: &str| name.parse::<Parts>();
+        assert!(parts("points").unwrap().has(Part::Points(3)));
+        assert!(parts("points-2").unwrap().has(Part::Points(2)) && !parts("points-2").unwrap().has(Part::Points(3)));
+        assert!(parts("palletizing-3").unwrap().has(Part::Palletizing(3)));
+        assert_eq!(parts("point").unwrap_err(), "there is no part 'point'; did you mean points?");
+        assert_eq!(parts("points-5").unwrap_err(), "points has numbers from 1 to 4");
+        assert_eq!(parts("easy-1").unwrap_err(), "there is one part easy only");
+        assert_eq!("points".parse::<Part>().unwrap_err(), "'points' is no single part; write points-1");
+    }
+}

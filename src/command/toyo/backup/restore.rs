@@ -1,0 +1,337 @@
+//! `toyo restore`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::content::{self, Content};
+use super::manifest::{Controller, LeftOut, Manifest};
+use super::parts::{self, Part, PartResult, Parts, State};
+use crate::command::local::own_folder;
+use crate::command::manifest::{self, MANIFEST};
+use crate::command::toyo::cells::{Cell, Cells};
+use crate::command::toyo::link::{Link, wrong};
+use crate::command::toyo::program::steps;
+use crate::command::toyo::stores::{self, Fate, Store, Work};
+use crate::command::toyo::{Family, tasks};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::{Failure, Kind};
+use crate::gate::Demand;
+use crate::output::Screen;
+use crate::output::view::View;
+
+/// Writes back what a backup holds.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "All files are checked first, against their hashes and for their content. Each value is compared \
+                  before it is written: what the controller holds already is not written, as its EEPROM takes about a \
+                  million rewrites. So after a restore that was cut off the same command goes on where it ended.\n\n\
+                  Machine parameters (E) and special ones (U) are left out unless --machine is given. They come first; \
+                  if one of E was changed, nothing else is written, as only communication works until the \
+                  controller's power was switched off and on. Then restore again without --machine.\n\nSteps and all \
+                  else are written in program mode; a controller in another mode is switched to it, and back."
+)]
+pub struct Restore {
+    /// Folder of the backup
+    folder: PathBuf,
+    /// These parts only, such as parameters,points-1,program
+    #[arg(long, value_name = "PART", value_delimiter = ',')]
+    only: Vec<Parts>,
+    /// Write machine and special parameters, too; needs --yes
+    #[arg(long)]
+    machine: bool,
+    /// Go on with a restore that was cut off; with a part, those before it are not even compared
+    #[arg(long, value_name = "PART", num_args = 0..=1, require_equals = true, default_missing_value = "parameters")]
+    resume: Option<Part>,
+    /// Write the backup of one robot type to another
+    #[arg(long)]
+    force: bool,
+}
+
+/// A part with what is to be stored.
+struct Job {
+    part: Part,
+    content: Content,
+}
+
+const MACHINE: Work = Work { doing: "storing machine parameters", noun: "", resumes: false };
+const SPEED: Work = Work { doing: "storing the override", noun: "", resumes: false };
+const POWER_CYCLE: &str = "machine parameters were changed: switch the controller's power off and on, then restore \
+                           again without --machine";
+
+impl Command for Restore {
+    type Family = Family;
+    type Report = Restored;
+    const ID: &'static str = "toyo.restore";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    fn demand(&self) -> Demand {
+        if self.machine {
+            Demand::Flag("machine parameters make it another machine, and need a power cycle".to_owned())
+        } else {
+            Demand::Usual
+        }
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
+        let Context { link, screen, robot, several } = context;
+        let folder = own_folder(&self.folder, &robot.name, several);
+        let manifest: Manifest = manifest::read(&folder)?.ok_or_else(|| {
+            Failure::local(format!("{} holds no {MANIFEST}", folder.display()))
+                .hint("name the folder of a `toyo backup`; single files go with `param restore`, `point set` and so on")
+        })?;
+        let parts = self.chosen(&manifest)?;
+        if self.machine && !parts.contains(&Part::Parameters) {
+            return Err(Failure::usage("--machine is about the parameters, which are not among the parts"));
+        }
+        let mut jobs = Vec::new();
+        for part in parts {
+            if let Some(copy) = manifest.entry(part).and_then(|entry| entry.copy.as_ref()) {
+                copy.check(&folder)?;
+                jobs.push(Job { part, content: Content::load(part, &folder, screen)? });
+            }
+        }
+        if link.is_dry() {
+            return self.rehearse(link, screen, &manifest.controller, &jobs).await;
+        }
+        let outcome = self.restore(link, screen, &manifest.controller, &jobs).await;
+        match outcome {
+            // Nothing more is sent then but what puts things back at the end of the link.
+            Ok(report) if report.is_interrupted() => Ok(report),
+            outcome => tasks::done(link, outcome).await,
+        }
+    }
+}
+
+impl Restore {
+    /// The parts to restore, in the order of writing.
+    fn chosen(&self, manifest: &Manifest) -> Result<Vec<Part>, Failure> {
+        let tasks = [1, 2, 3, 4];
+        let mut parts = Part::all(&tasks, &tasks);
+        parts.retain(|part| manifest.entry(*part).is_some_and(|entry| entry.copy.is_some()));
+        parts.retain(|part| self.only.is_empty() || self.only.iter().any(|only| only.has(*part)));
+        if parts.is_empty() {
+            return Err(Failure::usage("the backup has none of these parts").hint(format!("{MANIFEST} lists them")));
+        }
+        if let Some(resume) = self.resume {
+            let first = parts.iter().position(|part| *part == resume);
+            // All of them, where it is the first that there can be.
+            let first = first.or_else(|| (resume == Part::Parameters).then_some(0));
+            let first =
+                first.ok_or_else(|| Failure::usage(format!("--resume={resume}: the backup does not have it")))?;
+            parts.drain(..first);
+        }
+        Ok(parts)
+    }
+
+    async fn restore(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        backup: &Controller,
+        jobs: &[Job],
+    ) -> Result<Restored, Failure> {
+        let found = content::controller(link).await?;
+        if found.robot_type != backup.robot_type && !self.force {
+            let message =
+                format!("the backup is of robot type {}, the controller's is {}", backup.robot_type, found.robot_type);
+            return Err(Failure::new(Kind::RefusedHere, message)
+                .hint("take the backup of this robot; --force writes it all the same"));
+        }
+        let mut results: Vec<PartResult> = jobs.iter().map(|job| PartResult::pending(job.part)).collect();
+        if !self.machine {
+            check_room(jobs, &found)?;
+        }
+        steps::open(link).await?;
+        let mut report = Restored { parts: Vec::new(), needs_power_cycle: false };
+        if self.machine {
+            report.needs_power_cycle = machine(link, screen, jobs, &mut results).await?;
+            if report.needs_power_cycle || results.iter().any(|result| result.state == State::Failed) {
+                report.parts = results;
+                return Ok(report);
+            }
+            // Those of them that took hold at once.
+            check_room(jobs, &content::controller(link).await?)?;
+        }
+        let total = jobs.len();
+        for (number, (job, result)) in jobs.iter().zip(&mut results).enumerate() {
+            screen.step(&format!("{}/{total} {}", number + 1, job.part));
+            let outcome = store(link, screen, job, &found).await;
+            if !settle(result, outcome) {
+                break;
+            }
+        }
+        if self.only.is_empty()
+            && let Some(store) = speed(backup)?
+        {
+            let mut result = PartResult::pending("override");
+            if results.iter().all(|result| matches!(result.state, State::Done | State::Failed)) {
+                settle(&mut result, store_all(link, screen, SPEED, &[store]).await);
+            }
+            results.push(result);
+        }
+        report.parts = results;
+        Ok(report)
+    }
+
+    async fn rehearse(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        backup: &Controller,
+        jobs: &[Job],
+    ) -> Result<Restored, Failure> {
+        content::foresee_controller(link);
+        steps::foresee_open(link).await?;
+        if self.machine {
+            for job in jobs {
+                stores::store_all(link, screen, MACHINE, &job.content.machine_stores()?, 0).await?;
+            }
+        }
+        for Job { part, content } in jobs {
+            if let Part::Points(task) | Part::Program(task) = part {
+                tasks::choose(link, Some(*task)).await?;
+            }
+            let steps = u16::try_from(content.steps()).unwrap_or(u16::MAX);
+            stores::store_all(link, screen, content.work(), &content.stores(steps)?, 0).await?;
+            if let Part::Program(_) = part {
+                let rest = "and so on to the end of the task: what is no NOP becomes one";
+                link.foresee(&steps::read_request(steps.saturating_add(1).min(5000)), rest);
+            }
+        }
+        if let Some(store) = speed(backup)?.filter(|_| self.only.is_empty()) {
+            stores::store_all(link, screen, SPEED, &[store], 0).await?;
+        }
+        link.put_back().await?;
+        std::future::pending().await
+    }
+}
+
+/// The override that the backup has.
+fn speed(backup: &Controller) -> Result<Option<Store>, Failure> {
+    let Some(percent) = backup.override_percent else { return Ok(None) };
+    let values = vec![Value::Number(percent.into())];
+    let wanted = table::Command::Rovr.row().answers[0].record(values.clone());
+    let cell = Cell {
+        read: Request::bare(table::Command::Rovr),
+        write: Request::new(table::Command::Wovr, values).map_err(|error| wrong(&error))?,
+        wanted: wanted.map_err(|error| wrong(&error))?,
+    };
+    Ok(Some(Store { key: "override".to_owned(), cell, is_optional: true }))
+}
+
+/// Whether all programs fit the tasks; before anything is written.
+fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
+    for Job { part, content } in jobs {
+        let Part::Program(task) = part else { continue };
+        let room = found.task_steps[usize::from(*task) - 1];
+        if content.steps() > usize::from(room) {
+            let message = format!("{part} has {} steps, and task {task} has room for {room}", content.steps());
+            return Err(Failure::usage(message).hint(
+                "--machine restores the machine parameters, E22 (task-steps) among them; or leave the part out with --only",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Stores machine and special parameters, and says whether the controller wants its power to be cycled.
+async fn machine(link: &mut Link, screen: &Screen, jobs: &[Job], results: &mut [PartResult]) -> Result<bool, Failure> {
+    for (job, result) in jobs.iter().zip(results) {
+        let stores = job.content.machine_stores()?;
+        match stores::store_all(link, screen, MACHINE, &stores, 0).await {
+            Ok(fates) => {
+                let changed = |(store, fate): (&Store, &Fate)| store.key.starts_with('E') && *fate == Fate::Written;
+                if stores.iter().zip(&fates).any(changed) {
+                    result.cells = Some(stores::sum(&fates));
+                    return Ok(true);
+                }
+            }
+            Err(failure) => {
+                result.fail(failure);
+                return Ok(false);
+            }
+        }
+    }
+    Ok(false)
+}
+
+/// Stores a part.
+async fn store(
+    link: &mut Link,
+    screen: &Screen,
+    job: &Job,
+    found: &Controller,
+) -> Result<(Cells, Vec<LeftOut>), Failure> {
+    let Job { part, content } = job;
+    let mut room = 0;
+    if let Part::Points(task) | Part::Program(task) = part {
+        tasks::choose(link, Some(*task)).await?;
+        room = found.task_steps[usize::from(*task) - 1];
+    }
+    store_all(link, screen, content.work(), &content.stores(room)?).await
+}
+
+/// Stores cells: how many were written, and which the controller does not have.
+async fn store_all(
+    link: &mut Link,
+    screen: &Screen,
+    work: Work,
+    stores: &[Store],
+) -> Result<(Cells, Vec<LeftOut>), Failure> {
+    let fates = stores::store_all(link, screen, work, stores, 0).await?;
+    let absent = stores.iter().zip(&fates).filter(|(_, fate)| **fate == Fate::NotThere);
+    let why = "the controller does not have it";
+    let absent = absent.map(|(store, _)| LeftOut { key: store.key.clone(), why: why.to_owned() });
+    Ok((stores::sum(&fates), absent.collect()))
+}
+
+/// Writes down what became of a part, and says whether the next one can be tried.
+fn settle(result: &mut PartResult, outcome: Result<(Cells, Vec<LeftOut>), Failure>) -> bool {
+    match outcome {
+        Ok((cells, left_out)) => {
+            result.state = State::Done;
+            result.cells = Some(cells);
+            result.left_out = left_out;
+            true
+        }
+        Err(failure) => result.fail(failure),
+    }
+}
+
+/// What became of a backup.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Restored {
+    /// In the order of writing.
+    parts: Vec<PartResult>,
+    /// Machine parameters were changed, and nothing else was written: nothing but communication works until the
+    /// controller's power was switched off and on.
+    needs_power_cycle: bool,
+}
+
+impl Restored {
+    fn is_interrupted(&self) -> bool {
+        let kinds = self.parts.iter().filter_map(|part| part.error.as_ref());
+        kinds.into_iter().any(|failure| failure.kind == Kind::Interrupted)
+    }
+}
+
+impl Report for Restored {
+    fn view(&self) -> View {
+        View::table(parts::table(&self.parts, "restored"))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let not_done = self.needs_power_cycle.then(|| Failure::new(Kind::ConditionNotMet, POWER_CYCLE));
+        parts::failure(&self.parts).or(not_done)
+    }
+}

@@ -1,0 +1,251 @@
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::command::toyo::testing::{Bench, Fate, blocks};
+use crate::failure::{Failure, Kind};
+
+/// A controller with something of everything, and a small memory.
+const FULL: &str = r#"
+axes = 2
+points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0], 999 = [-1.5, 0.0, 0.0, 0.0] } }
+steps = { 1 = ["TAG TAG=001", "SPD V=05", "JMP TAG=001"], 2 = ["OUT STN=0 PN01=.......1", "END"] }
+write = ["WPAR M09 J", "WPAR T2 V05=0250.0", "WPLT 03 SNO=01 TAG=007 MOD=M-M",
+         "WPAR E22 TASK01=0010 TASK02=0005 TASK03=0000 TASK04=0000",
+         "WESY PNO=02 ST=000 START=010 LOOP=0005 END=020"]
+"#;
+/// The same controller with nothing in it.
+const EMPTY: &str = "axes = 2\nwrite = [\"WPAR E22 TASK01=0010 TASK02=0005 TASK03=0000 TASK04=0000\"]\n";
+
+/// A folder for backups.
+struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// A backup of a controller.
+    fn saved(&self, state: &str, name: &str) -> String {
+        let folder = self.path(name).to_str().unwrap().to_owned();
+        controller(state).data(&["backup", &folder]);
+        folder
+    }
+}
+
+fn controller(state: &str) -> Bench {
+    Bench::spoilt(state, |_, _| Fate::Pass).0
+}
+
+/// The files of a folder, but for the list.
+fn files(folder: impl AsRef<Path>) -> BTreeMap<String, String> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let files = entries.filter(|path| path.file_name().unwrap() != "manifest.json");
+    files
+        .map(|path| (path.file_name().unwrap().to_str().unwrap().to_owned(), std::fs::read_to_string(path).unwrap()))
+        .collect()
+}
+
+fn part<'d>(data: &'d Value, name: &str) -> &'d Value {
+    data["parts"].as_array().unwrap().iter().find(|part| part["part"] == name).unwrap()
+}
+
+fn failure(bench: &mut Bench, words: &[&str]) -> Failure {
+    match bench.run(words) {
+        Ok((_, Some(failure))) | Err(failure) => failure,
+        Ok((data, None)) => panic!("{data}"),
+    }
+}
+
+#[test]
+fn a_backup_holds_all_that_is_stored() {
+    let desk = Desk::new();
+    let folder = desk.path("saved");
+    let saved = controller(FULL).data(&["backup", folder.to_str().unwrap()]);
+    assert_eq!((&saved["complete"], &saved["controller"]["task_axes"]), (&true.into(), &"2000".into()));
+    let files = files(&folder);
+    let names: Vec<&str> = files.keys().map(String::as_str).filter(|name| !name.starts_with("palletizing")).collect();
+    assert_eq!(names, ["easy.toml", "parameters.toml", "points-1.csv", "program-1.txt", "program-2.txt"]);
+    assert_eq!(files.len(), 21);
+    assert!(files["points-1.csv"].starts_with("point,x_mm,y_mm,z_mm,r_mm\n1,100.00,20.00,0.00,0.00\n"));
+    assert!(files["points-1.csv"].ends_with("\n999,-1.50,0.00,0.00,0.00\n"));
+    assert!(files["program-1.txt"].starts_with("TAG TAG=001\nSPD V=05\nJMP TAG=001"));
+    assert!(files["program-2.txt"].starts_with("OUT STN=0 PN01=.......1\nEND\n# 3 NOP"));
+    assert!(
+        files["parameters.toml"].contains("pendant-language = \"J\"") && files["parameters.toml"].contains("5 = 250.0")
+    );
+    assert!(files["palletizing-03.toml"].contains("start = { tag = 7, mode = \"M-M\" }"));
+    assert!(files["easy.toml"].contains("2 = { start = 10, loop = 5, end = 20 }"));
+}
+
+#[test]
+fn what_is_restored_is_what_was_saved() {
+    let desk = Desk::new();
+    let first = desk.saved(FULL, "first");
+    let mut bench = controller(EMPTY);
+    let restored = bench.data(&["restore", &first]);
+    let written = |data: &Value, name: &str| part(data, name)["cells"]["cells_written"].clone();
+    assert_eq!(written(&restored, "points-1"), 2);
+    assert_eq!(written(&restored, "program-1"), 3);
+    assert_eq!(written(&restored, "program-2"), 2);
+    assert_eq!(written(&restored, "palletizing-03"), 1);
+    assert_eq!(written(&restored, "palletizing-04"), 0);
+    assert_eq!(written(&restored, "override"), 0);
+    assert_eq!((written(&restored, "parameters"), written(&restored, "easy")), (2.into(), 1.into()));
+    let status = bench.data(&["status"]);
+    assert_eq!(status["mode"], "automatic", "the mode is as it was found");
+    assert_eq!(bench.data(&["task", "get"])["task"], 1);
+    let second = desk.path("second");
+    bench.data(&["backup", second.to_str().unwrap()]);
+    assert_eq!(files(first), files(second));
+}
+
+#[test]
+fn what_is_there_is_not_written_again() {
+    let desk = Desk::new();
+    let folder = desk.saved(FULL, "saved");
+    let restored = controller(FULL).data(&["restore", &folder]);
+    for part in restored["parts"].as_array().unwrap() {
+        assert_eq!((&part["state"], &part["cells"]["cells_written"]), (&"done".into(), &0.into()), "{part}");
+    }
+}
+
+#[test]
+fn a_backup_that_was_cut_off_goes_on() {
+    let desk = Desk::new();
+    let folder = desk.path("saved");
+    let folder = folder.to_str().unwrap();
+    let silent = |block: &str, _| if block == "@RPLT 05 SNO=07" { Fate::Lost } else { Fate::Pass };
+    let (mut bench, _) = Bench::spoilt(FULL, silent);
+    let (data, failed) = bench.run(&["backup", folder]).unwrap();
+    let failed = failed.unwrap();
+    assert_eq!((failed.kind, &data["complete"]), (Kind::NoAnswer, &false.into()));
+    assert!(failed.message.starts_with("1 of 21 parts failed, 14 not tried: palletizing-05: "), "{}", failed.message);
+    assert!(failed.hint.unwrap().ends_with("--resume reads what is missing"));
+    assert_eq!(failure(&mut controller(FULL), &["backup", folder]).kind, Kind::Local);
+    let (mut bench, heard) = Bench::spoilt(FULL, |_, _| Fate::Pass);
+    let data = bench.data(&["backup", folder, "--resume"]);
+    assert_eq!(data["complete"], true);
+    assert_eq!(
+        (&part(&data, "parameters")["state"], &part(&data, "palletizing-05")["state"]),
+        (&"kept".into(), &"done".into())
+    );
+    assert!(!heard.borrow().iter().any(|block| block == "@RPLT 04 SNO=01"), "what is there is not read again");
+}
+
+#[test]
+fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
+    let desk = Desk::new();
+    let folder = desk.path("saved");
+    let folder = folder.to_str().unwrap();
+    let refuse = |block: &str, _| if block.starts_with("@RESY") { Fate::Answered("@NG") } else { Fate::Pass };
+    let (mut bench, _) = Bench::spoilt(FULL, refuse);
+    let (data, failed) = bench.run(&["backup", folder]).unwrap();
+    assert_eq!((failed.unwrap().kind, &part(&data, "program-2")["state"]), (Kind::Refused, &"done".into()));
+    let list = std::fs::read_to_string(desk.path("saved/manifest.json")).unwrap();
+    let list: Value = serde_json::from_str(&list).unwrap();
+    assert!(part(&list, "easy")["error"]["message"].as_str().unwrap().contains("@NG"));
+}
+
+#[test]
+fn a_changed_file_is_not_sent() {
+    let desk = Desk::new();
+    let folder = desk.saved(FULL, "saved");
+    std::fs::write(desk.path("saved/points-1.csv"), "point,x_mm,y_mm,z_mm,r_mm\n").unwrap();
+    let (mut bench, heard) = Bench::spoilt(FULL, |_, _| Fate::Pass);
+    assert_eq!(failure(&mut bench, &["restore", &folder]).kind, Kind::Local);
+    assert_eq!(heard.borrow().len(), 0);
+    bench.data(&["restore", &folder, "--only", "easy"]);
+}
+
+#[test]
+fn another_robot_is_refused() {
+    let desk = Desk::new();
+    let folder = desk.saved(FULL, "saved");
+    let mut other = controller(&format!("robot_types = [7]\n{EMPTY}"));
+    let failed = failure(&mut other, &["restore", &folder]);
+    assert_eq!(failed.kind, Kind::RefusedHere);
+    assert_eq!(failed.message, "the backup is of robot type 000000, the controller's is 000007");
+    other.data(&["restore", &folder, "--force", "--only", "program"]);
+}
+
+#[test]
+fn a_program_must_have_room_before_anything_is_written() {
+    let desk = Desk::new();
+    let folder = desk.saved(FULL, "saved");
+    let (mut bench, heard) = Bench::spoilt("axes = 2", |_, _| Fate::Pass);
+    let failed = failure(&mut bench, &["restore", &folder]);
+    assert_eq!(
+        (failed.kind, failed.message.as_str()),
+        (Kind::Usage, "program-2 has 2 steps, and task 2 has room for 0")
+    );
+    assert!(!heard.borrow().iter().any(|block| block.starts_with("@W")));
+}
+
+#[test]
+fn machine_parameters_come_first_and_alone() {
+    let desk = Desk::new();
+    let folder = desk.saved(FULL, "saved");
+    let (mut bench, heard) = Bench::spoilt("axes = 2", |_, _| Fate::Pass);
+    let (data, failed) = bench.run(&["restore", &folder, "--machine"]).unwrap();
+    assert_eq!(failed.unwrap().kind, Kind::ConditionNotMet);
+    assert_eq!((&data["needs_power_cycle"], &part(&data, "points-1")["state"]), (&true.into(), &"not_tried".into()));
+    let written: Vec<String> = heard.borrow().iter().filter(|block| block.starts_with("@W")).cloned().collect();
+    assert_eq!(written, ["@WPAR E22 TASK01=0010 TASK02=0005 TASK03=0000 TASK04=0000"]);
+    // What is the same already is no change.
+    let data = controller(EMPTY).data(&["restore", &folder, "--machine"]);
+    assert_eq!((&data["needs_power_cycle"], &part(&data, "points-1")["state"]), (&false.into(), &"done".into()));
+}
+
+#[test]
+fn a_restore_that_fails_says_how_far_it_got() {
+    let desk = Desk::new();
+    let folder = desk.saved(FULL, "saved");
+    let lost = |block: &str, _| if block.starts_with("@WPLT 03") { Fate::Unanswered } else { Fate::Pass };
+    let (mut bench, _) = Bench::spoilt(EMPTY, lost);
+    let (data, failed) = bench.run(&["restore", &folder]).unwrap();
+    let failed = failed.unwrap();
+    assert_eq!(failed.kind, Kind::OutcomeUnknown);
+    assert!(
+        failed.message.contains("palletizing-03: ") && failed.message.contains("written or not: start"),
+        "{}",
+        failed.message
+    );
+    let state = |name: &str| part(&data, name)["state"].as_str().unwrap().to_owned();
+    assert_eq!(
+        (&*state("palletizing-02"), &*state("palletizing-04"), &*state("override")),
+        ("done", "not_tried", "not_tried")
+    );
+    let mut bench = controller(EMPTY);
+    let data = bench.data(&["restore", &folder, "--resume=palletizing-03"]);
+    assert_eq!(data["parts"][0]["part"], "palletizing-03");
+}
+
+#[test]
+fn a_dry_run_shows_what_would_be_written() {
+    let desk = Desk::new();
+    let folder = desk.saved(FULL, "saved");
+    let blocks = blocks(&["restore", &folder, "--only", "program-2,easy"]).unwrap();
+    assert!(blocks.contains(&"@WSTX 0001 OUT STN=0 PN01=.......1".to_owned()));
+    assert!(blocks.contains(&"@WESY PNO=02 ST=000 START=010 LOOP=0005 END=020".to_owned()));
+    assert!(!blocks.iter().any(|block| block.starts_with("@WPAR")));
+}
+
+#[test]
+fn a_folder_with_other_files_is_left_alone() {
+    let desk = Desk::new();
+    std::fs::write(desk.path("letter.txt"), "x").unwrap();
+    let folder = desk.folder.path().to_str().unwrap();
+    for words in [["backup", folder], ["restore", folder]] {
+        assert_eq!(blocks(&words).unwrap_err().kind, Kind::Local);
+    }
+    assert_eq!(blocks(&["restore", "/nowhere"]).unwrap_err().kind, Kind::Local);
+}

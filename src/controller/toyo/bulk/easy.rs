@@ -1,0 +1,86 @@
+//! The easy programs as TOML, a program a line: `1 = { start = 10, loop = 5, end = 20 }`.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+
+use super::reading::{self, Reading};
+use crate::controller::toyo::field::{Field, Value};
+use crate::controller::toyo::findings::Finding;
+use crate::controller::toyo::table::Command;
+
+/// An easy program: its number, and its values.
+pub type Filled = (i32, Vec<Value>);
+
+/// The fields of a program, behind its number and what is always 0.
+pub fn fields() -> &'static [Field] {
+    Command::Wesy.row().requests[0].fields.get(2..).unwrap_or_default()
+}
+
+/// Programs as TOML.
+pub fn write(programs: &[Filled]) -> String {
+    let mut text = "# Easy programs: from the start tag to the end tag, and how often\n".to_owned();
+    for (program, values) in programs {
+        let _ = writeln!(text, "{program} = {}", reading::toml(fields(), values));
+    }
+    text
+}
+
+/// Programs in a TOML file: each once, whole, and in range; in their order.
+pub fn read(bytes: &[u8]) -> Result<Vec<Filled>, Vec<Finding>> {
+    reading::read(bytes, programs)
+}
+
+fn programs(reading: &mut Reading<'_>, document: &toml_edit::Table) -> Vec<Filled> {
+    let number = &Command::Wesy.row().requests[0].fields[0];
+    let mut programs: Vec<Filled> = Vec::new();
+    let mut seen: HashMap<i32, usize> = HashMap::new();
+    for (name, item) in document {
+        let at = reading.key(document, name);
+        let program = match number.read(name) {
+            Ok(Value::Number(program)) => program,
+            Ok(_) => continue,
+            Err(error) => {
+                reading.findings.error(at, error.to_string(), None);
+                continue;
+            }
+        };
+        if let Some(other) = seen.insert(program, at.line) {
+            reading.findings.error(at, format!("program {program} is there already, in line {other}"), None);
+        }
+        programs.push((program, reading.values(name, fields(), item, at)));
+    }
+    programs.sort_by_key(|(program, _)| *program);
+    programs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let text = "# Easy programs: from the start tag to the end tag, and how often\n\
+                    1 = { start = 10, loop = 5, end = 20 }\n8 = { start = 0, loop = 9999, end = 999 }\n";
+        assert_eq!(write(&read(text.as_bytes()).unwrap()), text);
+    }
+
+    #[test]
+    fn mistakes_are_told_with_their_place() {
+        let errors = |text: &str| -> Vec<String> {
+            read(text.as_bytes()).unwrap_err().iter().map(ToString::to_string).collect()
+        };
+        let values = "{ start = 1, loop = 1, end = 1 }";
+        assert_eq!(
+            errors(&format!("9 = {values}")),
+            ["line 1, column 1: error: program: 9 is out of range (a number, 1 to 8)"]
+        );
+        assert_eq!(
+            errors(&format!("1 = {values}\n01 = {values}")),
+            ["line 2, column 1: error: program 1 is there already, in line 1"]
+        );
+        assert_eq!(
+            errors("1 = { start = 1, loop = 1 }"),
+            ["line 1, column 1: error: end is missing: a number, 0 to 999"]
+        );
+    }
+}
