@@ -1,7 +1,7 @@
 //! For tests: what a command line would send, and what becomes of it on a simulator in virtual time.
 
 use std::cell::RefCell;
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 use std::fmt;
 use std::rc::Rc;
 use std::time::Duration;
@@ -84,6 +84,7 @@ struct Spoilt<F> {
     coming: Vec<u8>,
     answers: VecDeque<(Duration, Vec<u8>)>,
     heard: Heard,
+    counts: HashMap<String, usize>,
     /// The fate of a block, and of how many of its kind it is, from 1.
     fate: F,
 }
@@ -104,8 +105,9 @@ impl<F: FnMut(&str, usize) -> Fate> Peer for Spoilt<F> {
             let coming = std::mem::take(&mut self.coming);
             let block = String::from_utf8_lossy(&coming).trim_end().to_owned();
             self.heard.borrow_mut().push(block.clone());
-            let count = self.heard.borrow().iter().filter(|heard| **heard == block).count();
-            let fate = (self.fate)(&block, count);
+            let count = self.counts.entry(block.clone()).or_default();
+            *count += 1;
+            let fate = (self.fate)(&block, *count);
             match fate {
                 Fate::Lost => continue,
                 Fate::Answered(answer) => self.answers.push_back((now, format!("{answer}\r\n").into_bytes())),
@@ -137,7 +139,7 @@ impl Bench {
         let controller = Simulated::new(Start::parse(state).expect("a start state"));
         let heard = Heard::default();
         let (coming, answers) = (Vec::new(), VecDeque::new());
-        let peer = Box::new(Spoilt { controller, coming, answers, heard: heard.clone(), fate });
+        let peer = Box::new(Spoilt { controller, coming, answers, heard: heard.clone(), counts: HashMap::new(), fate });
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
         let runtime = runtime();
         let link = runtime

@@ -1,5 +1,6 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -19,6 +20,13 @@ write = ["WPAR M09 J", "WPAR T2 V05=0250.0", "WPLT 03 SNO=01 TAG=007 MOD=M-M",
 /// The same controller with nothing in it.
 const EMPTY: &str = "axes = 2\nwrite = [\"WPAR E22 TASK01=0010 TASK02=0005 TASK03=0000 TASK04=0000\"]\n";
 
+/// The files of a backup of [`FULL`], which takes its time.
+static SAVED: LazyLock<BTreeMap<String, String>> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    controller(FULL).data(&["backup", folder.path().to_str().unwrap()]);
+    files(folder.path())
+});
+
 /// A folder for backups.
 struct Desk {
     folder: TempDir,
@@ -33,11 +41,14 @@ impl Desk {
         self.folder.path().join(name)
     }
 
-    /// A backup of a controller.
-    fn saved(&self, state: &str, name: &str) -> String {
-        let folder = self.path(name).to_str().unwrap().to_owned();
-        controller(state).data(&["backup", &folder]);
-        folder
+    /// The backup of [`FULL`].
+    fn saved(&self) -> String {
+        let folder = self.path("saved");
+        std::fs::create_dir(&folder).unwrap();
+        for (name, text) in SAVED.iter() {
+            std::fs::write(folder.join(name), text).unwrap();
+        }
+        folder.to_str().unwrap().to_owned()
     }
 }
 
@@ -45,13 +56,13 @@ fn controller(state: &str) -> Bench {
     Bench::spoilt(state, |_, _| Fate::Pass).0
 }
 
-/// The files of a folder, but for the list.
+/// The files of a folder.
 fn files(folder: impl AsRef<Path>) -> BTreeMap<String, String> {
-    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let files = entries.filter(|path| path.file_name().unwrap() != "manifest.json");
-    files
-        .map(|path| (path.file_name().unwrap().to_str().unwrap().to_owned(), std::fs::read_to_string(path).unwrap()))
-        .collect()
+    let named = |path: PathBuf| {
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        (name, std::fs::read_to_string(path).unwrap())
+    };
+    std::fs::read_dir(folder).unwrap().map(|entry| named(entry.unwrap().path())).collect()
 }
 
 fn part<'d>(data: &'d Value, name: &str) -> &'d Value {
@@ -67,14 +78,15 @@ fn failure(bench: &mut Bench, words: &[&str]) -> Failure {
 
 #[test]
 fn a_backup_holds_all_that_is_stored() {
-    let desk = Desk::new();
-    let folder = desk.path("saved");
-    let saved = controller(FULL).data(&["backup", folder.to_str().unwrap()]);
-    assert_eq!((&saved["complete"], &saved["controller"]["task_axes"]), (&true.into(), &"2000".into()));
-    let files = files(&folder);
+    let list: Value = serde_json::from_str(&SAVED["manifest.json"]).unwrap();
+    assert_eq!((&list["complete"], &list["controller"]["task_axes"]), (&true.into(), &"2000".into()));
+    let files = &*SAVED;
     let names: Vec<&str> = files.keys().map(String::as_str).filter(|name| !name.starts_with("palletizing")).collect();
-    assert_eq!(names, ["easy.toml", "parameters.toml", "points-1.csv", "program-1.txt", "program-2.txt"]);
-    assert_eq!(files.len(), 21);
+    assert_eq!(
+        names,
+        ["easy.toml", "manifest.json", "parameters.toml", "points-1.csv", "program-1.txt", "program-2.txt"]
+    );
+    assert_eq!(files.len(), 22);
     assert!(files["points-1.csv"].starts_with("point,x_mm,y_mm,z_mm,r_mm\n1,100.00,20.00,0.00,0.00\n"));
     assert!(files["points-1.csv"].ends_with("\n999,-1.50,0.00,0.00,0.00\n"));
     assert!(files["program-1.txt"].starts_with("TAG TAG=001\nSPD V=05\nJMP TAG=001"));
@@ -89,7 +101,7 @@ fn a_backup_holds_all_that_is_stored() {
 #[test]
 fn what_is_restored_is_what_was_saved() {
     let desk = Desk::new();
-    let first = desk.saved(FULL, "first");
+    let first = desk.saved();
     let mut bench = controller(EMPTY);
     let restored = bench.data(&["restore", &first]);
     let written = |data: &Value, name: &str| part(data, name)["cells"]["cells_written"].clone();
@@ -105,13 +117,15 @@ fn what_is_restored_is_what_was_saved() {
     assert_eq!(bench.data(&["task", "get"])["task"], 1);
     let second = desk.path("second");
     bench.data(&["backup", second.to_str().unwrap()]);
-    assert_eq!(files(first), files(second));
+    let (mut first, mut second) = (files(first), files(second));
+    assert_ne!(first.remove("manifest.json"), second.remove("manifest.json"), "the time is another one");
+    assert_eq!(first, second);
 }
 
 #[test]
 fn what_is_there_is_not_written_again() {
     let desk = Desk::new();
-    let folder = desk.saved(FULL, "saved");
+    let folder = desk.saved();
     let restored = controller(FULL).data(&["restore", &folder]);
     for part in restored["parts"].as_array().unwrap() {
         assert_eq!((&part["state"], &part["cells"]["cells_written"]), (&"done".into(), &0.into()), "{part}");
@@ -158,7 +172,7 @@ fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
 #[test]
 fn a_changed_file_is_not_sent() {
     let desk = Desk::new();
-    let folder = desk.saved(FULL, "saved");
+    let folder = desk.saved();
     std::fs::write(desk.path("saved/points-1.csv"), "point,x_mm,y_mm,z_mm,r_mm\n").unwrap();
     let (mut bench, heard) = Bench::spoilt(FULL, |_, _| Fate::Pass);
     assert_eq!(failure(&mut bench, &["restore", &folder]).kind, Kind::Local);
@@ -169,7 +183,7 @@ fn a_changed_file_is_not_sent() {
 #[test]
 fn another_robot_is_refused() {
     let desk = Desk::new();
-    let folder = desk.saved(FULL, "saved");
+    let folder = desk.saved();
     let mut other = controller(&format!("robot_types = [7]\n{EMPTY}"));
     let failed = failure(&mut other, &["restore", &folder]);
     assert_eq!(failed.kind, Kind::RefusedHere);
@@ -180,7 +194,7 @@ fn another_robot_is_refused() {
 #[test]
 fn a_program_must_have_room_before_anything_is_written() {
     let desk = Desk::new();
-    let folder = desk.saved(FULL, "saved");
+    let folder = desk.saved();
     let (mut bench, heard) = Bench::spoilt("axes = 2", |_, _| Fate::Pass);
     let failed = failure(&mut bench, &["restore", &folder]);
     assert_eq!(
@@ -193,7 +207,7 @@ fn a_program_must_have_room_before_anything_is_written() {
 #[test]
 fn machine_parameters_come_first_and_alone() {
     let desk = Desk::new();
-    let folder = desk.saved(FULL, "saved");
+    let folder = desk.saved();
     let (mut bench, heard) = Bench::spoilt("axes = 2", |_, _| Fate::Pass);
     let (data, failed) = bench.run(&["restore", &folder, "--machine"]).unwrap();
     assert_eq!(failed.unwrap().kind, Kind::ConditionNotMet);
@@ -208,7 +222,7 @@ fn machine_parameters_come_first_and_alone() {
 #[test]
 fn a_restore_that_fails_says_how_far_it_got() {
     let desk = Desk::new();
-    let folder = desk.saved(FULL, "saved");
+    let folder = desk.saved();
     let lost = |block: &str, _| if block.starts_with("@WPLT 03") { Fate::Unanswered } else { Fate::Pass };
     let (mut bench, _) = Bench::spoilt(EMPTY, lost);
     let (data, failed) = bench.run(&["restore", &folder]).unwrap();
@@ -232,7 +246,7 @@ fn a_restore_that_fails_says_how_far_it_got() {
 #[test]
 fn a_dry_run_shows_what_would_be_written() {
     let desk = Desk::new();
-    let folder = desk.saved(FULL, "saved");
+    let folder = desk.saved();
     let blocks = blocks(&["restore", &folder, "--only", "program-2,easy"]).unwrap();
     assert!(blocks.contains(&"@WSTX 0001 OUT STN=0 PN01=.......1".to_owned()));
     assert!(blocks.contains(&"@WESY PNO=02 ST=000 START=010 LOOP=0005 END=020".to_owned()));
