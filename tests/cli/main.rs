@@ -41,6 +41,7 @@ transcripts! {
     signals
     simulator
     status
+    toyo_backups
     toyo_io
     toyo_motion
     toyo_palletizing

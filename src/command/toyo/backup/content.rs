@@ -12,7 +12,7 @@ use crate::command::toyo::{easy, files, numbers, palletizing, param, point, task
 use crate::controller::toyo::bulk::{Setting, easy as easy_text, pallets, parameters, points};
 use crate::controller::toyo::field::{Field, Value};
 use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::program::{MOST_STEPS, Program, Rows, Style, check, listing};
+use crate::controller::toyo::program::{MOST_STEPS, Program, Rows, Style, check, listing, used};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::palletizing::RECORDS;
 use crate::controller::toyo::table::{Command, Group, Parameter};
@@ -212,9 +212,11 @@ impl Content {
         Work { doing, noun, resumes: false }
     }
 
-    /// The steps that it needs room for.
-    pub fn steps(&self) -> usize {
-        if let Self::Program(program) = self { program.steps.len() } else { 0 }
+    /// The steps that it needs room for: up to the last that is no NOP.
+    pub fn steps(&self) -> u16 {
+        let Self::Program(program) = self else { return 0 };
+        let records: Vec<Record> = program.steps.iter().map(|step| step.record.clone()).collect();
+        u16::try_from(used(&records)).unwrap_or(u16::MAX)
     }
 }
 

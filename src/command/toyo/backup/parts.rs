@@ -183,6 +183,9 @@ pub fn table(parts: &[PartResult], done: &'static str) -> Table {
         let result = match (part.state, &part.error, part.cells) {
             (State::Failed, Some(error), _) => Cell::from(error.message.as_str()).tone(Tone::Bad),
             (State::Failed, None, _) => Cell::from("failed").tone(Tone::Bad),
+            (State::NotTried, _, Some(cells)) => {
+                Cell::from(format!("{}; the rest not tried", cells.in_words())).tone(Tone::Warning)
+            }
             (State::NotTried, ..) => Cell::from("not tried").tone(Tone::Warning),
             (State::Kept, ..) => Cell::from("kept"),
             (State::Done, _, Some(cells)) => Cell::from(cells.in_words()).tone(Tone::Good),

@@ -147,7 +147,7 @@ impl Restore {
             return Err(Failure::new(Kind::RefusedHere, message)
                 .hint("take the backup of this robot; --force writes it all the same"));
         }
-        let mut results: Vec<PartResult> = jobs.iter().map(|job| PartResult::pending(job.part)).collect();
+        let mut results: Vec<PartResult> = jobs.iter().map(|job| pending(job.part)).collect();
         if !self.machine {
             check_room(jobs, &found)?;
         }
@@ -201,7 +201,7 @@ impl Restore {
             if let Part::Points(task) | Part::Program(task) = part {
                 tasks::choose(link, Some(*task)).await?;
             }
-            let steps = u16::try_from(content.steps()).unwrap_or(u16::MAX);
+            let steps = content.steps();
             stores::store_all(link, screen, content.work(), &content.stores(steps)?, 0).await?;
             if let Part::Program(_) = part {
                 let rest = "and so on to the end of the task: what is no NOP becomes one";
@@ -214,6 +214,11 @@ impl Restore {
         link.put_back().await?;
         std::future::pending().await
     }
+}
+
+/// A part before it is tried.
+fn pending(part: Part) -> PartResult {
+    PartResult { file: Some(part.file()), ..PartResult::pending(part) }
 }
 
 /// The override that the backup has.
@@ -234,8 +239,8 @@ fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
     for Job { part, content } in jobs {
         let Part::Program(task) = part else { continue };
         let room = found.task_steps[usize::from(*task) - 1];
-        if content.steps() > usize::from(room) {
-            let message = format!("{part} has {} steps, and task {task} has room for {room}", content.steps());
+        if content.steps() > room {
+            let message = format!("{part} needs room for {} steps, and task {task} has {room}", content.steps());
             return Err(Failure::usage(message).hint(
                 "--machine restores the machine parameters, E22 (task-steps) among them; or leave the part out with --only",
             ));

@@ -199,7 +199,7 @@ fn a_program_must_have_room_before_anything_is_written() {
     let failed = failure(&mut bench, &["restore", &folder]);
     assert_eq!(
         (failed.kind, failed.message.as_str()),
-        (Kind::Usage, "program-2 has 2 steps, and task 2 has room for 0")
+        (Kind::Usage, "program-2 needs room for 2 steps, and task 2 has 0")
     );
     assert!(!heard.borrow().iter().any(|block| block.starts_with("@W")));
 }
