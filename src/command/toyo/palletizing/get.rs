@@ -17,9 +17,8 @@ use crate::failure::Failure;
 use crate::output::view::View;
 
 /// Which program, and which records of it.
-///
-/// The file of --toml is whole or is not written; `palletizing set --from` reads it.
 #[derive(Debug, Args)]
+#[command(after_help = "The file of --toml is whole or is not written; `palletizing set --from` reads it.")]
 pub struct Get {
     /// Program, 1 to 16
     #[arg(value_parser = parse_program)]

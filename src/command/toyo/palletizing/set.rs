@@ -20,14 +20,13 @@ use crate::controller::toyo::table::Pallet;
 use crate::failure::Failure;
 use crate::output::view::{Section, View};
 
-/// Writes a record of a program, or those that a TOML file has.
-///
-/// The whole file is checked before anything is sent; records that it does not have stay as they are. What the
-/// controller holds already is not written: its EEPROM takes about a million rewrites.
+/// A record of a program and its values, or a file of records.
 #[derive(Debug, Args)]
 #[command(after_help = "All values of a record in their order, or some by name, which keeps the others: `palletizing \
                         set 1 source-p1 100 0 0`, `palletizing set 1 start mode=M-M`. `palletizing get 1` shows the \
-                        names.")]
+                        names.\n\nA file is what `palletizing get --toml` writes. All of it is checked before anything \
+                        is sent; records that it does not have stay as they are. What the controller holds already is \
+                        not written: its EEPROM takes about a million rewrites.")]
 pub struct Set {
     /// Program, 1 to 16
     #[arg(value_parser = parse_program)]

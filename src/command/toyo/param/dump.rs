@@ -21,11 +21,14 @@ use crate::failure::Failure;
 use crate::output::view::View;
 use crate::output::{Screen, escape};
 
-/// Saves all parameters, and the tables of speeds, times, MVM groups and torque limits, as TOML.
-///
-/// The file is whole or is not written; `param restore` reads it, and so does a person: each value has its unit. Points
-/// go to a file of their own by `point list --csv`. It takes about 20 s at 9600 baud.
+/// Where to.
 #[derive(Debug, Args)]
+#[command(
+    after_help = "Parameters, and the tables of speeds, times, MVM groups and torque limits; points go to a file of \
+                        their own by `point list --csv`. Each value stands there by its name, with its unit, for \
+                        people and for `param restore`. The file is whole or is not written. It takes about 20 s at \
+                        9600 baud."
+)]
 pub struct Dump {
     /// A new file; without one, the text goes to stdout
     file: Option<PathBuf>,

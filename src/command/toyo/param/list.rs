@@ -12,7 +12,7 @@ use crate::controller::toyo::table::{Group, Parameter};
 use crate::failure::Failure;
 use crate::output::view::View;
 
-/// Reads all parameters, which takes some seconds at 9600 baud.
+/// Which groups.
 #[derive(Debug, Args)]
 pub struct List {
     /// Only these

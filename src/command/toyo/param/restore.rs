@@ -20,15 +20,15 @@ use crate::failure::{Failure, Kind};
 use crate::gate::Demand;
 use crate::output::view::View;
 
-/// Writes back what a file of parameters holds.
-///
-/// The whole file is checked before anything is sent. Each value is compared first: what the controller holds already is
-/// not written, as its EEPROM takes about a million rewrites. Machine parameters (E) and special ones (U) are left out
-/// unless --group names them.
+/// Which file, and what of it.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Machine parameters come last, and need --yes: after a change only communication works until the \
-                        controller's power was switched off and on."
+    after_help = "All of the file is checked before anything is sent. What the controller holds already is not written: \
+                  its EEPROM takes about a million rewrites. If the work is cut off, it says what is done; the same \
+                  command, or --resume, goes on.\n\n\
+                  Machine parameters (E) and special ones (U) are left out unless --group names them. Machine parameters \
+                  come last, and need --yes: after a change only communication works until the controller's power was \
+                  switched off and on."
 )]
 pub struct Restore {
     /// What `param dump` wrote, or somebody with an editor; - is stdin

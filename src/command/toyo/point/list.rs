@@ -16,11 +16,14 @@ use crate::controller::toyo::layout::Record;
 use crate::failure::Failure;
 use crate::output::view::View;
 
-/// Reads the points of a task: 999 take a minute and a half at 9600 baud.
-///
-/// The file of --csv is whole or is not written; `point set --from` reads it. `-o csv` prints the same.
+/// Which points, and where to.
 #[derive(Debug, Args)]
-#[command(after_help = OTHER_TASK)]
+#[command(
+    after_help = format!(
+        "999 points take a minute and a half at 9600 baud. The file of --csv is whole or is not written; `point set \
+         --from` reads it, and `-o csv` prints the same.\n\n{OTHER_TASK}"
+    )
+)]
 pub struct List {
     /// First point
     #[arg(long, value_name = "POINT", default_value_t = 1, value_parser = clap::value_parser!(i32).range(1..=999))]

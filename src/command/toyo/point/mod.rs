@@ -34,7 +34,7 @@ commands! {
     }
 }
 
-/// What every command of a task's points says in its help.
+/// What every command of points says in its help.
 const OTHER_TASK: &str = "Each task has its own points. With --task, that task is made the current one for a while, which \
                           is a change: a read-only robot refuses it.";
 

@@ -23,12 +23,16 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::view::View;
 
-/// Writes a point, or all that a CSV file has.
-///
-/// The whole file is checked before anything is sent: `point,x_mm,y_mm,z_mm,r_mm`, a point a line, as `point list --csv`
-/// writes it. What the controller holds already is not written: its EEPROM takes about a million rewrites.
+/// A point and its coordinates, or a file of them.
 #[derive(Debug, Args)]
-#[command(after_help = OTHER_TASK)]
+#[command(
+    after_help = format!(
+        "A file begins with point,x_mm,y_mm,z_mm,r_mm and has a point a line, as `point list --csv` writes it. All of it \
+         is checked before anything is sent. What the controller holds already is not written: its EEPROM takes about \
+         a million rewrites. If the work is cut off, it says what is done; the same command, or --resume, goes on.\n\n\
+         {OTHER_TASK}"
+    )
+)]
 pub struct Set {
     /// Row of the coordinate table, 1 to 999
     #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "POINT", value_parser = |text: &str| number(&field(), text))]
