@@ -14,10 +14,8 @@ use crate::output::view::View;
 
 /// Which parameters.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Names and ids stand in the manual's order in `param list`. In JSON, each value has its unit, and \
-                        what is on the line beside what it means."
-)]
+#[command(after_help = "`param list` shows all names. In JSON, each value has its unit, and what stands on the line \
+                        beside what it means.")]
 pub struct Get {
     /// Names or ids in any case: soft-limit-plus, P01
     #[arg(required = true, value_name = "NAME", value_parser = parse_name)]
