@@ -1,5 +1,7 @@
 //! Target URLs: where a robot is, and over which transport.
 
+mod eip;
+
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -9,6 +11,8 @@ use serialport::{DataBits, Parity, StopBits};
 
 use crate::controller::yerc::Model;
 use crate::failure::Failure;
+
+pub use eip::{Eip, EipKey, EipRole};
 
 /// A controller family, named like its subcommand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -88,11 +92,8 @@ pub enum Place {
     Tcp(Tcp),
     /// `sim:[?model=…&axes=…&baud=…&state=FILE&fault=…]`: the built-in simulator of the family, in this process.
     Sim(Sim),
-    /// A URL of a family that this version has no link for yet.
-    Other {
-        /// `eip`.
-        scheme: String,
-    },
+    /// `eip://HOST[:44818][?in=100&out=150&config=1&rpi=20ms&…]`.
+    Eip(Eip),
 }
 
 /// A high-speed Ethernet server on the network.
@@ -155,7 +156,7 @@ pub struct Sim {
     pub baud: Option<u32>,
     /// A file with the start state.
     pub state: Option<PathBuf>,
-    /// Faults on the line, in the form of `armctl sim --fault`.
+    /// Faults on the line, in the form of `armctl sim --fault`; for yerc and toyo.
     pub fault: Option<String>,
 }
 
@@ -191,7 +192,7 @@ impl Target {
             Place::Serial(_) => "serial",
             Place::Tcp(_) => "tcp",
             Place::Sim(_) => "sim",
-            Place::Other { scheme } => scheme,
+            Place::Eip(_) => "eip",
         }
     }
 
@@ -202,7 +203,7 @@ impl Target {
             Place::Serial(serial) => serial.path.rsplit('/').next().unwrap_or_default().to_owned(),
             Place::Tcp(tcp) => tcp.host.clone(),
             Place::Sim(_) => "sim".to_owned(),
-            Place::Other { .. } => self.url.clone(),
+            Place::Eip(eip) => eip.host.clone(),
         }
     }
 
@@ -211,7 +212,7 @@ impl Target {
         match &self.place {
             Place::Udp(udp) => udp.traits,
             Place::Sim(sim) => sim.traits,
-            Place::Serial(_) | Place::Tcp(_) | Place::Other { .. } => YercTraits::default(),
+            Place::Serial(_) | Place::Tcp(_) | Place::Eip(_) => YercTraits::default(),
         }
     }
 
@@ -259,13 +260,11 @@ impl FromStr for Target {
             "serial" => serial(place, &mut query).map(Place::Serial),
             "tcp" => tcp(place, &mut query).map(Place::Tcp),
             "sim" => sim(place, &mut query).map(Place::Sim),
-            "eip" => Ok(Place::Other { scheme: scheme.to_owned() }),
+            "eip" => eip::parse(place, &mut query).map(Place::Eip),
             _ => Err(format!("unknown scheme '{scheme}'")),
         };
         let place = place.map_err(wrong)?;
-        if !matches!(place, Place::Other { .. }) {
-            query.finish().map_err(wrong)?;
-        }
+        query.finish().map_err(wrong)?;
         Ok(Self { url: url.to_owned(), place })
     }
 }
@@ -274,15 +273,16 @@ impl FromStr for Target {
 fn hint(scheme: &str) -> String {
     match FORMS.iter().find(|(known, _)| *known == scheme) {
         Some((_, form)) => format!("write {form}; `armctl help targets` explains it"),
-        None => "write udp://HOST, serial:///dev/ttyUSB0, serial://COM3 or tcp://HOST:PORT for a controller, or sim: \
-                 for the simulator; `armctl help targets` explains them"
+        None => "write udp://HOST, eip://HOST, serial:///dev/ttyUSB0, serial://COM3 or tcp://HOST:PORT for a \
+                 controller, or sim: for the simulator; `armctl help targets` explains them"
             .to_owned(),
     }
 }
 
 /// What URLs look like.
-const FORMS: [(&str, &str); 4] = [
+const FORMS: [(&str, &str); 5] = [
     ("udp", "udp://HOST[:10040][?file_port=10041&model=dx200]"),
+    ("eip", "eip://HOST[:44818][?in=100&out=150&config=1&rpi=20ms]"),
     ("serial", "serial:///dev/ttyUSB0[?baud=9600&parity=even&data_bits=8&stop_bits=1], or serial://COM3"),
     ("tcp", "tcp://HOST:PORT[?baud=9600]"),
     ("sim", "sim:[?state=FILE&fault=drop=5%25]"),
@@ -531,7 +531,7 @@ mod tests {
             let failure = url.parse::<Target>().unwrap_err();
             assert!(failure.message.contains(part), "{url}: {}", failure.message);
             let (scheme, hint) = (url.split(':').next().unwrap(), failure.hint.unwrap());
-            assert!(hint.contains(&format!("write {scheme}:")) || hint.contains("udp://HOST, serial:///"), "{hint}");
+            assert!(hint.contains(&format!("write {scheme}:")) || hint.contains("udp://HOST, eip://HOST,"), "{hint}");
         }
     }
 
@@ -592,6 +592,7 @@ mod tests {
             ("serial:///dev/serial/by-id/usb-FTDI-if00?baud=19200", "usb-FTDI-if00"),
             ("serial://COM3", "COM3"),
             ("tcp://moxa:4001", "moxa"),
+            ("eip://rcx340?rpi=5ms", "rcx340"),
             ("sim:?axes=2", "sim"),
         ] {
             assert_eq!(target(url).short_name(), name);
@@ -604,5 +605,6 @@ mod tests {
         assert_eq!(target("sim:").family(), None);
         assert_eq!(target("serial:///dev/ttyUSB0").family(), Some(Family::Toyo));
         assert_eq!(target("tcp://h:4001").family(), Some(Family::Toyo));
+        assert_eq!(target("eip://h").family(), Some(Family::Yrcx));
     }
 }

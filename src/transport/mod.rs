@@ -4,6 +4,7 @@
 
 pub mod eip;
 pub mod fault;
+pub mod image;
 pub mod line;
 mod port;
 pub mod ports;

@@ -1,0 +1,237 @@
+//! `eip://` URLs: a class 1 connection of EtherNet/IP. No document of the maker tells its numbers, so that they are
+//! settings; the usual ones are those of an older controller of the same maker.
+
+use std::ops::RangeInclusive;
+use std::time::Duration;
+
+use super::{Query, authority, choice, host_and_port, port};
+use crate::settings::duration;
+
+/// A controller as an adapter of EtherNet/IP.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Eip {
+    /// Name or IPv4 address.
+    pub host: String,
+    /// TCP port.
+    pub port: u16,
+    /// What is wanted of the controller.
+    pub role: EipRole,
+    /// The assembly that the controller sends.
+    pub input: u32,
+    /// The assembly that it takes; for those who only listen, the one for heartbeats.
+    pub output: u32,
+    /// The configuration assembly, for controllers that want one named.
+    pub configuration: Option<u32>,
+    /// Bytes of the assembly that it sends; the image stands at its beginning.
+    pub input_size: u16,
+    /// Bytes of the assembly that it takes, likewise.
+    pub output_size: u16,
+    /// The interval between packets, both ways.
+    pub rpi: Duration,
+    /// Intervals without a packet after which the connection is lost.
+    pub multiplier: u32,
+    /// Whether it sends to a group.
+    pub multicast: bool,
+    /// Which device it must be.
+    pub key: Option<EipKey>,
+}
+
+/// What is wanted of a controller.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum EipRole {
+    /// To command it, as the only one.
+    Owner,
+    /// To see what it shows.
+    InputOnly,
+    /// To see what it shows another master.
+    ListenOnly,
+}
+
+/// A device: its vendor, its kind, the product and the revision; 0 stands for any.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct EipKey {
+    /// Number of the vendor.
+    pub vendor: u16,
+    /// Number of the kind of device.
+    pub device_type: u16,
+    /// Number of the product.
+    pub product: u16,
+    /// Major revision.
+    pub major: u8,
+    /// Minor revision.
+    pub minor: u8,
+}
+
+/// TCP port of EtherNet/IP.
+const PORT: u16 = 44818;
+/// Bytes of an image (chapter 1, section 1: 24 words), and the most that a datagram has room for.
+const SIZES: RangeInclusive<u16> = 48..=65_000;
+/// Intervals that a connection can have.
+const RPIS: RangeInclusive<Duration> = Duration::from_millis(1)..=Duration::from_secs(10);
+const RPI: Duration = Duration::from_millis(20);
+
+/// Reads what stands after `eip:`.
+pub(super) fn parse(place: &str, query: &mut Query) -> Result<Eip, String> {
+    let (host, own_port) = host_and_port(authority("eip", place)?)?;
+    if host.contains(':') {
+        return Err(format!("'{host}' is an IPv6 address; EtherNet/IP has IPv4"));
+    }
+    let roles = [("owner", EipRole::Owner), ("input_only", EipRole::InputOnly), ("listen_only", EipRole::ListenOnly)];
+    Ok(Eip {
+        host,
+        port: own_port.map_or(Ok(PORT), |text| port("port", text))?,
+        role: choice(query, "role", roles)?,
+        input: instance(query, "in")?.unwrap_or(100),
+        output: instance(query, "out")?.unwrap_or(150),
+        configuration: match query.take("config").as_deref() {
+            None => Some(1),
+            Some("none") => None,
+            Some(text) => Some(number("config", text, "a number from 1 to 65535, or none")?),
+        },
+        input_size: size(query, "in_size")?,
+        output_size: size(query, "out_size")?,
+        rpi: rpi(query)?,
+        multiplier: choice(
+            query,
+            "multiplier",
+            [("16", 16), ("4", 4), ("8", 8), ("32", 32), ("64", 64), ("128", 128), ("256", 256), ("512", 512)],
+        )?,
+        multicast: choice(query, "multicast", [("no", false), ("yes", true)])?,
+        key: query.take("key").map(|text| key(&text)).transpose()?,
+    })
+}
+
+fn instance(query: &mut Query, name: &str) -> Result<Option<u32>, String> {
+    query.take(name).map(|text| number(name, &text, "a number from 1 to 65535")).transpose()
+}
+
+fn number(name: &str, text: &str, allowed: &str) -> Result<u32, String> {
+    match text.parse::<u16>() {
+        Ok(number @ 1..) => Ok(number.into()),
+        _ => Err(format!("{name} is {allowed}, not '{text}'")),
+    }
+}
+
+fn size(query: &mut Query, name: &str) -> Result<u16, String> {
+    let Some(text) = query.take(name) else { return Ok(*SIZES.start()) };
+    match text.parse() {
+        Ok(size) if SIZES.contains(&size) => Ok(size),
+        _ => {
+            let (least, most) = (SIZES.start(), SIZES.end());
+            Err(format!("{name} is a number from {least} (the image) to {most}, not '{text}'"))
+        }
+    }
+}
+
+fn rpi(query: &mut Query) -> Result<Duration, String> {
+    let Some(text) = query.take("rpi") else { return Ok(RPI) };
+    match duration::parse(&text).map_err(|error| format!("rpi: {error}"))? {
+        rpi if RPIS.contains(&rpi) => Ok(rpi),
+        _ => Err(format!("rpi is a time from 1ms to 10s, not '{text}'")),
+    }
+}
+
+/// `VENDOR:TYPE:PRODUCT[:MAJOR.MINOR]`.
+fn key(text: &str) -> Result<EipKey, String> {
+    let wrong = || format!("key is VENDOR:TYPE:PRODUCT[:MAJOR.MINOR] as in 636:43:5:1.1, not '{text}'");
+    let (key, revision) = match text.split(':').collect::<Vec<_>>()[..] {
+        [vendor, device_type, product] => ([vendor, device_type, product], None),
+        [vendor, device_type, product, revision] => ([vendor, device_type, product], Some(revision)),
+        _ => return Err(wrong()),
+    };
+    let number = |text: &str| text.parse::<u16>().map_err(|_| wrong());
+    let (major, minor) = match revision {
+        None => (0, 0),
+        Some(revision) => {
+            let (major, minor) = revision.split_once('.').ok_or_else(wrong)?;
+            // The highest bit of the major revision asks for a compatible one, which is something else.
+            let major = major.parse().ok().filter(|major| *major < 0x80).ok_or_else(wrong)?;
+            (major, minor.parse().map_err(|_| wrong())?)
+        }
+    };
+    Ok(EipKey { vendor: number(key[0])?, device_type: number(key[1])?, product: number(key[2])?, major, minor })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Place, Target};
+    use super::*;
+
+    fn eip(url: &str) -> Result<Eip, String> {
+        match url.parse::<Target>() {
+            Ok(target) => match target.place {
+                Place::Eip(eip) => Ok(eip),
+                other => panic!("{other:?}"),
+            },
+            Err(failure) => Err(failure.message),
+        }
+    }
+
+    #[test]
+    fn a_host_is_enough() {
+        let usual = Eip {
+            host: "rcx".to_owned(),
+            port: 44818,
+            role: EipRole::Owner,
+            input: 100,
+            output: 150,
+            configuration: Some(1),
+            input_size: 48,
+            output_size: 48,
+            rpi: Duration::from_millis(20),
+            multiplier: 16,
+            multicast: false,
+            key: None,
+        };
+        assert_eq!(eip("eip://rcx"), Ok(usual.clone()));
+        assert_eq!(eip("eip://rcx:44818/?in=100&out=150&config=1&rpi=20ms&multiplier=16&multicast=no"), Ok(usual));
+    }
+
+    #[test]
+    fn everything_a_url_can_say() {
+        let url = "eip://10.0.0.2:1?in=101&out=151&config=none&in_size=50&out_size=64&rpi=5ms&multiplier=4\
+                   &multicast=yes&role=input_only&key=636:43:5:1.2";
+        let key = EipKey { vendor: 636, device_type: 43, product: 5, major: 1, minor: 2 };
+        let expected = Eip {
+            host: "10.0.0.2".to_owned(),
+            port: 1,
+            role: EipRole::InputOnly,
+            input: 101,
+            output: 151,
+            configuration: None,
+            input_size: 50,
+            output_size: 64,
+            rpi: Duration::from_millis(5),
+            multiplier: 4,
+            multicast: true,
+            key: Some(key),
+        };
+        assert_eq!(eip(url), Ok(expected));
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        for (url, part) in [
+            ("eip:h", "slashes"),
+            ("eip://", "host is missing"),
+            ("eip://[::1]", "IPv6"),
+            ("eip://h:0", "1 to 65535"),
+            ("eip://h?in=0", "in is a number from 1"),
+            ("eip://h?out=x", "out is a number from 1"),
+            ("eip://h?config=no", "or none, not 'no'"),
+            ("eip://h?in_size=46", "in_size is a number from 48"),
+            ("eip://h?out_size=65001", "to 65000"),
+            ("eip://h?rpi=0ms", "rpi is a time from 1ms"),
+            ("eip://h?rpi=soon", "rpi: 'soon' is no duration"),
+            ("eip://h?multiplier=5", "not '5'"),
+            ("eip://h?multicast=maybe", "multicast is no or yes"),
+            ("eip://h?role=boss", "role is owner or input_only or listen_only"),
+            ("eip://h?key=1:2", "key is VENDOR"),
+            ("eip://h?key=1:2:3:128.1", "key is VENDOR"),
+            ("eip://h?rpm=20ms", "unknown parameter 'rpm'"),
+        ] {
+            let message = eip(url).unwrap_err();
+            assert!(message.contains(part), "{url}: {message}");
+        }
+    }
+}
