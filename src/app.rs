@@ -72,6 +72,7 @@ fn run(cli: Cli) -> Result<(), Stopped> {
     let done = runtime.block_on(async {
         match cli.command {
             Top::Yerc(noun) => run.robots(&*noun.command()).await,
+            Top::Yrcx(noun) => run.robots(&*noun.command()).await,
             Top::Toyo(noun) => run.robots(&*noun.command()).await,
             Top::Common(common) => common.run(&run).await,
         }
@@ -187,11 +188,6 @@ fn refuse(args: &[OsString], error: &clap::Error) -> ExitCode {
             Err(failure) => tell(&screen, failure.into()),
         };
     }
-    if let Some(family) = absent_family(args) {
-        let failure = Failure::usage(format!("this version does not speak {family} yet"))
-            .hint("it speaks yerc and toyo; CHANGELOG.md tells what came when");
-        return tell(&screen, failure.into());
-    }
     if is_json {
         let text = rendered.to_string();
         let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
@@ -226,13 +222,6 @@ fn wants_json(args: &[OsString]) -> bool {
         }
     }
     false
-}
-
-/// The family that was typed although the command line does not have it.
-fn absent_family(args: &[OsString]) -> Option<Family> {
-    let first = args.iter().skip(1).find_map(|arg| arg.to_str()?.parse::<Family>().ok())?;
-    let known = Cli::command().get_subcommands().any(|command| command.get_name() == first.name());
-    (!known).then_some(first)
 }
 
 #[cfg(test)]

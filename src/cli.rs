@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::command::{Verbs, common, toyo, yerc};
+use crate::command::{Verbs, common, toyo, yerc, yrcx};
 use crate::controller::text::Encoding;
 use crate::gate::OnInterrupt;
 use crate::output::{ColorChoice, Format};
@@ -40,6 +40,9 @@ pub enum Top {
     /// Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)
     #[command(subcommand_required = true, arg_required_else_help = true)]
     Yerc(Verbs<yerc::Yerc>),
+    /// OMRON / Yamaha YRCX over EtherNet/IP
+    #[command(subcommand_required = true, arg_required_else_help = true)]
+    Yrcx(yrcx::Line),
     /// Toyo over RS-232C host communication
     #[command(
         subcommand_required = true,

@@ -86,7 +86,7 @@ const BORDERS: [(&str, &[&str]); 6] = [
 
 /// Commands that touch a transport: the link of a family with its trace, the simulators' servers, the list of ports, and
 /// the peer of tests.
-const LINKS: [&str; 12] = [
+const LINKS: [&str; 18] = [
     "command/trace.rs",
     "command/yerc/link.rs",
     "command/yerc/simulated.rs",
@@ -97,6 +97,12 @@ const LINKS: [&str; 12] = [
     "command/toyo/simulated.rs",
     "command/toyo/testing.rs",
     "command/toyo/trace.rs",
+    "command/yrcx/link.rs",
+    "command/yrcx/link/driver.rs",
+    "command/yrcx/reach.rs",
+    "command/yrcx/simulated.rs",
+    "command/yrcx/testing.rs",
+    "command/yrcx/trace.rs",
     "command/common/sim/toyo.rs",
     "command/common/sim/yerc.rs",
 ];

@@ -14,6 +14,7 @@ pub mod run;
 pub mod toyo;
 pub mod trace;
 pub mod yerc;
+pub mod yrcx;
 
 use std::future::Future;
 use std::pin::Pin;
@@ -116,6 +117,11 @@ pub trait Command {
         Demand::Usual
     }
 
+    /// Whether it is repeated until something ends it, each run waiting for the next thing to tell.
+    fn is_endless(&self) -> bool {
+        false
+    }
+
     /// Does it. In a dry run the future stays pending once all that can be foreseen is noted.
     async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
 }
@@ -135,6 +141,10 @@ pub trait AnyCommand<F: Family> {
     fn demand(&self) -> Demand;
     /// What it reports, if it takes no robot to do it.
     fn without_robot(&self, screen: &Screen) -> Option<Outcome>;
+    /// See [`Command::is_endless`].
+    fn is_endless(&self) -> bool {
+        false
+    }
     /// See [`Command::run`].
     fn run<'a>(&'a self, context: Context<'a, F>) -> Pin<Box<dyn Future<Output = Outcome> + 'a>>;
 }
@@ -178,6 +188,10 @@ impl<C: Command> AnyCommand<C::Family> for C {
 
     fn demand(&self) -> Demand {
         Command::demand(self)
+    }
+
+    fn is_endless(&self) -> bool {
+        Command::is_endless(self)
     }
 
     fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {

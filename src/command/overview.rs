@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::{Access, Command, Context, Family, Report, toyo, yerc};
+use super::{Access, Command, Context, Family, Report, toyo, yerc, yrcx};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::{Cell, Table, Tone, View};
@@ -20,6 +20,8 @@ pub struct Fleet;
 pub enum Link {
     /// To an FS100 or DX200.
     Yerc(Box<yerc::link::Link>),
+    /// To a YRCX.
+    Yrcx(Box<yrcx::link::Link>),
     /// To a Toyo controller.
     Toyo(Box<toyo::link::Link>),
 }
@@ -32,16 +34,14 @@ impl Family for Fleet {
         match robot.family {
             target::Family::Yerc => Ok(Link::Yerc(Box::new(yerc::Family::connect(robot, access, screen).await?))),
             target::Family::Toyo => Ok(Link::Toyo(Box::new(toyo::Family::connect(robot, access, screen).await?))),
-            target::Family::Yrcx => {
-                Err(Failure::usage(format!("{}: this version does not speak yrcx yet", robot.label()))
-                    .hint("leave it out: name the robots with -r"))
-            }
+            target::Family::Yrcx => Ok(Link::Yrcx(Box::new(yrcx::Family::connect(robot, access, screen).await?))),
         }
     }
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
         match link {
             Link::Yerc(link) => yerc::Family::halt(link).await,
+            Link::Yrcx(link) => yrcx::Family::halt(link).await,
             Link::Toyo(link) => toyo::Family::halt(link).await,
         }
     }
@@ -49,6 +49,7 @@ impl Family for Fleet {
     fn rehearsed(link: &mut Link) -> Vec<Value> {
         match link {
             Link::Yerc(link) => yerc::Family::rehearsed(link),
+            Link::Yrcx(link) => yrcx::Family::rehearsed(link),
             Link::Toyo(link) => toyo::Family::rehearsed(link),
         }
     }
@@ -56,6 +57,7 @@ impl Family for Fleet {
     async fn close(link: Link, screen: &Screen) -> Result<(), Failure> {
         match link {
             Link::Yerc(link) => yerc::Family::close(*link, screen).await,
+            Link::Yrcx(link) => yrcx::Family::close(*link, screen).await,
             Link::Toyo(link) => toyo::Family::close(*link, screen).await,
         }
     }
@@ -73,6 +75,7 @@ impl Command for Overview {
     async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport, Failure> {
         let found = match context.link {
             Link::Yerc(link) => yerc::overview(link).await,
+            Link::Yrcx(link) => yrcx::overview(link).await,
             Link::Toyo(link) => toyo::overview(link).await,
         };
         match found {
@@ -90,7 +93,7 @@ impl Command for Overview {
 pub struct OverviewReport {
     /// Where it is false, all that follows is null.
     pub reachable: bool,
-    /// `teach` or `play` (yerc); `automatic`, `step` or `program` (toyo); null if unknown.
+    /// `teach` or `play` (yerc); `auto` or `manual` (yrcx); `automatic`, `step` or `program` (toyo); null if unknown.
     pub mode: Option<&'static str>,
     /// Servo power.
     pub servo_on: Option<bool>,
@@ -98,7 +101,7 @@ pub struct OverviewReport {
     pub running: Option<bool>,
     /// Held or paused.
     pub held: Option<bool>,
-    /// An alarm is present (yerc).
+    /// An alarm is present (yerc, yrcx).
     pub alarm: Option<bool>,
     /// An error is present.
     pub error: Option<bool>,

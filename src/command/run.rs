@@ -11,7 +11,7 @@ use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
-use tokio::time::Instant;
+use tokio::time::{Instant, timeout_at};
 
 use super::interrupt::{catch_interrupts, interruptible};
 use super::{Access, AnyCommand, AnyReport, Context, Family, Outcome, Report};
@@ -102,6 +102,9 @@ impl Run {
                 .into());
         }
         let robots = self.sources.robots(F::FAMILY)?;
+        if command.is_endless() && robots.len() > 1 {
+            return Err(Failure::usage("this watches one robot at a time").hint("name one with -r").into());
+        }
         let selection = &self.sources.selection;
         let each_named = robots.iter().all(|robot| selection.robots.contains(&robot.name));
         Gate::pass_many(risk, &robots, each_named)?;
@@ -154,7 +157,7 @@ impl Run {
     }
 
     async fn one<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Stopped> {
-        if self.repeat.is_wanted() && !self.gate.dry_run {
+        if (self.repeat.is_wanted() || command.is_endless()) && !self.gate.dry_run {
             return self.watch(command, robot).await;
         }
         let report = self.once(command, robot).await.map_err(|failure| Stopped::at(robot, command, failure))?;
@@ -195,9 +198,15 @@ impl Run {
         link: &mut F::Link,
     ) -> Result<(), Stopped> {
         let stopped = |failure| Stopped::at(robot, command, failure);
-        let mut rounds = Rounds::new(&self.repeat);
+        let mut rounds = Rounds::new(&self.repeat, if command.is_endless() { Duration::ZERO } else { EVERY });
         loop {
-            let silence = match self.attempt(command, robot, link).await {
+            let attempt = self.attempt(command, robot, link);
+            let attempted = match rounds.deadline().filter(|_| command.is_endless()) {
+                Some(deadline) => timeout_at(deadline, attempt).await,
+                None => Ok(attempt.await),
+            };
+            let Ok(outcome) = attempted else { return rounds.end().map_err(stopped) };
+            let silence = match outcome {
                 Ok(report) => {
                     let place = if rounds.is_first() { Place::First } else { Place::Next };
                     self.print(robot, command.id(), &*report, place)?;
@@ -265,7 +274,7 @@ impl Run {
         robots: &[Robot],
         links: &mut [Result<F::Link, Failure>],
     ) -> Result<(), Stopped> {
-        let mut rounds = Rounds::new(&self.repeat);
+        let mut rounds = Rounds::new(&self.repeat, EVERY);
         loop {
             let attempts = stream::iter(robots.iter().zip(&mut *links)).map(|(robot, link)| async move {
                 match link {
@@ -501,13 +510,20 @@ impl Run {
 #[derive(Debug)]
 struct Rounds<'a> {
     repeat: &'a Repeat,
+    every: Duration,
     began: Instant,
     done: u32,
 }
 
 impl<'a> Rounds<'a> {
-    fn new(repeat: &'a Repeat) -> Self {
-        Self { repeat, began: Instant::now(), done: 0 }
+    /// `every` is the pause where none is given.
+    fn new(repeat: &'a Repeat, every: Duration) -> Self {
+        Self { repeat, every: repeat.every.unwrap_or(every), began: Instant::now(), done: 0 }
+    }
+
+    /// When --for runs out.
+    fn deadline(&self) -> Option<Instant> {
+        self.repeat.within.map(|within| self.began + within)
     }
 
     fn is_first(&self) -> bool {
@@ -522,7 +538,7 @@ impl<'a> Rounds<'a> {
     /// Waits for the next round; `false` when there is none.
     async fn next(&mut self) -> Result<bool, Failure> {
         self.done = self.done.saturating_add(1);
-        let next = self.began + self.repeat.every.unwrap_or(EVERY).saturating_mul(self.done);
+        let next = self.began + self.every.saturating_mul(self.done);
         let is_over = self.repeat.count.is_some_and(|count| u64::from(self.done) >= count)
             || self.repeat.within.is_some_and(|within| next.duration_since(self.began) > within);
         if !is_over {
@@ -562,7 +578,7 @@ enum Place<'a> {
 /// What a dry run reports.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Rehearsal {
-    /// What would be sent, in order: `{"hex":…}` (yerc), `{"wi":[…]}` (yrcx), `{"text":…}` (toyo).
+    /// What would be sent, in order: `{"hex":…}` (yerc), `{"wi":[…]}` and `{"bits":[…]}` (yrcx), `{"text":…}` (toyo).
     pub frames: Vec<Value>,
 }
 
@@ -575,6 +591,7 @@ impl Report for Rehearsal {
         for (index, frame) in self.frames.iter().enumerate() {
             let shown = match frame.as_object().and_then(|object| object.values().next()) {
                 Some(Value::String(text)) => text.clone(),
+                Some(Value::Array(words)) => words.iter().filter_map(Value::as_str).collect::<Vec<_>>().join(" "),
                 _ => frame.to_string(),
             };
             plain.row([(index + 1).into(), shown.as_str().into()]);

@@ -8,6 +8,7 @@ use crate::command::Report;
 use crate::command::run::{Run, Stopped};
 use crate::controller::toyo::errors;
 use crate::controller::yerc::status;
+use crate::controller::yrcx::alarm::Alarm;
 use crate::failure::Failure;
 use crate::output::view::{Section, View};
 
@@ -18,6 +19,12 @@ pub enum Explain {
     Yerc {
         /// The code in hexadecimal, as in 0x2060, 2060 or 1F
         code: String,
+    },
+    /// An alarm of a YRCX
+    Yrcx {
+        /// Group and category, as in 12.600
+        #[arg(value_parser = alarm)]
+        code: Alarm,
     },
     /// An error code of a Toyo controller
     Toyo {
@@ -37,6 +44,7 @@ impl Explain {
                 let codes = found.into_iter().map(Code::from).collect();
                 run.local("explain.yerc", &Codes { codes })
             }
+            Self::Yrcx { code } => run.local("explain.yrcx", &YrcxAlarm::of(code)),
             Self::Toyo { code } => run.local("explain.toyo", &ToyoCode::of(code)),
         }
     }
@@ -48,6 +56,11 @@ fn toyo_code(text: &str) -> Result<u8, String> {
     let is_hex = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
     let code = if is_hex { u8::from_str_radix(digits, 16).ok() } else { None };
     code.ok_or_else(|| "a code is two hexadecimal digits, as in 28; `toyo status` shows it".to_owned())
+}
+
+/// Group and category.
+fn alarm(text: &str) -> Result<Alarm, String> {
+    text.parse().map_err(|error| format!("{error}"))
 }
 
 /// One or, for a short code that is in two tables, several explanations.
@@ -145,6 +158,53 @@ impl Report for ToyoCode {
             ("meaning", self.name.as_str().into()),
             ("cause", self.cause.into()),
             ("what to do", self.remedy.into()),
+        ])
+    }
+}
+
+/// An alarm of a YRCX in words.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct YrcxAlarm {
+    /// `12.600`.
+    code: String,
+    /// Whether anything is known beyond its group.
+    known: bool,
+    /// What it says.
+    name: &'static str,
+    /// What its group is about; null for an unknown group.
+    group: Option<&'static str>,
+    /// What usually causes it.
+    causes: &'static [&'static str],
+    /// What to do.
+    remedies: &'static [&'static str],
+}
+
+impl YrcxAlarm {
+    fn of(alarm: Alarm) -> Self {
+        let known = alarm.known();
+        Self {
+            code: alarm.to_string(),
+            known: known.is_some(),
+            name: alarm.text(),
+            group: alarm.group_text(),
+            causes: known.map_or(&[], |known| known.causes),
+            remedies: known.map_or(
+                &["look it up in the controller's manual: `yrcx info alarm` tells where it came up"],
+                |known| known.remedies,
+            ),
+        }
+    }
+}
+
+impl Report for YrcxAlarm {
+    fn view(&self) -> View {
+        let listed = |lines: &[&str]| if lines.is_empty() { "-".to_owned() } else { lines.join("; ") };
+        View::fields([
+            ("alarm", self.code.as_str().into()),
+            ("meaning", self.name.into()),
+            ("group", self.group.unwrap_or("-").into()),
+            ("cause", listed(self.causes).into()),
+            ("what to do", listed(self.remedies).into()),
         ])
     }
 }

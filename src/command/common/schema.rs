@@ -7,6 +7,7 @@ use crate::command::overview::{Fleet, Overview};
 use crate::command::run::{Rehearsal, Run};
 use crate::command::toyo::{self, Toyo};
 use crate::command::yerc::{self, Yerc};
+use crate::command::yrcx;
 use crate::command::{Noun, SchemaEntry};
 use crate::failure::Failure;
 use crate::settings::inventory::nearest;
@@ -39,14 +40,17 @@ impl SchemaOf {
 /// The schemas of all reports.
 pub fn all() -> Vec<SchemaEntry> {
     let mut all = <Yerc as Noun<yerc::Family>>::schemas();
+    all.extend(<yrcx::Line as Noun<yrcx::Family>>::schemas());
     all.extend(<Toyo as Noun<toyo::Family>>::schemas());
     all.extend(<Overview as Noun<Fleet>>::schemas());
     all.extend([
         SchemaEntry::of::<super::decode::toyo::Lines>("decode.toyo"),
         SchemaEntry::of::<super::decode::yerc::Frames>("decode.yerc"),
+        SchemaEntry::of::<super::decode::yrcx::Explained>("decode.yrcx"),
         SchemaEntry::of::<Rehearsal>("dry-run"),
         SchemaEntry::of::<super::explain::ToyoCode>("explain.toyo"),
         SchemaEntry::of::<super::explain::Codes>("explain.yerc"),
+        SchemaEntry::of::<super::explain::YrcxAlarm>("explain.yrcx"),
         SchemaEntry::of::<super::robots::Changed>("robots.add"),
         SchemaEntry::of::<super::robots::List>("robots.list"),
         SchemaEntry::of::<super::robots::Changed>("robots.remove"),

@@ -121,7 +121,7 @@ impl Family for Yerc {
                 let controller = Simulated(Simulator::new(start));
                 Transport::Sim(Box::new(InProcess::new(controller, faults.map(Faults::pair))))
             }
-            Place::Serial(_) | Place::Tcp(_) | Place::Other { .. } => {
+            Place::Serial(_) | Place::Tcp(_) | Place::Eip(_) => {
                 let message = format!("yerc is not reached over {}:", robot.target.value.scheme());
                 return Err(Failure::usage(message).hint("use udp:// or sim:"));
             }

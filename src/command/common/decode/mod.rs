@@ -2,6 +2,7 @@
 
 pub mod toyo;
 pub mod yerc;
+pub mod yrcx;
 
 use std::io::Read as _;
 
@@ -9,6 +10,7 @@ use clap::Subcommand;
 
 use self::toyo::Toyo;
 use self::yerc::Yerc;
+use self::yrcx::Yrcx;
 use crate::command::run::{Run, Stopped};
 use crate::failure::Failure;
 
@@ -17,6 +19,8 @@ use crate::failure::Failure;
 pub enum Decode {
     /// Frames of the high-speed Ethernet server, as from a packet capture
     Yerc(Yerc),
+    /// Words of remote commands and their answers
+    Yrcx(Yrcx),
     /// Lines of the host communication, of either side
     Toyo(Toyo),
 }
@@ -25,6 +29,7 @@ impl Decode {
     pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
         match self {
             Self::Yerc(yerc) => yerc.run(run),
+            Self::Yrcx(yrcx) => yrcx.run(run),
             Self::Toyo(toyo) => toyo.run(run),
         }
     }

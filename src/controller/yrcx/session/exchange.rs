@@ -148,6 +148,11 @@ impl Exchange {
         }
     }
 
+    /// Whether the controller is seen to carry it out.
+    pub fn is_running(&self) -> bool {
+        self.phase == Phase::Command && self.sent.is_some() && self.status() == Some(Status::Running)
+    }
+
     /// What continuous output shows, if it changed since the last call (4.7.4).
     pub fn running(&mut self) -> Option<Answer> {
         self.running.take()

@@ -1,0 +1,109 @@
+//! `yrcx info alarm` (4.7.7, 4.7.17).
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::Report;
+use crate::command::yrcx::link::Done;
+use crate::command::yrcx::single::{Single, shown};
+use crate::controller::yrcx::alarm;
+use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::Failure;
+use crate::output::view::{Cell, View};
+
+/// Reads an alarm.
+#[derive(Debug, Args)]
+pub struct Alarm {
+    /// Number in the history, 1 to 500; without it, the latest alarm of a remote command
+    #[arg(long, value_name = "N")]
+    history: Option<String>,
+}
+
+impl Single for Alarm {
+    type Report = AlarmReport;
+    const ID: &'static str = "yrcx.info.alarm";
+
+    fn command(&self) -> Command {
+        if self.history.is_some() { Command::AlarmHistory } else { Command::LatestAlarm }
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        draft.with_some(Key::History, self.history.clone())
+    }
+
+    fn report(&self, done: &Done) -> Result<AlarmReport, Failure> {
+        Ok(AlarmReport::of(&done.values))
+    }
+}
+
+/// An alarm and where it came up.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct AlarmReport {
+    /// Group and category, as in `12.600`; null if there is none.
+    code: Option<String>,
+    /// What is known about it.
+    meaning: Option<&'static str>,
+    /// What to do, as far as known.
+    remedies: &'static [&'static str],
+    /// Robot, controller or task.
+    place: Option<String>,
+    /// Axis, motor, option slot or program task.
+    part: Option<String>,
+}
+
+impl AlarmReport {
+    /// Of the values of an answer.
+    pub fn of(values: &Values) -> Self {
+        let number = |key| values.int(key).and_then(|number| u16::try_from(number).ok()).unwrap_or_default();
+        let found = alarm::Alarm::new(number(Key::AlarmGroup), number(Key::AlarmCategory));
+        if found == alarm::Alarm::new(0, 0) {
+            return Self { code: None, meaning: None, remedies: &[], place: None, part: None };
+        }
+        let place = |kind, count| {
+            let kind = shown(Command::LatestAlarm, values, kind)?;
+            Some(format!("{kind} {}", values.int(count).unwrap_or_default()))
+        };
+        Self {
+            code: Some(found.to_string()),
+            meaning: Some(found.text()),
+            remedies: found.known().map_or(&[], |known| known.remedies),
+            place: place(Key::Place1, Key::Place1Number),
+            part: place(Key::Place2, Key::Place2Number),
+        }
+    }
+}
+
+impl Report for AlarmReport {
+    fn view(&self) -> View {
+        let Some(code) = &self.code else { return View::text("no alarm") };
+        View::fields([
+            ("alarm", code.as_str().into()),
+            ("meaning", Cell::maybe(self.meaning)),
+            ("place", Cell::maybe(self.place.as_deref())),
+            ("part", Cell::maybe(self.part.as_deref())),
+            ("what to do", if self.remedies.is_empty() { "-".into() } else { self.remedies.join("; ").into() }),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::command::yrcx::testing::{example, read_example, words};
+    use crate::failure::Kind;
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        assert_eq!(words(&["info", "alarm", "--history", "10"]).unwrap(), [example("4.7.7-reference")]);
+        assert_eq!(words(&["info", "alarm"]).unwrap(), [example("4.7.17-reference")]);
+        let old = read_example("4.7.7-reference", &["info", "alarm", "--history", "10"]);
+        assert_eq!((&old["code"], &old["part"]), (&json!("12.551"), &json!("option slot 1")));
+        let latest = read_example("4.7.17-reference", &["info", "alarm"]);
+        assert_eq!((&latest["code"], &latest["place"]), (&json!("2.334"), &json!("robot 1")));
+        assert_eq!(words(&["info", "alarm", "--history", "501"]).unwrap_err().kind, Kind::Usage);
+    }
+}

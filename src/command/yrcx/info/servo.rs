@@ -1,0 +1,89 @@
+//! `yrcx info servo` (4.7.3).
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::Report;
+use crate::command::yrcx::link::Done;
+use crate::command::yrcx::single::{Single, shown};
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, Tone, View};
+
+/// Reads the states of the servos.
+#[derive(Debug, Args)]
+pub struct Servo {}
+
+impl Single for Servo {
+    type Report = Servos;
+    const ID: &'static str = "yrcx.info.servo";
+
+    fn command(&self) -> Command {
+        Command::ServoStatus
+    }
+
+    fn report(&self, done: &Done) -> Result<Servos, Failure> {
+        Ok(Servos { axes: servos(&done.values) })
+    }
+}
+
+/// The axes of a robot.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Servos {
+    axes: Vec<AxisServo>,
+}
+
+/// The servo of an axis.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct AxisServo {
+    /// 1 to 4.
+    pub axis: usize,
+    /// `servo` (on), `brake` (off), `free` (off, brake released).
+    pub state: String,
+}
+
+/// The servos of the axes that there are.
+pub fn servos(values: &Values) -> Vec<AxisServo> {
+    let states = Key::AXES.into_iter().map(|key| shown(Command::ServoStatus, values, key));
+    let states = (1..).zip(states).filter_map(|(axis, state)| Some(AxisServo { axis, state: state? }));
+    states.filter(|servo| servo.state != "no axis").collect()
+}
+
+impl AxisServo {
+    /// The state, as it is noticed.
+    pub fn cell(&self) -> Cell {
+        let tone = match &self.state[..] {
+            "servo" => Tone::Good,
+            "free" => Tone::Warning,
+            _ => Tone::Plain,
+        };
+        Cell::from(self.state.as_str()).tone(tone)
+    }
+}
+
+impl Report for Servos {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["axis", "servo"], "this robot has no axes");
+        for servo in &self.axes {
+            table.row([servo.axis.into(), servo.cell()]);
+        }
+        View::table(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::command::yrcx::testing::{example, read_example, words};
+
+    #[test]
+    fn the_example_of_the_manual() {
+        assert_eq!(words(&["info", "servo"]).unwrap(), [example("4.7.3-reference")]);
+        let servos = read_example("4.7.3-reference", &["info", "servo"]);
+        let states: Vec<_> = servos["axes"].as_array().unwrap().iter().map(|axis| axis["state"].clone()).collect();
+        assert_eq!(states, [json!("servo"), json!("servo"), json!("free"), json!("servo")]);
+    }
+}

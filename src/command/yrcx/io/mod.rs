@@ -1,0 +1,90 @@
+//! `yrcx io`: signals. SO is what the controller shows, SI what it is shown; numbers are octal, as in the manual.
+
+mod get;
+mod map;
+mod set;
+mod watch;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use crate::command::{AtDesk, commands};
+use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::signal::{Side, Signal};
+use crate::output::view::{Cell, Table};
+
+commands! {
+    /// What can be done with signals.
+    pub enum Io of Family {
+        /// Read signals
+        Get(get::Get),
+        /// Switch inputs of the controller: servo-on=on, 20=off
+        Set(set::Set),
+        /// Switch an input of the controller on and off again
+        Pulse(set::Pulse),
+        /// Tell each change of signals until Ctrl-C
+        Watch(watch::Watch),
+        /// The addresses of words and signals on a fieldbus, for the PLC engineer
+        Map(AtDesk<map::Map>),
+    }
+}
+
+/// A signal as typed: `servo-on`, `20` and `SO(20)` are outputs of the controller, `SI20` is an input.
+fn readable(text: &str) -> Result<Signal, String> {
+    let is_input = text.get(..2).is_some_and(|prefix| prefix.eq_ignore_ascii_case("SI"));
+    let side = if is_input { Side::Input } else { Side::Output };
+    Signal::parse(side, text).map_err(|error| error.to_string())
+}
+
+/// An input of the controller as typed.
+fn input(text: &str) -> Result<Signal, String> {
+    Signal::parse(Side::Input, text).map_err(|error| error.to_string())
+}
+
+/// A signal and its state.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+struct State {
+    /// `SO(02)`.
+    signal: String,
+    /// Its name; null for general-purpose signals.
+    name: Option<&'static str>,
+    on: bool,
+    /// What it says or does; null for general-purpose signals.
+    meaning: Option<&'static str>,
+}
+
+impl State {
+    fn of(signal: Signal, image: &Image) -> Self {
+        let dedicated = signal.dedicated();
+        Self {
+            signal: signal.to_string(),
+            name: dedicated.map(|dedicated| dedicated.name),
+            on: signal.is_on(image),
+            meaning: dedicated.map(|dedicated| dedicated.text),
+        }
+    }
+}
+
+fn table(states: &[State], empty: &'static str) -> Table {
+    let mut table = Table::new(&["signal", "name", "state", "meaning"], empty);
+    for State { signal, name, on, meaning } in states {
+        table.row([signal.as_str().into(), Cell::maybe(*name), Cell::switch(*on), Cell::maybe(*meaning)]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_outputs_unless_said_otherwise() {
+        let read = |text| readable(text).unwrap().to_string();
+        assert_eq!((read("servo-on"), read("20"), read("so157")), ("SO(02)".into(), "SO(20)".into(), "SO(157)".into()));
+        assert_eq!((read("SI20"), read("si(06)")), ("SI(20)".into(), "SI(06)".into()));
+        assert_eq!(input("servo-on").unwrap().to_string(), "SI(01)");
+        assert!(readable("SO(05)").unwrap_err().contains("reserved"));
+        assert!(input("SO20").is_err());
+    }
+}

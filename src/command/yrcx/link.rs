@@ -1,0 +1,549 @@
+//! The connection to a controller: the one driver that moves images between sessions and a transport.
+//!
+//! At most one remote command is under way, and beside it one procedure of signals: both are polled in every turn, as the
+//! controller takes them at the same time. Futures of a link may be dropped at any await; what was under way stays in the
+//! link, so that [`Family::halt`] can end it properly.
+
+mod driver;
+
+use std::convert::Infallible;
+use std::rc::Rc;
+use std::time::Duration;
+
+use serde_json::{Value, json};
+use tokio::time::Instant;
+
+use super::reach::{self, Network};
+use super::refusal;
+use super::trace::Trace;
+use crate::command::{Access, Family};
+use crate::controller::Risk;
+use crate::controller::yrcx::alarm::STOP_INPUT;
+use crate::controller::yrcx::answer::Answer;
+use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Output, Words};
+use crate::controller::yrcx::order::{Draft, Order};
+use crate::controller::yrcx::procedure::{Procedure, Step};
+use crate::controller::yrcx::sequence::{self, Sequence};
+use crate::controller::yrcx::session::{Ended, Exchange, Outcome, Policy};
+use crate::controller::yrcx::signal::{input, resting};
+use crate::controller::yrcx::table::{Command, Pace, Row};
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::settings::Robot;
+use crate::settings::target::{self, EipRole, Place};
+use crate::transport::image::ImageLink;
+
+/// The yrcx family.
+#[derive(Debug)]
+pub struct Yrcx;
+
+/// A connection to one controller.
+#[derive(Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
+pub struct Link {
+    transport: Transport,
+    /// What links over the network share.
+    network: Option<Rc<Network>>,
+    /// Bytes of what is shown.
+    size: usize,
+    /// Whether this connection may show something; else it only sees.
+    is_owner: bool,
+    /// What the controller is shown.
+    output: Output,
+    /// What was handed to the transport last.
+    shown: Option<Image>,
+    /// Whether that has not left yet. Nothing else is shown meanwhile: a command must not overtake its data.
+    in_flight: bool,
+    /// What the controller shows; `None` while the link is down.
+    input: Option<Image>,
+    is_up: bool,
+    /// The remote command that is under way, and how the last one ended.
+    exchange: Option<Exchange>,
+    ended: Option<Outcome>,
+    /// The procedure that is under way, and how the last one ended.
+    sequence: Option<Sequence>,
+    finished: Option<sequence::Outcome>,
+    policy: Policy,
+    /// For an output of a procedure.
+    patience: Duration,
+    timeout: Duration,
+    retries: u32,
+    screen: Screen,
+    granted: Risk,
+    label: String,
+    /// The robot that commands are for, 1 to 4; 0 for the first, or for all where a command can be.
+    unit: u8,
+    /// Whether something was started that goes on by itself: a program, or what signals set in motion.
+    has_started: bool,
+    /// Whether the link outlives the command, so that what it began may go on.
+    is_held: bool,
+    /// What a watch told last.
+    pub told: Option<Image>,
+    started: Instant,
+    trace: Trace,
+    totals: Totals,
+}
+
+/// How the images travel.
+#[derive(Debug)]
+enum Transport {
+    Image(Box<ImageLink>),
+    /// A dry run: what would be sent is noted.
+    Notes(Vec<Value>),
+}
+
+/// What a link saw, for `-v`.
+#[derive(Debug, Default)]
+struct Totals {
+    commands: u32,
+    waited: Duration,
+    losses: u32,
+}
+
+/// What was carried out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Done {
+    /// What the answer holds.
+    pub values: Values,
+    /// From the first time that the command was sent to its end.
+    pub elapsed: Duration,
+}
+
+/// What came of an order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Given {
+    /// What the controller says.
+    pub answer: Answer,
+    /// The same in words.
+    pub words: Words,
+    /// From the first time that the command was sent to its end.
+    pub elapsed: Duration,
+}
+
+impl Given {
+    /// What was carried out; a refusal is a failure.
+    fn done(self, row: &Row) -> Result<Done, Failure> {
+        match self.answer {
+            Answer::Done(values) | Answer::Running(values) => Ok(Done { values, elapsed: self.elapsed }),
+            Answer::Refused { alarm, .. } => Err(refusal::refused(row, alarm)),
+        }
+    }
+}
+
+/// Least patience with what the manual gives no time for.
+const QUICK: Duration = Duration::from_secs(10);
+const POWER: Duration = Duration::from_secs(30);
+/// How long the last change may take to leave before the connection is closed.
+const LEAVE_WITHIN: Duration = Duration::from_secs(1);
+
+impl Family for Yrcx {
+    const FAMILY: Option<target::Family> = Some(target::Family::Yrcx);
+    type Link = Link;
+
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
+        let way = reach::way(robot)?;
+        if access.dry_run {
+            return Link::new(robot, &access, screen, Transport::Notes(Vec::new()), None);
+        }
+        let (image, network) = way.open(robot, &access, screen).await?;
+        let mut link = Link::new(robot, &access, screen, Transport::Image(Box::new(image)), network)?;
+        link.size = way.output_size();
+        match link.begin().await {
+            Ok(()) => Ok(link),
+            Err(failure) => {
+                // That the controller shows nothing is worth more than how the end of that went.
+                let _ = Self::close(link, &screen.silenced()).await;
+                Err(failure)
+            }
+        }
+    }
+
+    async fn halt(link: &mut Link) -> Result<String, Failure> {
+        link.granted = link.granted.max(Risk::Write);
+        link.abandon_sequence();
+        if let Some(exchange) = &mut link.exchange {
+            let row = exchange.order().row();
+            let moves = matches!(row.pace, Pace::Motion | Pace::Jog);
+            if moves {
+                link.screen.note("stopping the robot: stop input SI(06) off");
+            }
+            let now = link.started.elapsed();
+            exchange.interrupt(now);
+            let outcome = link.until_ended().await?;
+            return match &outcome.ended {
+                Ended::Answered(Answer::Refused { alarm, .. }) if *alarm == STOP_INPUT => {
+                    Ok("the robot was stopped by the stop input SI(06), which is on again".to_owned())
+                }
+                Ended::Answered(Answer::Refused { alarm, .. }) => {
+                    Ok(format!("{} had ended already: alarm {alarm}, {}", row.id, alarm.text()))
+                }
+                Ended::Answered(_) => Ok(format!("{} had been carried out already", row.id)),
+                Ended::NotSent(_) => Ok("nothing was sent that moves the robot".to_owned()),
+                Ended::Stopped => Ok(format!("{} was ended", row.id)),
+                Ended::NoAnswer(_) | Ended::OutcomeUnknown(_) => Err(refusal::unanswered(&link.label, row, &outcome)),
+            };
+        }
+        if !link.has_started {
+            return Ok("nothing was sent that moves the robot".to_owned());
+        }
+        link.screen.note("stopping the robot: stop input SI(06) off");
+        link.carry_out(Procedure::stop()).await?;
+        let released = Procedure::set(input::STOP, true).ok_or_else(|| Failure::local("the stop input is no input"))?;
+        link.carry_out(released).await?;
+        link.has_started = false;
+        Ok("the robot was stopped by the stop input SI(06), which is on again".to_owned())
+    }
+
+    fn rehearsed(link: &mut Link) -> Vec<Value> {
+        match &mut link.transport {
+            Transport::Notes(notes) => std::mem::take(notes),
+            Transport::Image(_) => Vec::new(),
+        }
+    }
+
+    async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
+        let left = link.leave().await;
+        link.tell_statistics(screen);
+        let Transport::Image(image) = link.transport else { return Ok(()) };
+        let closed = image.close().await;
+        if let Err(trouble) = closed {
+            screen.detail(1, &format!("{}: the connection was not closed properly: {trouble}", link.label));
+        }
+        let recorded = link.trace.finish();
+        // The last link over the network ends what they share, and tells once what that means.
+        let ended = match link.network.map(Rc::try_unwrap) {
+            None | Some(Err(_)) => Ok(()),
+            Some(Ok(network)) => {
+                if link.is_owner {
+                    screen.note(CLOSED);
+                }
+                network.finish()
+            }
+        };
+        left.and(recorded).and(ended)
+    }
+}
+
+/// Said when the connection to a real controller ends.
+const CLOSED: &str = "note: the connection to the controller is closed. A controller takes that for a fault of the link: it \
+                      stops, and raises alarm 12.551 or 12.552 (`armctl help safety`)";
+
+impl Link {
+    /// A link to a peer in this process.
+    #[cfg(test)]
+    pub(super) async fn to_peer(
+        robot: &Robot,
+        access: &Access,
+        screen: &Screen,
+        peer: Box<dyn crate::transport::image::ImagePeer>,
+    ) -> Result<Self, Failure> {
+        let transport = Transport::Image(Box::new(ImageLink::in_process(peer)));
+        let mut link = Self::new(robot, access, screen, transport, None)?;
+        link.begin().await?;
+        Ok(link)
+    }
+
+    fn new(
+        robot: &Robot,
+        access: &Access,
+        screen: &Screen,
+        transport: Transport,
+        network: Option<Rc<Network>>,
+    ) -> Result<Self, Failure> {
+        let timeout = robot.timeout.value;
+        let is_owner = match &robot.target.value.place {
+            Place::Eip(eip) => eip.role == EipRole::Owner,
+            _ => true,
+        };
+        let policy = Policy {
+            ready: timeout,
+            accept: timeout,
+            release: timeout,
+            quick: timeout.max(QUICK),
+            power: timeout.max(POWER),
+            ..Policy::default()
+        };
+        Ok(Self {
+            trace: Trace::open(access, screen, network.is_some())?,
+            transport,
+            network,
+            size: Image::BYTES,
+            is_owner,
+            output: Output::new(resting()),
+            shown: None,
+            in_flight: false,
+            input: None,
+            is_up: true,
+            exchange: None,
+            ended: None,
+            sequence: None,
+            finished: None,
+            policy,
+            patience: timeout.max(QUICK),
+            timeout,
+            retries: robot.retries.value,
+            screen: *screen,
+            granted: access.granted,
+            label: robot.label(),
+            unit: 0,
+            has_started: false,
+            is_held: robot.target.value.is_simulated(),
+            told: None,
+            started: Instant::now(),
+            totals: Totals::default(),
+        })
+    }
+
+    /// Begins an order for the robot of `--unit`.
+    pub fn draft(&self, command: Command) -> Result<Draft, Failure> {
+        let row = command.row();
+        match self.unit {
+            0 => Ok(command.order()),
+            unit if row.has_robot() => Ok(command.order().with(Key::Robot, i32::from(unit))),
+            _ => self.no_unit(&format!("{} is for no single robot", row.id)).map(|()| command.order()),
+        }
+    }
+
+    /// Carries out an order; a refusal is a failure. A dry run notes it, and ends with the first one that reads.
+    pub async fn run(&mut self, order: &Order) -> Result<Done, Failure> {
+        let given = self.try_run(order).await?;
+        given.done(order.row())
+    }
+
+    /// In a dry run, notes all the orders and ends it.
+    pub async fn rehearse(&mut self, orders: &[Order]) {
+        if self.is_dry() {
+            for order in orders {
+                self.note(order);
+            }
+            std::future::pending::<Infallible>().await;
+        }
+    }
+
+    /// Carries out an order; a refusal is an answer. Only what reads is repeated, as long as `--timeout` and `--retries`
+    /// allow.
+    pub async fn try_run(&mut self, order: &Order) -> Result<Given, Failure> {
+        self.admit(order.row().id, order.risk())?;
+        if self.is_dry() {
+            self.note(order);
+            if order.risk() == Risk::Read {
+                std::future::pending::<Infallible>().await;
+            }
+            let answer = Answer::Done(Values::default());
+            return Ok(Given { answer, words: Words::default(), elapsed: Duration::ZERO });
+        }
+        let until = Instant::now() + self.timeout;
+        let mut repetitions = if order.risk() == Risk::Read { self.retries } else { 0 };
+        loop {
+            let outcome = self.converse(order).await?;
+            match outcome.ended {
+                Ended::NotSent(_) | Ended::NoAnswer(_) if repetitions > 0 && Instant::now() < until => repetitions -= 1,
+                _ => return self.given(order.row(), outcome),
+            }
+        }
+    }
+
+    /// One command, one answer.
+    async fn converse(&mut self, order: &Order) -> Result<Outcome, Failure> {
+        self.start(order).await?;
+        let outcome = self.until_ended().await?;
+        self.totals.commands += 1;
+        self.totals.waited += outcome.elapsed;
+        if let Some(status) = outcome.leftover {
+            self.screen.detail(1, &format!("the status was '{status}' before {}; it was reset", order.row().id));
+        }
+        if matches!(outcome.ended, Ended::Answered(_)) && !outcome.released {
+            self.screen.note(&format!("warning: {} has ended, but the controller is not ready again", order.row().id));
+        }
+        // Motions have ended with their answer; a program has begun.
+        self.has_started |= order.risk() == Risk::Motion && order.row().pace == Pace::Quick;
+        Ok(outcome)
+    }
+
+    /// Carries out an order until it has ended, or the controller is seen to carry it out (`None`): it then goes on, and
+    /// the link takes no other until it ends.
+    pub async fn begin_run(&mut self, order: &Order) -> Result<Option<Done>, Failure> {
+        if self.is_dry() {
+            return self.run(order).await.map(Some);
+        }
+        if !self.is_held {
+            return Err(Failure::usage(
+                "without waiting, the connection would end now, and the controller stop the robot",
+            )
+            .hint("leave --no-wait away"));
+        }
+        self.admit(order.row().id, order.risk())?;
+        self.start(order).await?;
+        loop {
+            if let Some(outcome) = self.ended.take() {
+                return self.given(order.row(), outcome)?.done(order.row()).map(Some);
+            }
+            if self.exchange.as_ref().is_some_and(Exchange::is_running) {
+                return Ok(None);
+            }
+            self.turn().await?;
+        }
+    }
+
+    /// What came of an exchange that has ended.
+    fn given(&self, row: &Row, outcome: Outcome) -> Result<Given, Failure> {
+        match outcome.ended {
+            Ended::Answered(answer) => {
+                Ok(Given { answer, words: outcome.words.unwrap_or_default(), elapsed: outcome.elapsed })
+            }
+            _ => Err(refusal::unanswered(&self.label, row, &outcome)),
+        }
+    }
+
+    /// Carries out a procedure of signals, and says how long it took.
+    pub async fn carry_out(&mut self, procedure: Procedure) -> Result<Duration, Failure> {
+        self.no_unit("signals are those of the whole controller")?;
+        self.admit(procedure.name, procedure.risk)?;
+        if self.is_dry() {
+            self.note_steps(&procedure);
+            if procedure.risk == Risk::Read {
+                std::future::pending::<Infallible>().await;
+            }
+            return Ok(Duration::ZERO);
+        }
+        self.catch_up().await?;
+        let name = procedure.name;
+        self.has_started |= procedure.risk == Risk::Motion;
+        let began = Instant::now();
+        self.start_sequence(Sequence::new(procedure, self.patience))?;
+        match self.until_finished().await? {
+            sequence::Outcome::Done => Ok(began.elapsed()),
+            outcome => Err(refusal::unfinished(&self.label, name, outcome)),
+        }
+    }
+
+    /// What the controller shows now.
+    pub async fn look(&mut self) -> Result<Image, Failure> {
+        if self.is_dry() {
+            std::future::pending::<Infallible>().await;
+        }
+        self.catch_up().await?;
+        let until = Instant::now() + self.timeout;
+        loop {
+            if let Some(image) = self.input {
+                return Ok(image);
+            }
+            if Instant::now() >= until {
+                return Err(self.silent());
+            }
+            self.turn_until(until).await?;
+        }
+    }
+
+    /// Waits until what the controller shows matters, and returns it. A loss of the link is told once.
+    pub async fn look_until(&mut self, mut matters: impl FnMut(&Image) -> bool) -> Result<Image, Failure> {
+        loop {
+            let was_up = self.is_up;
+            if let Some(image) = self.input.filter(|image| matters(image)) {
+                return Ok(image);
+            }
+            self.turn().await?;
+            if was_up && !self.is_up {
+                return Err(self.silent());
+            }
+        }
+    }
+
+    /// What the controller is shown.
+    pub fn shown(&self) -> &Image {
+        &self.output.next
+    }
+
+    /// Refuses `--unit` where it means nothing.
+    pub fn no_unit(&self, why: &str) -> Result<(), Failure> {
+        if self.unit == 0 {
+            return Ok(());
+        }
+        Err(Failure::usage(format!("--unit does not go with this: {why}")).hint("leave --unit away"))
+    }
+
+    /// Names the robot that commands are for.
+    pub fn set_unit(&mut self, unit: u8) {
+        self.unit = unit;
+    }
+
+    /// Whether nothing is sent, only noted.
+    pub fn is_dry(&self) -> bool {
+        matches!(self.transport, Transport::Notes(_))
+    }
+
+    /// The last check before something leaves.
+    fn admit(&self, name: &str, risk: Risk) -> Result<(), Failure> {
+        if risk > self.granted {
+            return Err(Failure::local(format!("{name} was stopped before it left: it is a {risk:?}"))
+                .hint("this is a fault of armctl: the command passed the gate as less than it is; please report it"));
+        }
+        if !self.is_owner && !self.is_dry() {
+            return Err(Failure::usage(format!("{name} needs a connection that commands the controller")).hint(
+                "leave role away from the URL; input_only and listen_only see the signals alone: `yrcx io get`",
+            ));
+        }
+        Ok(())
+    }
+
+    fn note(&mut self, order: &Order) {
+        if let Transport::Notes(notes) = &mut self.transport {
+            notes.push(json!({ "wi": hex(order.words()) }));
+        }
+    }
+
+    /// Notes what each edge of a procedure shows.
+    fn note_steps(&mut self, procedure: &Procedure) {
+        let Transport::Notes(notes) = &mut self.transport else { return };
+        let image = &mut self.output.next;
+        for step in &procedure.steps {
+            let (signal, on) = match *step {
+                Step::Set { signal, on } => (signal, on),
+                Step::Rise(signal) => (signal, true),
+                Step::Require { .. } | Step::Await { .. } => continue,
+            };
+            if signal.is_on(image) != on {
+                signal.set(image, on);
+                let about = format!("{signal} ({}) {}", signal.name(), if on { "on" } else { "off" });
+                notes.push(json!({ "bits": hex(&image.0[COMMAND_WORDS..]), "about": about }));
+            }
+        }
+    }
+
+    fn silent(&self) -> Failure {
+        Failure::new(Kind::NoAnswer, format!("{}: the controller shows nothing", self.label))
+            .hint("check the link: `-v` counts what came")
+    }
+
+    fn tell_statistics(&self, screen: &Screen) {
+        let Totals { commands, waited, losses } = self.totals;
+        let Transport::Image(image) = &self.transport else { return };
+        screen.detail(1, &format!("{commands} remote commands, {waited:.1?} from sending to their ends"));
+        let Some((counted, intervals)) = image.statistics() else { return };
+        let every = intervals.map(|(to, from)| format!(" every {to:?} and {from:?}")).unwrap_or_default();
+        let text = format!("{} images sent, {} received{every}", counted.sent, counted.received);
+        screen.detail(1, &text);
+        let odd = [
+            (counted.lost, "lost"),
+            (counted.late, "late"),
+            (counted.stale, "stale"),
+            (counted.misfit, "of a wrong size"),
+            (counted.skipped, "not sent in time"),
+            (losses.into(), "losses of the link"),
+        ];
+        let odd: Vec<String> =
+            odd.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
+        if !odd.is_empty() {
+            screen.detail(1, &format!("on the way: {}", odd.join(", ")));
+        }
+    }
+}
+
+/// Words as they are written.
+pub fn hex(words: &[u16]) -> Vec<String> {
+    words.iter().map(|word| format!("0x{word:04X}")).collect()
+}
+
+#[cfg(test)]
+mod tests;

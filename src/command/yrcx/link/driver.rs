@@ -1,0 +1,268 @@
+//! The turns of a link: poll what is under way, show what it wants shown, wait for what happens.
+
+use std::time::Duration;
+
+use tokio::time::Instant;
+
+use super::{LEAVE_WITHIN, Link, Transport};
+use crate::controller::Now;
+use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::order::Order;
+use crate::controller::yrcx::sequence::{self, Sequence};
+use crate::controller::yrcx::session::{Exchange, ImageSession as _, Next, Outcome};
+use crate::controller::yrcx::signal::{input, resting};
+use crate::controller::yrcx::table::Pace;
+use crate::failure::{Failure, Kind};
+use crate::transport::image::Event;
+
+/// A session that waits for nothing is asked again after this.
+const LONG: Duration = Duration::from_secs(3600);
+
+impl Link {
+    /// After an opening: shows the resting image, and waits until the controller has shown something.
+    pub(super) async fn begin(&mut self) -> Result<(), Failure> {
+        let until = Instant::now() + self.timeout;
+        while self.input.is_none() || (self.is_owner && self.output.last_sent().is_none()) {
+            if Instant::now() >= until {
+                return Err(self.silent());
+            }
+            self.turn_until(until).await?;
+        }
+        Ok(())
+    }
+
+    /// Begins a remote command.
+    pub(super) async fn start(&mut self, order: &Order) -> Result<(), Failure> {
+        self.catch_up().await?;
+        self.end_earlier().await?;
+        let mut exchange = Exchange::new(order.clone(), self.policy);
+        if let Some(image) = &self.input {
+            exchange.handle(self.now(), image);
+        }
+        self.exchange = Some(exchange);
+        Ok(())
+    }
+
+    /// Sees to it that a command that was left alone has ended, and tells if it did not end well.
+    async fn end_earlier(&mut self) -> Result<(), Failure> {
+        let Some(row) = self.exchange.as_ref().map(|exchange| exchange.order().row()) else { return Ok(()) };
+        self.turn_until(Instant::now()).await?;
+        while let Some(exchange) = &self.exchange {
+            if exchange.is_running() {
+                return Err(Failure::new(Kind::NoAnswer, format!("{}: {} is still under way", self.label, row.id))
+                    .hint(
+                        "a controller carries out one remote command at a time; `yrcx io set stop=off` stops a motion",
+                    ));
+            }
+            self.turn().await?;
+        }
+        if let Some(outcome) = self.ended.take()
+            && let Err(failure) = self.given(row, outcome).and_then(|given| given.done(row))
+        {
+            self.screen.note(&format!("warning: {failure}"));
+        }
+        Ok(())
+    }
+
+    /// Turns until the remote command has ended.
+    pub(super) async fn until_ended(&mut self) -> Result<Outcome, Failure> {
+        loop {
+            if let Some(outcome) = self.ended.take() {
+                return Ok(outcome);
+            }
+            self.turn().await?;
+        }
+    }
+
+    /// Begins a procedure.
+    pub(super) fn start_sequence(&mut self, mut sequence: Sequence) -> Result<(), Failure> {
+        if self.sequence.is_some() {
+            return Err(Failure::new(Kind::NoAnswer, format!("{}: other signals are being switched", self.label))
+                .hint("wait for the end of it"));
+        }
+        if let Some(image) = &self.input {
+            sequence.handle(self.now(), image);
+        }
+        self.finished = None;
+        self.sequence = Some(sequence);
+        Ok(())
+    }
+
+    /// Turns until the procedure has ended.
+    pub(super) async fn until_finished(&mut self) -> Result<sequence::Outcome, Failure> {
+        loop {
+            if let Some(outcome) = self.finished.take() {
+                return Ok(outcome);
+            }
+            self.turn().await?;
+        }
+    }
+
+    /// Gives up a procedure. What it raised for a moment goes off.
+    pub(super) fn abandon_sequence(&mut self) {
+        let now = self.now();
+        if let Some(mut sequence) = self.sequence.take() {
+            sequence.lost(now);
+            // Its outcome is known: it was given up.
+            let _ = sequence.poll(now, &mut self.output);
+        }
+    }
+
+    /// Takes what has happened since the last turn, without waiting.
+    pub(super) async fn catch_up(&mut self) -> Result<(), Failure> {
+        let now = Instant::now();
+        while self.event(now).await? {}
+        Ok(())
+    }
+
+    /// Lets what is over in a moment end, and the last change leave. A motion that was left alone is not waited for.
+    pub(super) async fn leave(&mut self) -> Result<(), Failure> {
+        self.abandon_sequence();
+        if self.is_dry() || !self.is_owner {
+            return Ok(());
+        }
+        let now = self.now();
+        let is_short = |exchange: &Exchange| matches!(exchange.order().row().pace, Pace::Quick | Pace::Power);
+        if let Some(exchange) = self.exchange.as_mut().filter(|exchange| is_short(exchange)) {
+            exchange.interrupt(now);
+        }
+        let until = Instant::now() + LEAVE_WITHIN;
+        while self.is_up && Instant::now() < until {
+            let is_done = self.exchange.as_ref().is_none_or(|exchange| !is_short(exchange));
+            if is_done && self.output.last_sent() == Some(&self.output.next) {
+                break;
+            }
+            self.turn_until(until).await?;
+        }
+        Ok(())
+    }
+
+    /// One turn. Returns when something has happened, or was due.
+    pub(super) async fn turn(&mut self) -> Result<(), Failure> {
+        self.turn_until(Instant::now() + LONG).await
+    }
+
+    /// The same, but not longer than `until`.
+    pub(super) async fn turn_until(&mut self, until: Instant) -> Result<(), Failure> {
+        let mut due = until;
+        if !self.in_flight {
+            let next = self.poll();
+            self.show()?;
+            match next {
+                Some(next) => due = due.min(self.started + next.min(self.now().saturating_add(LONG))),
+                // Something has ended, which somebody waits for.
+                None => return Ok(()),
+            }
+        }
+        self.event(due).await.map(|_| ())
+    }
+
+    pub(super) fn now(&self) -> Now {
+        self.started.elapsed()
+    }
+
+    /// Polls what is under way; when it wants to be polled again, unless something has ended.
+    fn poll(&mut self) -> Option<Now> {
+        let now = self.now();
+        let mut due = Now::MAX;
+        let mut has_ended = false;
+        if let Some(exchange) = &mut self.exchange {
+            match exchange.poll(now, &mut self.output) {
+                Next::Wait(until) => due = due.min(until),
+                Next::Done(outcome) => {
+                    self.exchange = None;
+                    self.ended = Some(outcome);
+                    has_ended = true;
+                }
+            }
+        }
+        if let Some(sequence) = &mut self.sequence {
+            match sequence.poll(now, &mut self.output) {
+                Next::Wait(until) => due = due.min(until),
+                Next::Done(outcome) => {
+                    self.sequence = None;
+                    self.finished = Some(outcome);
+                    has_ended = true;
+                }
+            }
+        }
+        (!has_ended).then_some(due)
+    }
+
+    /// Hands what is to be shown to the transport, if it is not what is shown already.
+    fn show(&mut self) -> Result<(), Failure> {
+        let Transport::Image(link) = &mut self.transport else { return Ok(()) };
+        if !self.is_up || !self.is_owner || self.shown == Some(self.output.next) {
+            return Ok(());
+        }
+        let mut bytes = self.output.next.to_bytes().to_vec();
+        bytes.resize(self.size, 0);
+        link.show(&bytes).map_err(|trouble| Failure::local(trouble.to_string()))?;
+        self.shown = Some(self.output.next);
+        self.in_flight = true;
+        Ok(())
+    }
+
+    /// Waits for the next event and passes it on; whether there was one before `until`.
+    async fn event(&mut self, until: Instant) -> Result<bool, Failure> {
+        let Transport::Image(link) = &mut self.transport else { return Ok(false) };
+        let event = link.next(until).await;
+        let now = self.now();
+        match event {
+            Event::Timeout => return Ok(false),
+            Event::Sent => {
+                self.in_flight = false;
+                self.output.sent(now);
+                self.trace.sent(&self.output.next);
+            }
+            Event::Image(bytes) => self.take(now, &bytes)?,
+            Event::Lost(why) => self.lost(now, &why),
+            Event::Reopened => {
+                self.screen.note(&format!("{}: the link is open again", self.label));
+                self.is_up = true;
+                self.rest();
+            }
+        }
+        Ok(true)
+    }
+
+    fn take(&mut self, now: Now, bytes: &[u8]) -> Result<(), Failure> {
+        let Some(image) = bytes.get(..Image::BYTES).and_then(Image::from_bytes) else {
+            let message = format!("{}: the controller shows {} bytes, fewer than an image", self.label, bytes.len());
+            return Err(Failure::new(Kind::Malformed, message).hint("check in and in_size of the URL"));
+        };
+        self.trace.received(&image);
+        self.input = Some(image);
+        if let Some(exchange) = &mut self.exchange {
+            exchange.handle(now, &image);
+        }
+        if let Some(sequence) = &mut self.sequence {
+            sequence.handle(now, &image);
+        }
+        Ok(())
+    }
+
+    fn lost(&mut self, now: Now, why: &str) {
+        self.screen.note(&format!("{}: the link was lost: {why}; it is being opened again", self.label));
+        self.totals.losses += 1;
+        self.is_up = false;
+        self.in_flight = false;
+        self.shown = None;
+        self.input = None;
+        self.output.unlinked();
+        if let Some(exchange) = &mut self.exchange {
+            exchange.lost(now);
+        }
+        if let Some(sequence) = &mut self.sequence {
+            sequence.lost(now);
+        }
+    }
+
+    /// After a loss nothing is asked for any more. But what was off to keep the robot still stays off.
+    fn rest(&mut self) {
+        let before = std::mem::replace(&mut self.output.next, resting());
+        for signal in [input::EMERGENCY_STOP, input::STOP] {
+            signal.set(&mut self.output.next, signal.is_on(&before));
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! `yrcx`: OMRON / Yamaha YRCX over EtherNet/IP.
+//!
+//! A command that gives one remote command implements [`single::Single`]: which row of the table, its fields, the report.
+//! `servo.rs` is the model of one that changes something, `info.rs` of those that read. What gives several implements
+//! `Command` itself, as `status.rs` does. The link has one driver for remote commands and signals; see `link.rs`.
+//!
+//! To add a command:
+//!
+//! 1. Its file: arguments (texts go to the codec as they were typed: `draft.with(Key::SpeedPercent, text)` reads them in
+//!    the unit of the field and checks their range), the report, `impl Single`. Shared arguments are in `arguments.rs`,
+//!    positions in `position.rs`.
+//! 2. A line in the list below, or in that of its noun.
+//! 3. Tests: `testing::words` gives the words of a command line, `testing::example` those of an example of the manual.
+//!    `coverage.rs` counts which rows of the table no command line reaches yet.
+
+mod alarm;
+mod arguments;
+#[cfg(test)]
+mod coverage;
+mod info;
+mod io;
+pub mod link;
+mod moves;
+mod overview;
+mod position;
+mod procedures;
+mod raw;
+mod reach;
+mod refusal;
+mod servo;
+pub mod simulated;
+mod single;
+mod status;
+#[cfg(test)]
+mod testing;
+mod trace;
+mod unit;
+
+pub use link::Yrcx as Family;
+pub use overview::overview;
+pub use raw::words;
+pub use unit::Line;
+
+use crate::command::{Verbs, commands};
+
+commands! {
+    /// What can be asked of a YRCX controller.
+    #[expect(clippy::large_enum_variant, reason = "there is one a process")]
+    pub enum Yrcx of Family {
+        /// Signals, servos and position in words
+        Status(status::Status),
+        /// Move a robot to a point or to coordinates
+        Move(moves::Move),
+        /// Switch servos on or off, or release their brakes
+        Servo(servo::Servo),
+        /// Switch motor power on or off
+        Motor(servo::Motor),
+        /// Versions, positions, servos, alarms
+        Info(Verbs<info::Info>),
+        /// Alarms
+        Alarm(Verbs<alarm::Alarm>),
+        /// Signals: what the controller shows and is shown
+        Io(Verbs<io::Io>),
+        /// Servos on, by signals
+        PowerOn(procedures::PowerOn),
+        /// Into emergency stop, by signals
+        EmergencyStop(procedures::EmergencyStop),
+        /// Out of emergency stop with servos on, by signals
+        Recover(procedures::Recover),
+        /// Wait for AUTO mode
+        AutoMode(procedures::AutoMode),
+        /// Reset the robot program, by signals
+        Reset(procedures::Reset),
+        /// Run the robot program, by signals
+        Run(procedures::Run),
+        /// Stop the robot program, by signals
+        Stop(procedures::Stop),
+        /// Send the words of any remote command, and explain the answer
+        Raw(raw::Raw),
+    }
+}

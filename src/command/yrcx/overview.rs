@@ -1,0 +1,24 @@
+//! A robot of the family in the line that `armctl status` prints.
+
+use super::link::Link;
+use super::status::position_mm;
+use crate::command::overview::{OverviewReport, PositionMm};
+use crate::controller::yrcx::signal::{input, output};
+use crate::failure::Failure;
+
+/// Looks at the signals, and asks for the position.
+pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
+    let image = link.look().await?;
+    let position = position_mm(link).await?;
+    Ok(OverviewReport {
+        reachable: true,
+        mode: Some(if output::AUTO_MODE.is_on(&image) { "auto" } else { "manual" }),
+        servo_on: Some(output::SERVO_ON.is_on(&image)),
+        running: Some(output::PROGRAM_RUNNING.is_on(&image)),
+        held: Some(!input::STOP.is_on(link.shown())),
+        alarm: Some(output::ALARM.is_on(&image)),
+        error: None,
+        position: position.map(|[x_mm, y_mm, z_mm, _]| PositionMm { x_mm, y_mm, z_mm }),
+        failure: None,
+    })
+}

@@ -1,0 +1,98 @@
+//! The procedures of the timing charts as commands (chapter 1, section 3).
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::yrcx::procedure::Procedure;
+use crate::failure::Failure;
+use crate::output::view::View;
+
+/// Declares a command for each procedure.
+macro_rules! procedures {
+    ($($(#[$meta:meta])* $name:ident $id:literal $procedure:ident $done:literal;)*) => {
+        $(
+            $(#[$meta])*
+            #[derive(Debug, Args)]
+            pub struct $name {}
+
+            impl Command for $name {
+                type Family = Family;
+                type Report = CarriedOut;
+                const ID: &'static str = $id;
+
+                fn risk(&self) -> Risk {
+                    Procedure::$procedure().risk
+                }
+
+                fn intent(&self) -> String {
+                    Procedure::$procedure().intent
+                }
+
+                async fn run(&self, context: Context<'_, Family>) -> Result<CarriedOut, Failure> {
+                    let elapsed = context.link.carry_out(Procedure::$procedure()).await?;
+                    let elapsed_ms = u64::try_from(elapsed.as_millis()).unwrap_or(u64::MAX);
+                    Ok(CarriedOut { done: $done, elapsed_ms })
+                }
+            }
+        )*
+    };
+}
+
+procedures! {
+    /// Switches the servos on after power on: SI(00) on, SI(01) on, until SO(02) confirms it.
+    PowerOn "yrcx.power-on" power_on "the servos are on";
+    /// Puts the controller into emergency stop: SI(00) off, until SO(00), SO(03) and SO(02) confirm it. The connection must
+    /// be held, or its end is what the controller sees next.
+    EmergencyStop "yrcx.emergency-stop" emergency_stop "the controller is in emergency stop";
+    /// Ends the emergency stop and switches the servos on: SI(00), SI(16), SI(01), each confirmed.
+    Recover "yrcx.recover" recover "the servos are on again";
+    /// Waits until AUTO mode is selected (SO(10)); people select it at the controller.
+    AutoMode "yrcx.auto-mode" auto_mode "AUTO mode is selected";
+    /// Puts the robot program back to its first line: SI(15) on, until SO(14) confirms it.
+    Reset "yrcx.reset" program_reset "the robot program is reset";
+    /// Runs the robot program, also after a stop: SI(06) on, SI(12) on, until SO(13) confirms it.
+    Run "yrcx.run" run "the robot program runs";
+    /// Stops the robot program: SI(06) off, until SO(13) confirms it. It stays off until the next run.
+    Stop "yrcx.stop" stop "the robot program is stopped";
+}
+
+/// A procedure that was carried out and confirmed.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct CarriedOut {
+    /// In words.
+    done: &'static str,
+    /// From the first signal to the last confirmation.
+    elapsed_ms: u64,
+}
+
+impl Report for CarriedOut {
+    fn view(&self) -> View {
+        View::text(format!("{} ({}.{:03} s)", self.done, self.elapsed_ms / 1000, self.elapsed_ms % 1000))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::yrcx::testing::{frames, intent, words};
+
+    #[test]
+    fn a_dry_run_shows_every_edge() {
+        let noted = frames(&["power-on"]).unwrap();
+        let shown: Vec<(&str, &str)> =
+            noted.iter().map(|note| (note["bits"][0].as_str().unwrap(), note["about"].as_str().unwrap())).collect();
+        // SI(00) and SI(06) are on from the beginning.
+        assert_eq!(shown, [("0x0043", "SI(01) (servo-on) on"), ("0x0041", "SI(01) (servo-on) off")]);
+        assert_eq!(frames(&["stop"]).unwrap()[0]["bits"][0], "0x0001");
+        assert_eq!(frames(&["auto-mode"]).unwrap(), Vec::<serde_json::Value>::new());
+    }
+
+    #[test]
+    fn signals_are_for_no_single_robot() {
+        assert!(words(&["run", "--unit", "1"]).unwrap_err().message.contains("--unit"));
+        assert_eq!(intent(&["run"]), "run the robot program");
+    }
+}

@@ -1,0 +1,155 @@
+//! `yrcx raw`: the words of any remote command, and what the answer says.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::refusal::refused;
+use super::{Family, link};
+use crate::command::common::decode::yrcx::{FieldRow, field_table};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::yrcx::answer::Answer;
+use crate::controller::yrcx::describe;
+use crate::controller::yrcx::image::{COMMAND_WORDS, Words};
+use crate::controller::yrcx::order::Order;
+use crate::failure::Failure;
+use crate::output::view::{Section, View};
+
+/// Sends words that the manual allows.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Words that are left away are 0. If the controller refuses, the exit code is 3. `armctl decode yrcx` \
+    explains words without sending them."
+)]
+pub struct Raw {
+    /// WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013
+    #[arg(long, value_name = "WORDS", value_parser = order)]
+    wi: Box<Order>,
+}
+
+fn order(text: &str) -> Result<Box<Order>, String> {
+    Order::parse(&words(text)?).map(Box::new).map_err(|error| match error.alarm {
+        Some(alarm) => format!("{error} (alarm {alarm}, {})", alarm.text()),
+        None => error.to_string(),
+    })
+}
+
+/// Up to 16 words, decimal or hexadecimal with 0x, between commas or blanks; the rest is 0.
+pub fn words(text: &str) -> Result<Words, String> {
+    let mut words = [0; COMMAND_WORDS];
+    let pieces: Vec<&str> = text.split([',', ' ']).filter(|piece| !piece.is_empty()).collect();
+    if pieces.is_empty() || pieces.len() > COMMAND_WORDS {
+        return Err(format!("1 to {COMMAND_WORDS} words are wanted, not {}", pieces.len()));
+    }
+    for (word, piece) in words.iter_mut().zip(pieces) {
+        let hex = piece.strip_prefix("0x").or_else(|| piece.strip_prefix("0X"));
+        let number = match hex {
+            Some(digits) if !digits.starts_with('+') => u16::from_str_radix(digits, 16).ok(),
+            None if !piece.starts_with('+') => piece.parse().ok(),
+            _ => None,
+        };
+        *word = number.ok_or_else(|| format!("'{piece}' is no word such as 0x0032 or 50"))?;
+    }
+    Ok(words)
+}
+
+impl Command for Raw {
+    type Family = Family;
+    type Report = Exchange;
+    const ID: &'static str = "yrcx.raw";
+
+    fn risk(&self) -> Risk {
+        self.wi.risk()
+    }
+
+    fn intent(&self) -> String {
+        format!("send {}: {}", self.wi.row().id, self.wi.row().name)
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Exchange, Failure> {
+        context.link.no_unit("the words name the robot")?;
+        let given = context.link.try_run(&self.wi).await?;
+        Ok(Exchange::of(&self.wi, &given))
+    }
+}
+
+/// A command and its answer.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Exchange {
+    /// WI0 to WI15.
+    wi: Vec<String>,
+    /// WO0 to WO15.
+    wo: Vec<String>,
+    /// The answer in words.
+    title: String,
+    /// The answer field by field.
+    fields: Vec<FieldRow>,
+    /// What is wrong with the answer.
+    problems: Vec<String>,
+    elapsed_ms: u64,
+    #[serde(skip)]
+    refusal: Option<Failure>,
+}
+
+impl Exchange {
+    fn of(order: &Order, given: &link::Given) -> Self {
+        let description = describe::answer(&given.words, Some(order.words()));
+        let refusal = match given.answer {
+            Answer::Refused { alarm, .. } => Some(refused(order.row(), alarm)),
+            Answer::Done(_) | Answer::Running(_) => None,
+        };
+        Self {
+            wi: link::hex(order.words()),
+            wo: link::hex(&given.words),
+            title: description.title,
+            fields: description.fields.into_iter().map(FieldRow::from).collect(),
+            problems: description.problems,
+            elapsed_ms: u64::try_from(given.elapsed.as_millis()).unwrap_or(u64::MAX),
+            refusal,
+        }
+    }
+}
+
+impl Report for Exchange {
+    fn view(&self) -> View {
+        let problems: String = self.problems.iter().map(|problem| format!("\nproblem: {problem}")).collect();
+        let view = View::text(format!("{}\n{}{problems}", self.wo.join(" "), self.title));
+        view.and(Section::Table(field_table(&self.fields)))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.refusal.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::words as read;
+    use crate::command::yrcx::testing::{example, intent, objection, words};
+    use crate::failure::Kind;
+
+    #[test]
+    fn words_are_decimal_or_hexadecimal() {
+        assert_eq!(read("0x0001,4, 0 0x32 19").unwrap()[..6], [1, 4, 0, 50, 19, 0]);
+        for wrong in ["", ",", "0x", "65536", "-1", "+1", "0x+1", "0x10000", "a"] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
+        assert!(read(&"1,".repeat(17)).is_err());
+    }
+
+    #[test]
+    fn words_go_out_as_they_are() {
+        let sent = words(&["raw", "--wi", "0x0001,0x0004,0,0x0032,0x0013"]).unwrap();
+        assert_eq!(sent, [example("2-ptp-walkthrough")]);
+        assert_eq!(intent(&["raw", "--wi", "0x42"]), "send motor-on: switch motor power and servos on");
+        assert_eq!(words(&["raw", "--wi", "0x501", "--unit", "1"]).unwrap_err().kind, Kind::Usage);
+    }
+
+    #[test]
+    fn what_the_manual_does_not_allow_is_refused_here() {
+        assert!(objection(&["raw", "--wi", "0x0999"]).contains("0x0999 is no code"));
+        assert!(objection(&["raw", "--wi", "1,0xC000,0,0,19"]).contains("alarm 4.202"));
+        assert!(objection(&["raw", "--wi", "0x406,0x100"]).contains("WI1"));
+    }
+}

@@ -1,0 +1,213 @@
+//! Why an order was not carried out, in words: refused here, refused by the controller, or nobody knows.
+
+use crate::controller::Risk;
+use crate::controller::yrcx::alarm::Alarm;
+use crate::controller::yrcx::codec::WordError;
+use crate::controller::yrcx::sequence;
+use crate::controller::yrcx::session::{Ended, Hindrance, Outcome, Silence};
+use crate::controller::yrcx::table::{Command, Pace, Row};
+use crate::failure::{Failure, Kind};
+
+/// Words that the manual does not allow to be sent are a mistake of the command line.
+impl From<WordError> for Failure {
+    fn from(error: WordError) -> Self {
+        let failure = Self::usage(error.to_string());
+        match error.alarm {
+            Some(alarm) => failure.hint(format!("the controller would refuse it with alarm {alarm}, {}", alarm.text())),
+            None => failure.hint("`--help` tells what may be given"),
+        }
+    }
+}
+
+/// The controller's "no", be it at once or in the middle.
+pub fn refused(row: &Row, alarm: Alarm) -> Failure {
+    let what = match (row.risk, row.pace) {
+        (Risk::Motion, Pace::Motion | Pace::Jog) => "refused or broke off",
+        _ => "refused",
+    };
+    Failure::new(Kind::Refused, format!("the controller {what} {}: alarm {alarm}, {}", row.id, alarm.text()))
+        .code(alarm.to_string())
+        .hint(match alarm.known().and_then(|known| known.remedies.first()) {
+            Some(remedy) => (*remedy).to_owned(),
+            None => format!("look up {alarm} in the controller's manual; `yrcx info alarm` tells where it came up"),
+        })
+}
+
+/// An exchange that ended without an answer.
+pub fn unanswered(label: &str, row: &Row, outcome: &Outcome) -> Failure {
+    match outcome.ended {
+        Ended::NotSent(hindrance) => not_sent(label, row, hindrance),
+        Ended::NoAnswer(silence) => {
+            let kind = if let Silence::Undocumented(_) = silence { Kind::Malformed } else { Kind::NoAnswer };
+            Failure::new(kind, format!("{label}: no answer to {}: {}", row.id, why(silence)))
+                .hint("`yrcx status` tells how the controller stands")
+        }
+        Ended::OutcomeUnknown(silence) => {
+            let held = if outcome.stop_held { "; the stop input SI(06) stays off" } else { "" };
+            let message = format!(
+                "{label}: {} was sent, but whether it was carried out is unknown: {}{held}",
+                row.id,
+                why(silence)
+            );
+            Failure::new(Kind::OutcomeUnknown, message).hint(telltale(row.command))
+        }
+        Ended::Answered(_) | Ended::Stopped => Failure::local(format!("{label}: {} ended without a report", row.id)),
+    }
+}
+
+fn not_sent(label: &str, row: &Row, hindrance: Hindrance) -> Failure {
+    let (why, hint) = match hindrance {
+        Hindrance::NoImage => (
+            "the controller shows nothing".to_owned(),
+            "check the link: `-v` counts what came; in_size and in of the URL may be wrong",
+        ),
+        Hindrance::LinkLost => {
+            ("the link is down".to_owned(), "look at the controller; the link opens again by itself")
+        }
+        Hindrance::NotReady(status) => (
+            format!("the controller is not ready for a command, its status is: {status}"),
+            "another command may still run; `yrcx io set stop=off` stops what moves",
+        ),
+        Hindrance::Interrupted => ("interrupted".to_owned(), "nothing was done"),
+    };
+    Failure::new(Kind::NoAnswer, format!("{label}: {} was not sent: {why}", row.id)).hint(hint)
+}
+
+fn why(silence: Silence) -> String {
+    match silence {
+        Silence::LinkLost => "the link went down".to_owned(),
+        Silence::NotTaken => "the controller did not take it".to_owned(),
+        Silence::TooLong => "it still ran when patience was over".to_owned(),
+        Silence::Vanished => "the controller stopped showing that it runs, and showed no end".to_owned(),
+        Silence::Undocumented(word) => format!("the controller shows the undocumented status {word:#06x}"),
+        Silence::Interrupted => "its end was not seen after the stop input went off".to_owned(),
+    }
+}
+
+/// A procedure that was not carried out to its end.
+pub fn unfinished(label: &str, name: &str, outcome: sequence::Outcome) -> Failure {
+    use sequence::Outcome;
+
+    let state = |on: bool| if on { "on" } else { "off" };
+    let told = |signal: crate::controller::yrcx::signal::Signal| format!("{signal} ({})", signal.name());
+    match outcome {
+        Outcome::NotPossible { signal, on, hint, begun } => {
+            let after = if begun { ", after inputs were switched" } else { "; nothing was switched" };
+            let message = format!("{name}: {} is not {}{after}", told(signal), state(on));
+            Failure::new(Kind::Refused, message).hint(hint)
+        }
+        Outcome::TimedOut { signal, on } => {
+            Failure::new(Kind::OutcomeUnknown, format!("{name}: {} did not go {} in time", told(signal), state(on)))
+                .hint("`yrcx status` tells how the controller stands; --timeout sets how long to wait")
+        }
+        Outcome::Broken { signal } => {
+            Failure::new(Kind::Refused, format!("{name}: {} came on meanwhile", told(signal)))
+                .hint("`yrcx info alarm` tells which alarm it is")
+        }
+        Outcome::NoImage => Failure::new(Kind::NoAnswer, format!("{label}: {name}: the controller shows nothing"))
+            .hint("check the link: `-v` counts what came"),
+        Outcome::LinkLost { begun: false } => {
+            Failure::new(Kind::NoAnswer, format!("{label}: {name}: the link went down before anything was switched"))
+        }
+        Outcome::LinkLost { begun: true } => {
+            let message = format!("{label}: {name}: the link went down in the middle");
+            Failure::new(Kind::OutcomeUnknown, message).hint("`yrcx status` tells how the controller stands")
+        }
+        Outcome::Done => Failure::local(format!("{label}: {name} ended without a report")),
+    }
+}
+
+/// What tells whether an order was carried out whose answer was lost.
+fn telltale(command: Command) -> String {
+    let row = command.row();
+    match (row.category(), row.pace) {
+        (1, Pace::Motion | Pace::Jog) => {
+            "keep clear; do not send it again; `yrcx info position` tells where the robot is".to_owned()
+        }
+        (1, Pace::Power) => "`yrcx status` tells whether servos and motor power are on".to_owned(),
+        (5, _) => "keep clear; `yrcx info tasks` tells what runs".to_owned(),
+        _ => match TELLTALES.iter().find(|(commands, _)| commands.contains(&command)) {
+            Some((_, words)) => format!("`yrcx {words}` tells"),
+            None => "`yrcx status` tells how the controller stands".to_owned(),
+        },
+    }
+}
+
+/// Which command reads what others write.
+const TELLTALES: [(&[Command], &str); 12] = [
+    (&[Command::InchAmountSet], "info inch"),
+    (
+        &[
+            Command::Teach,
+            Command::PointSet,
+            Command::PointCopy,
+            Command::PointAdd,
+            Command::PointSub,
+            Command::PointPallet,
+            Command::PointElementPulse,
+            Command::PointElementMm,
+        ],
+        "point get",
+    ),
+    (&[Command::SpeedManual, Command::SpeedAuto, Command::SpeedProgram], "info speed"),
+    (&[Command::ArmSelect], "info arm"),
+    (&[Command::CommentSet], "comment get"),
+    (&[Command::PalletSet], "pallet-data get"),
+    (&[Command::ShiftSet, Command::ShiftElement], "shift-data get"),
+    (&[Command::HandSet], "hand-data get"),
+    (
+        &[
+            Command::VarSet,
+            Command::VarSetVar,
+            Command::VarAdd,
+            Command::VarAddVar,
+            Command::VarSub,
+            Command::VarSubVar,
+            Command::VarMul,
+            Command::VarMulVar,
+            Command::VarDiv,
+            Command::VarDivVar,
+        ],
+        "var get",
+    ),
+    (&[Command::ParamSet], "param get"),
+    (&[Command::PortSet, Command::PortSetBit], "port get"),
+    (&[Command::DateSet, Command::TimeSet], "clock get"),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::yrcx::alarm::{INPUT_FORMAT, STOP_INPUT};
+
+    #[test]
+    fn an_alarm_has_its_number_and_a_remedy() {
+        let failure = refused(Command::MovePtp.row(), Alarm::new(2, 334));
+        assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Refused, Some("2.334")));
+        assert_eq!(failure.message, "the controller refused or broke off move-ptp: alarm 2.334, over soft limit");
+        assert_eq!(failure.hint.as_deref(), Some("check the point and the soft limits"));
+        let unknown = refused(Command::VarGet.row(), Alarm::new(17, 1));
+        assert_eq!(unknown.message, "the controller refused var-get: alarm 17.1, motor control");
+        assert!(unknown.hint.unwrap().starts_with("look up 17.1"));
+        assert!(refused(Command::JogPulse.row(), STOP_INPUT).message.contains("12.400"));
+    }
+
+    #[test]
+    fn words_that_must_not_be_sent_are_a_mistake_of_the_command_line() {
+        let error =
+            Command::MovePtp.order().with(crate::controller::yrcx::value::Key::Point, 30_000).build().unwrap_err();
+        let failure = Failure::from(WordError { alarm: Some(INPUT_FORMAT), ..error });
+        assert_eq!(failure.kind, Kind::Usage);
+        assert_eq!(failure.message, "WI4 point: 30000 is out of range; allowed: 0 to 29999");
+        assert_eq!(failure.hint.unwrap(), "the controller would refuse it with alarm 4.202, input format error");
+    }
+
+    #[test]
+    fn what_changes_something_names_what_tells() {
+        assert_eq!(telltale(Command::PointAdd), "`yrcx point get` tells");
+        assert!(telltale(Command::MoveArch).contains("info position"));
+        assert!(telltale(Command::ProgramRun).contains("info tasks"));
+        assert!(telltale(Command::MotorOn).contains("motor power"));
+        assert!(telltale(Command::AlarmReset).contains("status"));
+    }
+}

@@ -1,0 +1,138 @@
+//! `yrcx status`: the dedicated outputs, servos and position.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::info::{AxisServo, servos};
+use super::link::Link;
+use super::position::{Position, Unit};
+use crate::command::{Command, Context, Report};
+use crate::controller::yrcx::answer::{Answer, Status as CommandStatus};
+use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::signal::output;
+use crate::controller::yrcx::table;
+use crate::failure::Failure;
+use crate::output::view::{Cell, Section, Tone, View};
+
+/// Signals, servos and position.
+#[derive(Debug, Args)]
+pub struct Status {}
+
+impl Command for Status {
+    type Family = Family;
+    type Report = StatusReport;
+    const ID: &'static str = "yrcx.status";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<StatusReport, Failure> {
+        let link = context.link;
+        let servo = link.draft(table::Command::ServoStatus)?.build()?;
+        let position = link.draft(table::Command::PositionMm)?.build()?;
+        link.rehearse(&[servo.clone(), position]).await;
+        let image = link.look().await?;
+        let servos = servos(&link.run(&servo).await?.values);
+        let position_mm = position_mm(link).await?;
+        let position = Position { position_mm, ..Position::default() };
+        Ok(StatusReport { servos, position, ..StatusReport::of(&image) })
+    }
+}
+
+/// How the controller stands (chapter 1, section 2).
+#[derive(Debug, Serialize, JsonSchema, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "the controller shows bits")]
+pub struct StatusReport {
+    /// What it shows of remote commands: `ready`, `running`, …
+    command_status: String,
+    /// SO(00): in emergency stop.
+    emergency_stop: bool,
+    /// SO(01): it works.
+    cpu_ok: bool,
+    /// SO(02): motor power is on.
+    servo_on: bool,
+    /// SO(03): a serious error.
+    alarm: bool,
+    /// SO(04): servos can be switched on.
+    mp_ready: bool,
+    /// SO(10): AUTO mode.
+    auto_mode: bool,
+    /// SO(11): the robot has returned to origin.
+    origin_complete: bool,
+    /// SO(12): the sequence program runs.
+    sequence_running: bool,
+    /// SO(13): the robot program runs.
+    program_running: bool,
+    /// SO(14): the robot program is at its start.
+    program_reset: bool,
+    /// SO(15): a warning.
+    warning: bool,
+    /// The servo of each axis.
+    servos: Vec<AxisServo>,
+    #[serde(flatten)]
+    position: Position,
+}
+
+impl StatusReport {
+    /// What the signals say.
+    fn of(image: &Image) -> Self {
+        Self {
+            command_status: CommandStatus::of(image.0[0]).to_string(),
+            emergency_stop: output::EMERGENCY_STOP.is_on(image),
+            cpu_ok: output::CPU_OK.is_on(image),
+            servo_on: output::SERVO_ON.is_on(image),
+            alarm: output::ALARM.is_on(image),
+            mp_ready: output::MP_READY.is_on(image),
+            auto_mode: output::AUTO_MODE.is_on(image),
+            origin_complete: output::ORIGIN_COMPLETE.is_on(image),
+            sequence_running: output::SEQUENCE_RUNNING.is_on(image),
+            program_running: output::PROGRAM_RUNNING.is_on(image),
+            program_reset: output::PROGRAM_RESET.is_on(image),
+            warning: output::WARNING.is_on(image),
+            servos: Vec::new(),
+            position: Position::default(),
+        }
+    }
+}
+
+impl Report for StatusReport {
+    fn view(&self) -> View {
+        let toned = |on: bool, tone: Tone| {
+            let cell = Cell::from(if on { "yes" } else { "no" });
+            if on { cell.tone(tone) } else { cell }
+        };
+        let good =
+            |on: bool| if on { Cell::from("yes").tone(Tone::Good) } else { Cell::from("no").tone(Tone::Warning) };
+        let servos = self.servos.iter().map(|servo| format!("{} {}", servo.axis, servo.state)).collect::<Vec<_>>();
+        let view = View::fields([
+            ("remote command", self.command_status.as_str().into()),
+            ("emergency stop", toned(self.emergency_stop, Tone::Bad)),
+            ("alarm", toned(self.alarm, Tone::Bad)),
+            ("warning", toned(self.warning, Tone::Warning)),
+            ("CPU OK", good(self.cpu_ok)),
+            ("MP ready", good(self.mp_ready)),
+            ("motor power", Cell::switch(self.servo_on)),
+            ("servos", if servos.is_empty() { "-".into() } else { servos.join(", ").into() }),
+            ("AUTO mode", toned(self.auto_mode, Tone::Plain)),
+            (
+                "origin",
+                if self.origin_complete { "complete".into() } else { Cell::from("incomplete").tone(Tone::Warning) },
+            ),
+            ("program", if self.program_running { Cell::from("running").tone(Tone::Good) } else { "stopped".into() }),
+            ("program reset", toned(self.program_reset, Tone::Plain)),
+            ("sequence", if self.sequence_running { "running".into() } else { "stopped".into() }),
+        ]);
+        match self.position.table() {
+            Some(table) => view.and(Section::Table(table)),
+            None => view,
+        }
+    }
+}
+
+/// Where the robot is. One that does not know its origin refuses to tell.
+pub(super) async fn position_mm(link: &mut Link) -> Result<Option<[f64; 4]>, Failure> {
+    let order = link.draft(table::Command::PositionMm)?.build()?;
+    match link.try_run(&order).await?.answer {
+        Answer::Done(values) | Answer::Running(values) => Ok(Position::of(&values, Some(Unit::Mm)).position_mm),
+        Answer::Refused { .. } => Ok(None),
+    }
+}

@@ -1,0 +1,329 @@
+//! For tests: what a command line would send, and what becomes of it on a controller in virtual time.
+
+use std::collections::VecDeque;
+use std::fmt::Debug;
+use std::time::Duration;
+
+use clap::Parser as _;
+use futures_util::FutureExt as _;
+use serde_json::Value;
+
+use super::Family;
+use super::link::Link;
+use crate::cli::{Cli, Top};
+use crate::command::{Access, AnyCommand, Context, Family as _, Noun as _};
+use crate::controller::Risk;
+use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Words};
+use crate::controller::yrcx::signal::output;
+use crate::failure::Failure;
+use crate::output::{ColorChoice, Format, Screen};
+use crate::settings::target::Family as Name;
+use crate::settings::{Robot, Selection, Sources};
+use crate::transport::image::ImagePeer;
+
+/// The examples of the manual.
+const EXAMPLES: &str = include_str!("../../../tests/data/yrcx-examples.json");
+
+fn entry(id: &str) -> Value {
+    let examples: Vec<Value> = serde_json::from_str(EXAMPLES).unwrap();
+    examples.into_iter().find(|example| example["id"] == id).unwrap_or_else(|| panic!("no example {id}"))
+}
+
+/// WI0 to WI15 of an example of the manual, as dry runs show them.
+#[track_caller]
+pub(super) fn example(id: &str) -> Vec<String> {
+    texts(&entry(id)["wi"])
+}
+
+fn texts(words: &Value) -> Vec<String> {
+    words.as_array().unwrap().iter().map(|word| word.as_str().unwrap().to_owned()).collect()
+}
+
+fn numbers(texts: &Value) -> Words {
+    let mut words = [0; COMMAND_WORDS];
+    for (word, text) in words.iter_mut().zip(texts.as_array().unwrap()) {
+        *word = u16::from_str_radix(text.as_str().unwrap().trim_start_matches("0x"), 16).unwrap();
+    }
+    words
+}
+
+/// The report of a command line that is answered as in an example of the manual.
+#[track_caller]
+pub(super) fn read_example(id: &str, line: &[&str]) -> Value {
+    let example = entry(id);
+    let scripted = Scripted::new([Reply::Ends(1, numbers(&example["wo"]))]);
+    let (outcome, peer) = run_on(scripted, line);
+    assert_eq!(peer.taken, [numbers(&example["wi"])]);
+    outcome.unwrap()
+}
+
+/// What the parser of the command line objects to.
+pub(super) fn objection(words: &[&str]) -> String {
+    parsed("sim:", words).expect_err("the parser objects").to_string()
+}
+
+/// The question before the command, without "This will".
+pub(super) fn intent(words: &[&str]) -> String {
+    resolved(DRY, words).unwrap().1.intent()
+}
+
+/// What the command does at most.
+pub(super) fn risk(words: &[&str]) -> Risk {
+    resolved(DRY, words).unwrap().1.risk()
+}
+
+/// The data of a command that takes no robot.
+pub(super) fn desk(words: &[&str]) -> Value {
+    let command = resolved(DRY, words).unwrap().1;
+    command.without_robot(&quiet()).expect("no robot is wanted").unwrap().data().unwrap()
+}
+
+/// The words WI0 to WI15 of all commands that `armctl yrcx WORDS…` would send.
+pub(super) fn words(words: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
+    Ok(frames(words)?.iter().map(|frame| texts(&frame["wi"])).collect())
+}
+
+/// All that `armctl yrcx WORDS…` would send.
+pub(super) fn frames(words: &[&str]) -> Result<Vec<Value>, Failure> {
+    let (robot, command) = resolved(DRY, words)?;
+    let access = Access { granted: command.risk(), dry_run: true, trace: None };
+    let mut link = Family::connect(&robot, access, &quiet()).now_or_never().expect("a dry run opens nothing")?;
+    let context = Context { robot: &robot, link: &mut link, screen: &quiet(), several: false };
+    if let Some(Err(failure)) = command.run(context).now_or_never() {
+        return Err(failure);
+    }
+    Ok(Family::rehearsed(&mut link))
+}
+
+/// A real controller that nothing is sent to.
+const DRY: &str = "eip://127.0.0.1";
+
+/// Runs a command line on a scripted controller: its data, and what the controller took.
+pub(super) fn run_on(scripted: Scripted, line: &[&str]) -> (Result<Value, Failure>, Scripted) {
+    let mut bench = Bench::new(scripted);
+    let outcome = bench.run(line);
+    (outcome, bench.into_peer())
+}
+
+/// A scripted controller and a link to it that last for several command lines, in virtual time.
+pub(super) struct Bench {
+    pub(super) runtime: tokio::runtime::Runtime,
+    pub(super) robot: Robot,
+    pub(super) link: Link,
+    peer: Shared,
+}
+
+/// The controller is looked at from outside as well.
+type Shared = std::sync::Arc<std::sync::Mutex<Scripted>>;
+
+#[derive(Debug)]
+struct Handle(Shared);
+
+impl ImagePeer for Handle {
+    fn input(&mut self, now: Duration, image: Option<&[u8]>) {
+        self.0.lock().unwrap().input(now, image);
+    }
+
+    fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
+        self.0.lock().unwrap().output(now)
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        self.0.lock().unwrap().wake()
+    }
+}
+
+impl Bench {
+    pub(super) fn new(scripted: Scripted) -> Self {
+        Self::granted(scripted, Risk::Motion)
+    }
+
+    /// A link that may do so much and no more.
+    pub(super) fn granted(scripted: Scripted, granted: Risk) -> Self {
+        let runtime =
+            tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
+        let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
+        let peer = Shared::new(scripted.into());
+        let access = Access { granted, dry_run: false, trace: None };
+        let screen = quiet();
+        let opening = Link::to_peer(&robot, &access, &screen, Box::new(Handle(Shared::clone(&peer))));
+        let link = runtime.block_on(opening).expect("a link");
+        Self { runtime, robot, link, peer }
+    }
+
+    /// Runs `armctl yrcx WORDS…`: the data of its report. A report that is no success is a failure.
+    pub(super) fn run(&mut self, words: &[&str]) -> Result<Value, Failure> {
+        let (_, command) = resolved("sim:", words)?;
+        let Self { runtime, robot, link, .. } = self;
+        let report = runtime.block_on(command.run(Context { robot, link, screen: &quiet(), several: false }))?;
+        report.failure().map_or(Ok(()), Err)?;
+        report.data()
+    }
+
+    /// Lets a command line run for so long, and drops it then, as Ctrl-C does.
+    pub(super) fn interrupt(&mut self, words: &[&str], after: Duration) {
+        let (_, command) = resolved("sim:", words).unwrap();
+        let Self { runtime, robot, link, .. } = self;
+        runtime.block_on(async {
+            let screen = quiet();
+            let run = command.run(Context { robot, link, screen: &screen, several: false });
+            assert!(tokio::time::timeout(after, run).await.is_err(), "it still runs");
+        });
+    }
+
+    /// What Ctrl-C does to a motion.
+    pub(super) fn halt(&mut self) -> Result<String, Failure> {
+        self.runtime.block_on(Family::halt(&mut self.link))
+    }
+
+    /// Changes the controller from outside, or looks at it.
+    pub(super) fn peer<T>(&mut self, look: impl FnOnce(&mut Scripted) -> T) -> T {
+        look(&mut self.peer.lock().unwrap())
+    }
+
+    /// Ends the link, and returns the controller.
+    pub(super) fn into_peer(self) -> Scripted {
+        self.runtime.block_on(Family::close(self.link, &quiet())).expect("it closes");
+        std::sync::Arc::into_inner(self.peer).expect("the link is gone").into_inner().unwrap()
+    }
+}
+
+/// What a scripted controller does with a command.
+#[derive(Debug, Clone)]
+pub(super) enum Reply {
+    /// Shows these words after so many scans with the run status.
+    Ends(u32, Words),
+    /// Runs until the stop input goes off, and ends with these words.
+    UntilStop(Words),
+    /// Is gone for so long, so many scans after the command came.
+    Loses(u32, Duration),
+    /// Does nothing.
+    Ignores,
+}
+
+/// A controller with scans of 5 ms that does with each command what the next line of its script says, and confirms the
+/// signals that procedures wait for.
+#[derive(Debug, Default)]
+pub(super) struct Scripted {
+    script: VecDeque<Reply>,
+    /// The commands that were taken.
+    pub(super) taken: Vec<Words>,
+    /// The dedicated word of every image that came, without repetition.
+    pub(super) bits: Vec<u16>,
+    /// What the master shows; `None` once it is gone.
+    shown: Option<Image>,
+    /// What is shown to the master.
+    pub(super) image: Image,
+    current: Option<(Reply, u32)>,
+    gone_until: Option<Duration>,
+    scanned: Duration,
+}
+
+const SCAN: Duration = Duration::from_millis(5);
+
+impl Scripted {
+    pub(super) fn new(script: impl IntoIterator<Item = Reply>) -> Self {
+        let mut image = Image::default();
+        for signal in [output::CPU_OK, output::MP_READY, output::AUTO_MODE] {
+            signal.set(&mut image, true);
+        }
+        Self { script: script.into_iter().collect(), image, ..Self::default() }
+    }
+
+    fn scan(&mut self) {
+        use crate::controller::yrcx::signal::input;
+
+        let Some(master) = self.shown else { return };
+        for (given, confirmed) in [
+            (input::SERVO_ON, output::SERVO_ON),
+            (input::AUTO_START, output::PROGRAM_RUNNING),
+            (input::PROGRAM_RESET, output::PROGRAM_RESET),
+        ] {
+            if given.is_on(&master) {
+                confirmed.set(&mut self.image, true);
+            }
+        }
+        if !input::STOP.is_on(&master) {
+            output::PROGRAM_RUNNING.set(&mut self.image, false);
+        }
+        let wi0 = master.0[0];
+        match (&mut self.current, self.image.0[0], wi0) {
+            (None, 0, 1..) => {
+                self.taken.push(master.command());
+                self.current = Some((self.script.pop_front().unwrap_or(Reply::Ignores), 0));
+            }
+            (None, 1.., 0) => self.image.set_command(&[0; COMMAND_WORDS]),
+            _ => {}
+        }
+        let Some((reply, scans)) = &mut self.current else { return };
+        *scans += 1;
+        let mut running = [0; COMMAND_WORDS];
+        running[0] = 0x0100;
+        match reply {
+            Reply::Ends(after, words) if *scans > *after => {
+                let words = *words;
+                self.image.set_command(&words);
+                self.current = None;
+            }
+            Reply::UntilStop(words) if !input::STOP.is_on(&master) => {
+                let words = *words;
+                self.image.set_command(&words);
+                self.current = None;
+            }
+            Reply::Loses(after, time) if *scans > *after => {
+                self.gone_until = Some(self.scanned + *time);
+                self.shown = None;
+                self.image.set_command(&[0; COMMAND_WORDS]);
+                self.current = None;
+            }
+            Reply::Ignores => self.current = None,
+            Reply::Ends(..) | Reply::UntilStop(_) | Reply::Loses(..) => self.image.set_command(&running),
+        }
+    }
+
+    fn advance(&mut self, now: Duration) {
+        while self.scanned + SCAN <= now {
+            self.scanned += SCAN;
+            if self.gone_until.is_none_or(|until| until <= self.scanned) {
+                self.gone_until = None;
+                self.scan();
+            }
+        }
+    }
+}
+
+impl ImagePeer for Scripted {
+    fn input(&mut self, now: Duration, image: Option<&[u8]>) {
+        self.advance(now);
+        self.shown = image.and_then(Image::from_bytes);
+        let bits = self.shown.map(|image| image.0[COMMAND_WORDS]);
+        self.bits.extend(bits.filter(|bits| self.bits.last() != Some(bits)));
+    }
+
+    fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
+        self.advance(now);
+        self.gone_until.is_none().then(|| self.image.to_bytes().to_vec())
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        Some(self.scanned + SCAN)
+    }
+}
+
+fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
+    Cli::try_parse_from([&["armctl", "-t", target, "yrcx"], words].concat())
+}
+
+/// Robot and command of a line.
+fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Family>>), Failure> {
+    let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
+    let selection = Selection { target: cli.globals.target, ..Selection::default() };
+    let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Yrcx))?.remove(0);
+    let Top::Yrcx(line) = cli.command else { unreachable!("the words follow yrcx") };
+    Ok((robot, line.command()))
+}
+
+/// Where tests write: nowhere.
+fn quiet() -> Screen {
+    Screen::new(Format::Json, ColorChoice::Never, true, 0)
+}

@@ -1,0 +1,159 @@
+//! Images in the record of the traffic: as text when they change, as packets whenever they pass.
+
+use std::net::SocketAddr;
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, mpsc};
+use std::thread::JoinHandle;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use crate::command::{Access, trace};
+use crate::controller::yrcx::describe::{answer_summary, command_summary};
+use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Words};
+use crate::controller::yrcx::signal::{Side, Signal};
+use crate::controller::yrcx::table::STATUS_RESET;
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::transport::eip::tap::{Passed, Tap};
+use crate::transport::tap::Direction;
+
+/// What the images of one link say, as text. Where there is no network, the images themselves are recorded as well.
+#[derive(Debug)]
+pub struct Trace {
+    text: trace::Trace,
+    sent: Option<Image>,
+    received: Option<Image>,
+}
+
+impl Trace {
+    /// As flags want it.
+    pub fn open(access: &Access, screen: &Screen, is_network: bool) -> Result<Self, Failure> {
+        let to_file = access.trace.as_deref().is_some_and(|path| path != Path::new("-"));
+        let text = if is_network && to_file {
+            // The packets are the record: see `Recorder`.
+            trace::Trace::of_lines(&Access { trace: None, ..access.clone() }, screen)?
+        } else {
+            trace::Trace::of_lines(access, screen)?
+        };
+        Ok(Self { text, sent: None, received: None })
+    }
+
+    /// An image was shown to the controller.
+    pub fn sent(&mut self, image: &Image) {
+        self.text.capture(|capture, time| capture.line(time, Direction::Sent, &image.to_bytes()));
+        let before = self.sent.replace(*image);
+        if self.text.level() > 0 {
+            let words = image.command();
+            if words != before.map_or_else(Words::default, |before| before.command()) {
+                let is_early = words[0] == STATUS_RESET && words != Words::default();
+                let summary = if is_early { "data of the next command".to_owned() } else { command_summary(&words) };
+                self.words("->", "WI", &words, &summary);
+            }
+            self.bits("->", Side::Input, before.as_ref(), image);
+        }
+    }
+
+    /// The controller showed an image.
+    pub fn received(&mut self, image: &Image) {
+        self.text.capture(|capture, time| capture.line(time, Direction::Received, &image.to_bytes()));
+        let before = self.received.replace(*image);
+        if self.text.level() > 0 {
+            if before.is_none_or(|before| before.command() != image.command()) {
+                self.words("<-", "WO", &image.command(), &answer_summary(&image.command()));
+            }
+            self.bits("<-", Side::Output, before.as_ref(), image);
+        }
+    }
+
+    /// Tells whether the record is whole.
+    pub fn finish(&mut self) -> Result<(), Failure> {
+        self.text.finish()
+    }
+
+    fn words(&self, arrow: &str, name: &str, words: &Words, summary: &str) {
+        let used = words.iter().rposition(|word| *word != 0).map_or(1, |last| last + 1);
+        let all = if self.text.level() > 1 { COMMAND_WORDS } else { used };
+        let words: Vec<String> = words[..all].iter().map(|word| format!("{word:04X}")).collect();
+        self.text.line(&format!("{arrow} {name} {}  # {summary}", words.join(" ")));
+    }
+
+    fn bits(&self, arrow: &str, side: Side, before: Option<&Image>, image: &Image) {
+        for signal in Signal::all(side) {
+            let on = signal.is_on(image);
+            if before.map_or(on, |before| signal.is_on(before) != on) {
+                let name = signal.dedicated().map(|dedicated| format!("  # {}", dedicated.text)).unwrap_or_default();
+                self.text.line(&format!("{arrow} {signal} {}{name}", if on { "on" } else { "off" }));
+            }
+        }
+    }
+}
+
+/// Packets most that wait to be written: some minutes of one connection.
+const MOST_WAITING: usize = 65_536;
+
+/// Writes packets to the file of `--trace`, on a thread of its own: those that move images must not wait for a disk.
+#[derive(Debug)]
+pub struct Recorder {
+    writer: JoinHandle<Result<(), Failure>>,
+    /// Packets that there was no room for.
+    lost: Arc<AtomicU64>,
+}
+
+/// A packet on its way to the file.
+struct Packet {
+    time: Duration,
+    is_tcp: bool,
+    from: SocketAddr,
+    to: SocketAddr,
+    bytes: Vec<u8>,
+}
+
+impl Recorder {
+    /// Begins to record what passes the tap, if that is wanted.
+    pub fn start(access: &Access, screen: &Screen) -> Result<Option<(Self, Tap)>, Failure> {
+        if access.trace.as_deref().is_none_or(|path| path == Path::new("-")) {
+            return Ok(None);
+        }
+        let mut record = trace::Trace::of_network(access, screen)?;
+        let (sender, packets) = mpsc::sync_channel::<Packet>(MOST_WAITING);
+        let writer = std::thread::Builder::new().name("trace".to_owned()).spawn(move || {
+            for Packet { time, is_tcp, from, to, bytes } in packets {
+                record.capture(|capture, _| {
+                    if is_tcp {
+                        capture.segment(time, from, to, &bytes)
+                    } else {
+                        capture.datagram(time, from, to, &bytes)
+                    }
+                });
+            }
+            record.finish()
+        });
+        let writer = writer.map_err(|error| Failure::io("trace", &error))?;
+        let lost = Arc::new(AtomicU64::new(0));
+        let counted = Arc::clone(&lost);
+        let tap = Tap::new(move |passed: &Passed<'_>| {
+            let packet = Packet {
+                time: SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default(),
+                is_tcp: passed.is_tcp,
+                from: passed.from.into(),
+                to: passed.to.into(),
+                bytes: passed.bytes.to_vec(),
+            };
+            // A disk that is minutes behind loses packets, not the robot.
+            if sender.try_send(packet).is_err() {
+                counted.fetch_add(1, Ordering::Relaxed);
+            }
+        });
+        Ok(Some((Self { writer, lost }, tap)))
+    }
+
+    /// Waits until all is written, once nothing passes the tap any more, and tells whether the record is whole.
+    pub fn finish(self) -> Result<(), Failure> {
+        let not_whole = |why: String| Failure::local(format!("the record of --trace is not whole: {why}"));
+        self.writer.join().unwrap_or_else(|_| Err(not_whole("its writer broke down".to_owned())))?;
+        match self.lost.load(Ordering::Relaxed) {
+            0 => Ok(()),
+            lost => Err(not_whole(format!("the disk was too slow for {lost} packets"))),
+        }
+    }
+}

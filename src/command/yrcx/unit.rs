@@ -1,0 +1,72 @@
+//! `--unit`: which robot of the controller a command is for.
+
+use std::pin::Pin;
+
+use clap::Args;
+
+use super::{Family, Yrcx};
+use crate::command::{AnyCommand, Context, Noun, Outcome, SchemaEntry};
+use crate::controller::Risk;
+use crate::gate::Demand;
+use crate::output::Screen;
+
+/// What follows the word `yrcx`.
+#[derive(Debug, Args)]
+pub struct Line {
+    /// Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all
+    #[arg(long, global = true, value_name = "N", default_value_t = 0, hide_default_value = true, help_heading = "Which robot",
+        value_parser = clap::value_parser!(u8).range(0..=4))]
+    unit: u8,
+    #[command(subcommand)]
+    verb: Yrcx,
+}
+
+impl Noun<Family> for Line {
+    fn command(self) -> Box<dyn AnyCommand<Family>> {
+        Box::new(OfUnit { unit: self.unit, command: self.verb.command() })
+    }
+
+    fn schemas() -> Vec<SchemaEntry> {
+        Yrcx::schemas()
+    }
+}
+
+/// A command for one robot of the controller.
+struct OfUnit {
+    unit: u8,
+    command: Box<dyn AnyCommand<Family>>,
+}
+
+impl AnyCommand<Family> for OfUnit {
+    fn id(&self) -> &'static str {
+        self.command.id()
+    }
+
+    fn risk(&self) -> Risk {
+        self.command.risk()
+    }
+
+    fn intent(&self) -> String {
+        match self.unit {
+            0 => self.command.intent(),
+            unit => format!("{}, robot {unit}", self.command.intent()),
+        }
+    }
+
+    fn demand(&self) -> Demand {
+        self.command.demand()
+    }
+
+    fn is_endless(&self) -> bool {
+        self.command.is_endless()
+    }
+
+    fn without_robot(&self, screen: &Screen) -> Option<Outcome> {
+        self.command.without_robot(screen)
+    }
+
+    fn run<'a>(&'a self, context: Context<'a, Family>) -> Pin<Box<dyn Future<Output = Outcome> + 'a>> {
+        context.link.set_unit(self.unit);
+        self.command.run(context)
+    }
+}
