@@ -14,6 +14,7 @@ use tokio::time::Instant;
 use super::eip::originator::{State, Statistics};
 use super::eip::scanner::{Connection, Scanner};
 use super::eip::settings::Settings;
+use super::eip::tap::Tap;
 use super::eip::trouble::Trouble;
 
 /// What happens on a link.
@@ -92,15 +93,16 @@ struct InProcess {
 pub const CYCLE: Duration = Duration::from_millis(5);
 
 impl ImageLink {
-    /// Opens a connection to the first IPv4 address of the host, and holds it.
-    pub async fn open(scanner: &Scanner, host: &str, port: u16, settings: Settings) -> Result<Self, OpenError> {
+    /// Opens a connection to the first IPv4 address of the host, and holds it. All of a process share a UDP socket.
+    pub async fn open(host: &str, port: u16, settings: Settings, tap: Tap) -> Result<Self, OpenError> {
         let addresses = tokio::net::lookup_host((host, port)).await.map_err(|_| OpenError::NotFound)?;
         let target = addresses.filter_map(|address| match address {
             std::net::SocketAddr::V4(address) => Some(address),
             std::net::SocketAddr::V6(_) => None,
         });
         let target: SocketAddrV4 = target.into_iter().next().ok_or(OpenError::NotIpv4)?;
-        let connection = scanner.open(target, settings).await.map_err(OpenError::Trouble)?;
+        let scanner = Scanner::shared().map_err(OpenError::Trouble)?;
+        let connection = scanner.open(target, settings, tap).await.map_err(OpenError::Trouble)?;
         let generation = connection.view().generation;
         Ok(Self::over(Way::Eip(Eip { connection, generation, pending: None })))
     }
@@ -118,7 +120,7 @@ impl ImageLink {
     /// it never does.
     ///
     /// # Errors
-    /// If the image does not have the size of the connection.
+    /// When the image does not have the size of the connection.
     pub fn show(&mut self, image: &[u8]) -> Result<(), Trouble> {
         match &mut self.way {
             Way::Eip(eip) => eip.show(image),

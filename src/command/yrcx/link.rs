@@ -7,15 +7,14 @@
 mod driver;
 
 use std::convert::Infallible;
-use std::rc::Rc;
 use std::time::Duration;
 
 use serde_json::{Value, json};
 use tokio::time::Instant;
 
-use super::reach::{self, Network};
+use super::reach;
 use super::refusal;
-use super::trace::Trace;
+use super::trace::{Recorder, Trace};
 use crate::command::{Access, Family};
 use crate::controller::Risk;
 use crate::controller::yrcx::alarm::STOP_INPUT;
@@ -43,10 +42,9 @@ pub struct Yrcx;
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct Link {
     transport: Transport,
-    /// What links over the network share.
-    network: Option<Rc<Network>>,
     /// Bytes of what is shown.
     size: usize,
+    is_simulated: bool,
     /// Whether this connection may show something; else it only sees.
     is_owner: bool,
     /// What the controller is shown.
@@ -82,6 +80,8 @@ pub struct Link {
     pub told: Option<Image>,
     started: Instant,
     trace: Trace,
+    /// Of packets, where there is a network and `--trace` wants them.
+    recorder: Option<Recorder>,
     totals: Totals,
 }
 
@@ -146,8 +146,8 @@ impl Family for Yrcx {
         if access.dry_run {
             return Link::new(robot, &access, screen, Transport::Notes(Vec::new()), None);
         }
-        let (image, network) = way.open(robot, &access, screen).await?;
-        let mut link = Link::new(robot, &access, screen, Transport::Image(Box::new(image)), network)?;
+        let (image, recorder) = way.open(robot, &access, screen).await?;
+        let mut link = Link::new(robot, &access, screen, Transport::Image(Box::new(image)), recorder)?;
         link.size = way.output_size();
         match link.begin().await {
             Ok(()) => Ok(link),
@@ -210,24 +210,17 @@ impl Family for Yrcx {
         if let Err(trouble) = closed {
             screen.detail(1, &format!("{}: the connection was not closed properly: {trouble}", link.label));
         }
-        let recorded = link.trace.finish();
-        // The last link over the network ends what they share, and tells once what that means.
-        let ended = match link.network.map(Rc::try_unwrap) {
-            None | Some(Err(_)) => Ok(()),
-            Some(Ok(network)) => {
-                if link.is_owner {
-                    screen.note(CLOSED);
-                }
-                network.finish()
-            }
-        };
-        left.and(recorded).and(ended)
+        if link.is_owner && !link.is_simulated {
+            screen.note(&format!("{}: {CLOSED}", link.label));
+        }
+        let recorded = link.trace.finish().and(link.recorder.map_or(Ok(()), Recorder::finish));
+        left.and(recorded)
     }
 }
 
 /// Said when the connection to a real controller ends.
-const CLOSED: &str = "note: the connection to the controller is closed. A controller takes that for a fault of the link: it \
-                      stops, and raises alarm 12.551 or 12.552 (`armctl help safety`)";
+const CLOSED: &str = "the connection is closed, which a controller takes for a fault of the link: it stops, and raises \
+                      alarm 12.551 or 12.552 (`armctl help safety`)";
 
 impl Link {
     /// A link to a peer in this process.
@@ -249,13 +242,14 @@ impl Link {
         access: &Access,
         screen: &Screen,
         transport: Transport,
-        network: Option<Rc<Network>>,
+        recorder: Option<Recorder>,
     ) -> Result<Self, Failure> {
         let timeout = robot.timeout.value;
         let is_owner = match &robot.target.value.place {
             Place::Eip(eip) => eip.role == EipRole::Owner,
             _ => true,
         };
+        let is_simulated = robot.target.value.is_simulated();
         let policy = Policy {
             ready: timeout,
             accept: timeout,
@@ -265,9 +259,10 @@ impl Link {
             ..Policy::default()
         };
         Ok(Self {
-            trace: Trace::open(access, screen, network.is_some())?,
+            trace: Trace::open(access, screen, !is_simulated)?,
+            recorder,
             transport,
-            network,
+            is_simulated,
             size: Image::BYTES,
             is_owner,
             output: Output::new(resting()),
@@ -288,7 +283,7 @@ impl Link {
             label: robot.label(),
             unit: 0,
             has_started: false,
-            is_held: robot.target.value.is_simulated(),
+            is_held: is_simulated,
             told: None,
             started: Instant::now(),
             totals: Totals::default(),

@@ -1,9 +1,5 @@
 //! The ways to a controller: EtherNet/IP, the simulator.
 
-use std::cell::RefCell;
-use std::net::Ipv4Addr;
-use std::rc::{Rc, Weak};
-
 use super::simulated;
 use super::trace::Recorder;
 use crate::command::Access;
@@ -13,7 +9,6 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::{self, EipRole, Place};
-use crate::transport::eip::scanner::Scanner;
 use crate::transport::eip::settings::{Multiplier, Role, Settings};
 use crate::transport::eip::trouble::Trouble;
 use crate::transport::eip::wire::Key;
@@ -40,57 +35,23 @@ pub fn way(robot: &Robot) -> Result<Way<'_>, Failure> {
     }
 }
 
-/// The one UDP socket of the process, and the record of what passes on it, for all links at a time.
-#[derive(Debug)]
-pub struct Network {
-    scanner: Scanner,
-    recorder: Option<Recorder>,
-}
-
-thread_local! {
-    /// Everything runs on one thread. The links keep it; it ends with the last of them.
-    static NETWORK: RefCell<Weak<Network>> = RefCell::default();
-}
-
-impl Network {
-    /// The one there is, or a new one.
-    fn shared(access: &Access, screen: &Screen) -> Result<Rc<Self>, Failure> {
-        if let Some(network) = NETWORK.with_borrow(Weak::upgrade) {
-            return Ok(network);
-        }
-        let (recorder, tap) = Recorder::start(access, screen)?.unzip();
-        let scanner = Scanner::start(Ipv4Addr::UNSPECIFIED, tap.unwrap_or_default()).map_err(|trouble| {
-            Failure::local(trouble.to_string()).hint("close other programs that use UDP port 2222")
-        })?;
-        let network = Rc::new(Self { scanner, recorder });
-        NETWORK.set(Rc::downgrade(&network));
-        Ok(network)
-    }
-
-    /// Ends it after the last link, and tells whether the record is whole.
-    pub fn finish(self) -> Result<(), Failure> {
-        drop(self.scanner);
-        self.recorder.map_or(Ok(()), Recorder::finish)
-    }
-}
-
 impl Way<'_> {
-    /// Opens it. What comes with a link over the network must live as long as the link.
+    /// Opens it, with a record of its packets where that is wanted.
     pub async fn open(
         &self,
         robot: &Robot,
         access: &Access,
         screen: &Screen,
-    ) -> Result<(ImageLink, Option<Rc<Network>>), Failure> {
+    ) -> Result<(ImageLink, Option<Recorder>), Failure> {
         match self {
             Self::Eip(eip) => {
                 let settings = settings(robot, eip)?;
-                let network = Network::shared(access, screen)?;
-                let opened = ImageLink::open(&network.scanner, &eip.host, eip.port, settings).await;
+                let (recorder, tap) = Recorder::start(access, screen)?.unzip();
+                let opened = ImageLink::open(&eip.host, eip.port, settings, tap.unwrap_or_default()).await;
                 let link = opened.map_err(|error| not_open(&robot.label(), eip, &error))?;
-                Ok((link, Some(network)))
+                Ok((link, recorder))
             }
-            Self::Sim(sim) => Ok((ImageLink::in_process(simulated::start(sim)?), None)),
+            Self::Sim(sim) => Ok((ImageLink::in_process(simulated::in_process(sim)?), None)),
         }
     }
 
@@ -159,7 +120,7 @@ fn not_open(label: &str, eip: &target::Eip, error: &OpenError) -> Failure {
         Trouble::Malformed { .. } | Trouble::Senseless { .. } => {
             (Kind::Malformed, "check that an EtherNet/IP adapter has this address")
         }
-        Trouble::Settings(_) => (Kind::Usage, "`armctl help targets` tells what an eip: URL can say"),
+        Trouble::Impossible(_) => (Kind::Usage, "`armctl help targets` tells what an eip: URL can say"),
         Trouble::Local { .. } | Trouble::Outdated | Trouble::Ended => {
             (Kind::Local, "check the network settings of this machine, and its firewall")
         }

@@ -1,10 +1,49 @@
-//! The simulated controller at the end of a link: in this process.
+//! The simulated controller at the end of a link: in this process, or served to others.
 
+use std::path::Path;
+use std::time::Duration;
+
+use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
 use crate::settings::target::Sim;
 use crate::transport::image::ImagePeer;
 
-/// A simulator in the start state that the URL names.
-pub fn start(_sim: &Sim) -> Result<Box<dyn ImagePeer>, Failure> {
-    Err(Failure::usage("this version has no yrcx simulator"))
+/// A simulator in this process, in the start state that the URL names.
+pub fn in_process(sim: &Sim) -> Result<Box<dyn ImagePeer>, Failure> {
+    if sim.fault.is_some() {
+        return Err(Failure::usage("'fault' in a sim: URL is not for yrcx: a link within a process has no faults"));
+    }
+    Ok(Box::new(Simulated(Simulator::new(start(sim.state.as_deref())?))))
+}
+
+/// The start state: a file's, or the built-in one.
+pub fn start(file: Option<&Path>) -> Result<Start, Failure> {
+    let Some(path) = file else { return Ok(Start::default()) };
+    let text = std::fs::read_to_string(path).map_err(|error| Failure::io(path.display(), &error))?;
+    Start::parse(&text).map_err(|error| {
+        Failure::usage(format!("{}: {error}", path.display()))
+            .hint("`armctl help simulator` shows the form of the file")
+    })
+}
+
+/// A simulated controller.
+#[derive(Debug)]
+pub struct Simulated(pub Simulator);
+
+impl ImagePeer for Simulated {
+    fn input(&mut self, now: Duration, image: Option<&[u8]>) {
+        // A link carries whole images; anything else would be nobody's.
+        let image = image.and_then(|bytes| Image::from_bytes(bytes.get(..Image::BYTES)?));
+        self.0.input(now, image.as_ref());
+    }
+
+    fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
+        self.0.advance(now);
+        Some(self.0.output().to_bytes().to_vec())
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        self.0.wake()
+    }
 }

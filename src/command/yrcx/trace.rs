@@ -2,8 +2,9 @@
 
 use std::net::SocketAddr;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, mpsc};
+use std::sync::mpsc::{self, SyncSender};
 use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -95,11 +96,14 @@ const MOST_WAITING: usize = 65_536;
 #[derive(Debug)]
 pub struct Recorder {
     writer: JoinHandle<Result<(), Failure>>,
+    /// `None` says that there is no more.
+    packets: SyncSender<Option<Packet>>,
     /// Packets that there was no room for.
     lost: Arc<AtomicU64>,
 }
 
 /// A packet on its way to the file.
+#[derive(Debug)]
 struct Packet {
     time: Duration,
     is_tcp: bool,
@@ -115,9 +119,9 @@ impl Recorder {
             return Ok(None);
         }
         let mut record = trace::Trace::of_network(access, screen)?;
-        let (sender, packets) = mpsc::sync_channel::<Packet>(MOST_WAITING);
+        let (packets, coming) = mpsc::sync_channel::<Option<Packet>>(MOST_WAITING);
         let writer = std::thread::Builder::new().name("trace".to_owned()).spawn(move || {
-            for Packet { time, is_tcp, from, to, bytes } in packets {
+            while let Ok(Some(Packet { time, is_tcp, from, to, bytes })) = coming.recv() {
                 record.capture(|capture, _| {
                     if is_tcp {
                         capture.segment(time, from, to, &bytes)
@@ -130,7 +134,7 @@ impl Recorder {
         });
         let writer = writer.map_err(|error| Failure::io("trace", &error))?;
         let lost = Arc::new(AtomicU64::new(0));
-        let counted = Arc::clone(&lost);
+        let (counted, sender) = (Arc::clone(&lost), packets.clone());
         let tap = Tap::new(move |passed: &Passed<'_>| {
             let packet = Packet {
                 time: SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default(),
@@ -140,15 +144,17 @@ impl Recorder {
                 bytes: passed.bytes.to_vec(),
             };
             // A disk that is minutes behind loses packets, not the robot.
-            if sender.try_send(packet).is_err() {
+            if sender.try_send(Some(packet)).is_err() {
                 counted.fetch_add(1, Ordering::Relaxed);
             }
         });
-        Ok(Some((Self { writer, lost }, tap)))
+        Ok(Some((Self { writer, packets, lost }, tap)))
     }
 
-    /// Waits until all is written, once nothing passes the tap any more, and tells whether the record is whole.
+    /// Waits until all is written, and tells whether the record is whole.
     pub fn finish(self) -> Result<(), Failure> {
+        // A writer that is gone says so when it is joined.
+        let _ = self.packets.send(None);
         let not_whole = |why: String| Failure::local(format!("the record of --trace is not whole: {why}"));
         self.writer.join().unwrap_or_else(|_| Err(not_whole("its writer broke down".to_owned())))?;
         match self.lost.load(Ordering::Relaxed) {
