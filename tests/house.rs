@@ -86,7 +86,7 @@ const BORDERS: [(&str, &[&str]); 6] = [
 
 /// Commands that touch a transport: the link of a family with its trace, the simulators' servers, the list of ports, and
 /// the peer of tests.
-const LINKS: [&str; 18] = [
+const LINKS: [&str; 19] = [
     "command/trace.rs",
     "command/yerc/link.rs",
     "command/yerc/simulated.rs",
@@ -105,6 +105,7 @@ const LINKS: [&str; 18] = [
     "command/yrcx/trace.rs",
     "command/common/sim/toyo.rs",
     "command/common/sim/yerc.rs",
+    "command/common/sim/yrcx.rs",
 ];
 
 /// Words that write to the terminal or end the process, and the only folder that may have them.

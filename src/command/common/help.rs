@@ -4,7 +4,7 @@ use clap::{Args, CommandFactory as _};
 
 use crate::cli::Cli;
 use crate::command::run::Run;
-use crate::controller::{toyo, yerc};
+use crate::controller::{toyo, yerc, yrcx};
 use crate::failure::{Failure, Kind};
 use crate::settings::inventory::nearest;
 
@@ -79,7 +79,8 @@ pub fn text(words: &[String], color: bool) -> Result<String, Failure> {
 }
 
 fn start_states() -> String {
-    format!("{}\nAnd this one those of toyo:\n\n{}", yerc::simulator::EXAMPLE, toyo::simulator::EXAMPLE)
+    let [yerc, yrcx, toyo] = [yerc::simulator::EXAMPLE, yrcx::simulator::EXAMPLE, toyo::simulator::EXAMPLE];
+    format!("{yerc}\nThis one those of yrcx:\n\n{yrcx}\nAnd this one those of toyo:\n\n{toyo}")
 }
 
 fn exit_codes() -> String {

@@ -57,6 +57,7 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<super::robots::Shown>("robots.show"),
         SchemaEntry::of::<super::sim::toyo::Serving>("sim.toyo"),
         SchemaEntry::of::<super::sim::yerc::Serving>("sim.yerc"),
+        SchemaEntry::of::<super::sim::yrcx::Serving>("sim.yrcx"),
     ]);
     all
 }

@@ -2,6 +2,7 @@
 
 pub mod toyo;
 pub mod yerc;
+pub mod yrcx;
 
 use std::io;
 use std::net::{IpAddr, SocketAddr};
@@ -11,6 +12,7 @@ use tokio::io::{AsyncBufReadExt as _, BufReader, Lines, Stdin};
 
 use self::toyo::SimToyo;
 use self::yerc::SimYerc;
+use self::yrcx::SimYrcx;
 use crate::command::interrupt::interruptible;
 use crate::command::run::{Run, Stopped};
 use crate::failure::{Failure, Kind, plain};
@@ -27,6 +29,8 @@ pub struct Sim {
 enum SimFamily {
     /// An FS100 or DX200 on two UDP ports
     Yerc(SimYerc),
+    /// A YRCX as an adapter of EtherNet/IP
+    Yrcx(SimYrcx),
     /// A Toyo controller on a TCP port, like a serial device server, or on a pseudo-terminal
     Toyo(SimToyo),
 }
@@ -35,6 +39,7 @@ impl Sim {
     pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
         match self.family {
             Some(SimFamily::Yerc(yerc)) => yerc.run(run).await,
+            Some(SimFamily::Yrcx(yrcx)) => yrcx.run(run).await,
             Some(SimFamily::Toyo(toyo)) => toyo.run(run).await,
             None => SimYerc::default().run(run).await,
         }
