@@ -41,7 +41,11 @@ pub enum Top {
     #[command(subcommand_required = true, arg_required_else_help = true)]
     Yerc(Verbs<yerc::Yerc>),
     /// OMRON / Yamaha YRCX over EtherNet/IP
-    #[command(subcommand_required = true, arg_required_else_help = true)]
+    #[command(
+        subcommand_required = true,
+        arg_required_else_help = true,
+        after_help = "Settings and first contact: `armctl help yrcx-setup`."
+    )]
     Yrcx(yrcx::Line),
     /// Toyo over RS-232C host communication
     #[command(

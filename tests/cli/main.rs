@@ -52,6 +52,7 @@ transcripts! {
     toyo_system
     usage
     variables
+    yrcx
 }
 
 #[test]

@@ -8,8 +8,8 @@
 //! | `## TEXT` | a comment |
 //!
 //! JSON stands indented; that it came as a single line, in the envelope and as the schema says, is checked here. What
-//! differs from run to run stands as `[…]`. `udp://127.0.0.1:10040` is a yerc simulator of the transcript's own, and
-//! `tcp://127.0.0.1:4001` a toyo one, elsewhere in truth; its start state is `NAME.toml` beside `NAME.console`, if there
+//! differs from run to run stands as `[…]`. `udp://127.0.0.1:10040` is a yerc simulator of the transcript's own,
+//! `eip://127.0.0.1:44818` a yrcx one and `tcp://127.0.0.1:4001` a toyo one, elsewhere in truth; its start state is `NAME.toml` beside `NAME.console`, if there
 //! is one. What is in `files/` lies in the folder.
 
 use std::io::{BufRead as _, BufReader};
@@ -21,7 +21,8 @@ use tempfile::TempDir;
 use crate::json;
 
 /// Families, and where transcripts find the simulator of each.
-const DOCUMENTED: [(&str, &str); 2] = [("yerc", "udp://127.0.0.1:10040"), ("toyo", "tcp://127.0.0.1:4001")];
+const DOCUMENTED: [(&str, &str); 3] =
+    [("yerc", "udp://127.0.0.1:10040"), ("yrcx", "eip://127.0.0.1:44818"), ("toyo", "tcp://127.0.0.1:4001")];
 
 /// Runs the transcript of this name and compares; `SNAPSHOTS=overwrite` writes what was printed instead.
 pub fn check(name: &str) {

@@ -12,12 +12,12 @@ use crate::settings::inventory::nearest;
 #[derive(Debug, Args)]
 pub struct Help {
     /// A topic (exit-codes, targets, inventory, output, safety, scripting, simulator, toyo-setup,
-    /// yerc-setup), or a command
+    /// yerc-setup, yrcx-setup), or a command
     words: Vec<String>,
 }
 
 /// Topics with a line about each and their text.
-const TOPICS: [(&str, &str, &str); 8] = [
+const TOPICS: [(&str, &str, &str); 9] = [
     ("targets", "how to say which robot", include_str!("topics/targets.txt")),
     ("inventory", "robots.toml", include_str!("topics/inventory.txt")),
     ("output", "tables, JSON, jq, colour", include_str!("topics/output.txt")),
@@ -26,6 +26,7 @@ const TOPICS: [(&str, &str, &str); 8] = [
     (SIMULATOR, "servers, start state, console, faults", include_str!("topics/simulator.txt")),
     ("toyo-setup", "cable and settings of a Toyo controller", include_str!("topics/toyo-setup.txt")),
     ("yerc-setup", "settings of an FS100 or DX200", include_str!("topics/yerc-setup.txt")),
+    ("yrcx-setup", "settings of a YRCX", include_str!("topics/yrcx-setup.txt")),
 ];
 
 /// The topic that ends with the examples that the simulators' own tests read.

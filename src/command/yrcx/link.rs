@@ -12,6 +12,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 use tokio::time::Instant;
 
+use super::io::named;
 use super::reach;
 use super::refusal;
 use super::trace::{Recorder, Trace};
@@ -500,7 +501,7 @@ impl Link {
             };
             if signal.is_on(image) != on {
                 signal.set(image, on);
-                let about = format!("{signal} ({}) {}", signal.name(), if on { "on" } else { "off" });
+                let about = format!("{} {}", named(signal), if on { "on" } else { "off" });
                 notes.push(json!({ "bits": hex(&image.0[COMMAND_WORDS..]), "about": about }));
             }
         }

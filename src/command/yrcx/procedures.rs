@@ -85,7 +85,7 @@ mod tests {
         let shown: Vec<(&str, &str)> =
             noted.iter().map(|note| (note["bits"][0].as_str().unwrap(), note["about"].as_str().unwrap())).collect();
         // SI(00) and SI(06) are on from the beginning.
-        assert_eq!(shown, [("0x0043", "SI(01) (servo-on) on"), ("0x0041", "SI(01) (servo-on) off")]);
+        assert_eq!(shown, [("0x0043", "servo-on (SI(01)) on"), ("0x0041", "servo-on (SI(01)) off")]);
         assert_eq!(frames(&["stop"]).unwrap()[0]["bits"][0], "0x0001");
         assert_eq!(frames(&["auto-mode"]).unwrap(), Vec::<serde_json::Value>::new());
     }

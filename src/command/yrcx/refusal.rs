@@ -1,5 +1,6 @@
 //! Why an order was not carried out, in words: refused here, refused by the controller, or nobody knows.
 
+use super::io::named;
 use crate::controller::Risk;
 use crate::controller::yrcx::alarm::Alarm;
 use crate::controller::yrcx::codec::WordError;
@@ -89,19 +90,18 @@ pub fn unfinished(label: &str, name: &str, outcome: sequence::Outcome) -> Failur
     use sequence::Outcome;
 
     let state = |on: bool| if on { "on" } else { "off" };
-    let told = |signal: crate::controller::yrcx::signal::Signal| format!("{signal} ({})", signal.name());
     match outcome {
         Outcome::NotPossible { signal, on, hint, begun } => {
             let after = if begun { ", after inputs were switched" } else { "; nothing was switched" };
-            let message = format!("{name}: {} is not {}{after}", told(signal), state(on));
+            let message = format!("{name}: {} is not {}{after}", named(signal), state(on));
             Failure::new(Kind::Refused, message).hint(hint)
         }
         Outcome::TimedOut { signal, on } => {
-            Failure::new(Kind::OutcomeUnknown, format!("{name}: {} did not go {} in time", told(signal), state(on)))
+            Failure::new(Kind::OutcomeUnknown, format!("{name}: {} did not go {} in time", named(signal), state(on)))
                 .hint("`yrcx status` tells how the controller stands; --timeout sets how long to wait")
         }
         Outcome::Broken { signal } => {
-            Failure::new(Kind::Refused, format!("{name}: {} came on meanwhile", told(signal)))
+            Failure::new(Kind::Refused, format!("{name}: {} came on meanwhile", named(signal)))
                 .hint("`yrcx info alarm` tells which alarm it is")
         }
         Outcome::NoImage => Failure::new(Kind::NoAnswer, format!("{label}: {name}: the controller shows nothing"))

@@ -113,7 +113,8 @@ impl Report for Explained {
 
     fn failure(&self) -> Option<Failure> {
         let problem = self.parts.iter().flat_map(|part| &part.problems).next()?;
-        Some(Failure::new(Kind::Malformed, format!("the words are not as the manual has them: {problem}")))
+        let failure = Failure::new(Kind::Malformed, format!("the words are not as the manual has them: {problem}"));
+        Some(failure.hint("they are explained as far as they go; the section of the manual is named"))
     }
 }
 

@@ -35,9 +35,9 @@ pub(super) struct SimYrcx {
     /// Address to listen on, with the TCP port of sessions; port 0 lets the system choose
     #[arg(long, value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:44818", value_parser = listen)]
     bind: SocketAddrV4,
-    /// UDP port of images; 0 lets the system choose
-    #[arg(long, value_name = "PORT", default_value_t = IO_PORT)]
-    io_port: u16,
+    /// UDP port of images, 2222 unless given; any where the system chooses that of sessions
+    #[arg(long, value_name = "PORT")]
+    io_port: Option<u16>,
     /// Start state (TOML): robots, memory, programs, alarms, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
@@ -82,12 +82,12 @@ impl SimYrcx {
         let start = simulated::start(self.state.as_deref())?;
         let size = u16::try_from(Image::BYTES).map_err(|_| Failure::local("an image is too long for a packet"))?;
         let setup = Setup::new(identity(), (INPUT, size), (OUTPUT, size), CONFIGURATION);
-        let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port: self.io_port };
+        let io_port = self.io_port.unwrap_or(if self.bind.port() == 0 { 0 } else { IO_PORT });
+        let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port };
         let controller = Controller(Simulated(Simulator::new(start)));
         let server = Server::start(setup, controller, listen, self.fault.map(Faults::pair)).map_err(|error| {
-            let on = format!("TCP and UDP {}, and UDP {}", self.bind, self.io_port);
-            cannot_listen(&on, &error)
-                .hint("another simulator may run; choose ports with --bind 127.0.0.1:0 --io-port 0")
+            let on = format!("TCP and UDP {}, and UDP {}", self.bind, io_port);
+            cannot_listen(&on, &error).hint("another simulator may run; choose ports with --bind 127.0.0.1:0")
         })?;
         server.with(|adapter, _| adapter.misbehave(self.mischief));
         let address = server.address();

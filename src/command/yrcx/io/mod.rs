@@ -37,6 +37,11 @@ fn readable(text: &str) -> Result<Signal, String> {
     Signal::parse(side, text).map_err(|error| error.to_string())
 }
 
+/// `servo-on (SI(01))`; a general-purpose signal has but its number.
+pub(super) fn named(signal: Signal) -> String {
+    signal.dedicated().map_or_else(|| signal.to_string(), |dedicated| format!("{} ({signal})", dedicated.name))
+}
+
 /// An input of the controller as typed.
 fn input(text: &str) -> Result<Signal, String> {
     Signal::parse(Side::Input, text).map_err(|error| error.to_string())

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{Family, input};
+use super::{Family, input, named};
 use crate::command::orders::Done;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -38,7 +38,7 @@ fn change(text: &str) -> Result<Change, String> {
 
 impl Change {
     fn told(self) -> String {
-        format!("{} ({}) {}", self.signal.name(), self.signal, if self.on { "on" } else { "off" })
+        format!("{} {}", named(self.signal), if self.on { "on" } else { "off" })
     }
 }
 
@@ -85,12 +85,12 @@ impl Command for Pulse {
     }
 
     fn intent(&self) -> String {
-        format!("switch {} ({}) on and off again", self.signal.name(), self.signal)
+        format!("switch {} on and off again", named(self.signal))
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
         context.link.carry_out(switching(Procedure::pulse(self.signal))?).await?;
-        Ok(Done::new(format!("switched {} ({}) on and off again", self.signal.name(), self.signal)))
+        Ok(Done::new(format!("switched {} on and off again", named(self.signal))))
     }
 }
 
@@ -124,7 +124,7 @@ mod tests {
         assert_eq!(risk(&["io", "set", "auto-start=off"]), Risk::Write);
         assert_eq!(risk(&["io", "pulse", "origin"]), Risk::Motion);
         assert_eq!(intent(&["io", "pulse", "origin"]), "switch origin (SI(14)) on and off again");
-        assert_eq!(intent(&["io", "set", "20=on", "stop=off"]), "switch SI(20) (SI(20)) on, stop (SI(06)) off");
+        assert_eq!(intent(&["io", "set", "20=on", "stop=off"]), "switch SI(20) on, stop (SI(06)) off");
     }
 
     #[test]

@@ -1,0 +1,153 @@
+//! The binary against its own simulator over real sockets: what goes wrong on the way, who owns the controller, Ctrl-C.
+#![cfg(unix)]
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::process::{Child, ChildStdin, Command, Output, Stdio};
+
+use serde_json::Value;
+
+fn armctl() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+    command.env_clear().stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+/// `armctl sim yrcx` on ports of its own; it ends with the test.
+struct Simulator {
+    process: Child,
+    console: ChildStdin,
+    target: String,
+}
+
+impl Simulator {
+    fn start(arguments: &[&str]) -> Self {
+        let mut command = armctl();
+        command.args(["sim", "yrcx", "--bind", "127.0.0.1:0", "--console", "--jq", ".data.target"]).args(arguments);
+        let mut process = command.stdin(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let mut target = String::new();
+        BufReader::new(process.stdout.take().unwrap()).read_line(&mut target).unwrap();
+        let console = process.stdin.take().unwrap();
+        Self { process, console, target: target.trim_end().to_owned() }
+    }
+
+    fn run(&self, line: &str) -> Output {
+        self.command(line).output().unwrap()
+    }
+
+    fn command(&self, line: &str) -> Command {
+        let mut command = armctl();
+        command.args(["-t", &self.target, "--timeout", "400ms"]).args(line.split(' '));
+        command
+    }
+}
+
+impl Drop for Simulator {
+    fn drop(&mut self) {
+        // A process that has ended already is as good.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// The exit code and what stands on stderr.
+fn failed(output: &Output) -> (i32, String) {
+    (output.status.code().unwrap(), String::from_utf8(output.stderr.clone()).unwrap())
+}
+
+#[test]
+fn what_the_adapter_does_wrong_has_its_exit_code() {
+    for (mischief, exit, part) in [
+        ("mute", 4, "was not answered"),
+        ("reset", 4, "ended before"),
+        ("stall", 4, "shows nothing"),
+        ("wrong-id", 4, "shows nothing"),
+        ("wrong-size", 4, "shows nothing"),
+        ("garbage", 5, "cannot be read"),
+    ] {
+        let output = Simulator::start(&["--mischief", mischief]).run("yrcx info servo");
+        let (code, stderr) = failed(&output);
+        assert!(code == exit && stderr.contains(part), "{mischief}: {code} {stderr}");
+        assert!(output.stdout.is_empty(), "{mischief}");
+    }
+}
+
+#[test]
+fn images_that_are_lost_or_doubled_do_no_harm() {
+    for fault in ["--mischief=drop", "--mischief=double", "--fault=drop=10%,dup=10%,reorder=10%,seed=7"] {
+        let output = Simulator::start(&[fault]).run("yrcx info servo --json");
+        assert!(output.status.success(), "{fault}: {:?}", failed(&output));
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(report["data"]["axes"][3]["state"], "servo");
+    }
+}
+
+#[test]
+fn one_owner_at_a_time_and_others_may_listen() {
+    let simulator = Simulator::start(&[]);
+    let mut owner = simulator.command("yrcx io watch alarm -o jsonl").spawn().unwrap();
+    let mut told = BufReader::new(owner.stdout.take().unwrap()).lines();
+    told.next().unwrap().unwrap();
+
+    let (code, stderr) = failed(&simulator.run("yrcx status"));
+    assert!(code == 3 && stderr.contains("[0x0106]") && stderr.contains("hint: "), "{code} {stderr}");
+    let mut listener = armctl();
+    listener.args([
+        "-t",
+        &format!("{}?role=input_only&out=238", simulator.target),
+        "yrcx",
+        "io",
+        "get",
+        "cpu-ok",
+        "--json",
+    ]);
+    let heard: Value = serde_json::from_slice(&listener.output().unwrap().stdout).unwrap();
+    assert_eq!(heard["data"]["signals"][0]["on"], true);
+
+    let mut console = &simulator.console;
+    writeln!(console, "estop on").unwrap();
+    let change: Value = serde_json::from_str(&told.next().unwrap().unwrap()).unwrap();
+    assert_eq!(
+        (&change["data"]["signals"][0]["name"], &change["data"]["signals"][0]["on"]),
+        (&"alarm".into(), &true.into())
+    );
+    interrupt(&owner);
+    assert_eq!(owner.wait().unwrap().code(), Some(130));
+}
+
+#[test]
+fn an_interrupt_stops_the_motion_and_says_so() {
+    let simulator = Simulator::start(&[]);
+    let mut moving = simulator.command("yrcx move --to 900,0,0,0 --speed-of-max 1 --yes -vv").spawn().unwrap();
+    let mut stderr = BufReader::new(moving.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.contains("<- WO 0100") {
+        line.clear();
+        assert!(stderr.read_line(&mut line).unwrap() > 0, "it never ran");
+    }
+    interrupt(&moving);
+    let mut rest = String::new();
+    stderr.read_to_string(&mut rest).unwrap();
+    assert_eq!(moving.wait().unwrap().code(), Some(130));
+    assert!(rest.contains("-> SI(06) off") && rest.contains("-> SI(06) on"), "{rest}");
+    assert!(rest.contains("interrupted: the robot was stopped by the stop input SI(06), which is on again"), "{rest}");
+}
+
+#[test]
+fn packets_are_recorded_with_their_ports() {
+    let simulator = Simulator::start(&[]);
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let output = simulator.run(&format!("yrcx info servo --trace {}", file.path().display()));
+    assert!(output.status.success());
+    let record = std::fs::read(file.path()).unwrap();
+    let holds = |bytes: &[u8]| record.windows(bytes.len()).any(|window| window == bytes);
+    let port: u16 = simulator.target.rsplit(':').next().unwrap().parse().unwrap();
+    assert!(holds(&port.to_be_bytes()));
+    // RegisterSession, and WI0 of the command in an image.
+    assert!(holds(&[0x65, 0, 4, 0]) && holds(&[0x03, 0x05, 0, 0, 0, 0]));
+}
+
+fn interrupt(child: &Child) {
+    let sent = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+}
