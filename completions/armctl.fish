@@ -56,6 +56,7 @@ complete -c armctl -n "__fish_armctl_needs_command" -l dry-run -d 'Send nothing;
 complete -c armctl -n "__fish_armctl_needs_command" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_needs_command" -s V -l version -d 'Print version'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "yerc" -d 'Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "yrcx" -d 'OMRON / Yamaha YRCX over EtherNet/IP'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "toyo" -d 'Toyo over RS-232C host communication'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "status" -d 'One line a robot: reachable, mode, servo, state, alarm, position'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "robots" -d 'The inventory: list, show, add, remove'
@@ -761,6 +762,549 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "status" -d 'Signals, servos and position in words'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "move" -d 'Move a robot to a point or to coordinates'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "servo" -d 'Switch servos on or off, or release their brakes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "motor" -d 'Switch motor power on or off'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "info" -d 'Versions, positions, servos, alarms'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "alarm" -d 'Alarms'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "io" -d 'Signals: what the controller shows and is shown'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "power-on" -d 'Servos on, by signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "emergency-stop" -d 'Into emergency stop, by signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "recover" -d 'Out of emergency stop with servos on, by signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "auto-mode" -d 'Wait for AUTO mode'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "reset" -d 'Reset the robot program, by signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "run" -d 'Run the robot program, by signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "stop" -d 'Stop the robot program, by signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "raw" -d 'Send the words of any remote command, and explain the answer'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l point -d 'Point to move to; two points of an arc with --circular, as in 100,101' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l to -d 'Coordinates of the axes in mm, of all four or of those of --axes' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l to-pulse -d 'Coordinates of the axes in pulses, likewise' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l arch -d 'In an arch: this axis goes to this position first, as in 3:10.0' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l arch-start -d 'Where the arch begins; 0 unless given' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l arch-end -d 'Where the arch ends; 0 unless given' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l arch-unit -d 'What positions of the arch are measured in' -r -f -a "mm\t'Millimetres; degrees of what turns'
+pulse\t'Pulses of the encoders'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l axes -d 'Axes that move, as in 1,3; all unless given' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l speed -d '50 or 50% of the program speed, or 200mm/s along a line or an arc' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l speed-of-max -d 'Percent of the robot\'s maximum, in steps of 0.01' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l accel -d 'Acceleration in percent' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l decel -d 'Deceleration in percent' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l hand -d 'Hand system of the coordinates of --to' -r -f -a "right\t'Right-handed'
+left\t'Left-handed'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l report -d 'Report the position at the end, in this unit' -r -f -a "mm\t'Millimetres; degrees of what turns'
+pulse\t'Pulses of the encoders'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l linear -d 'In a straight line'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l circular -d 'In an arc over the first point to the second'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l no-wait -d 'Do not wait for the end'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l axis -d 'Only this axis, 1 to 4' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "version" -d 'Versions of the software'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "position" -d 'Where a robot is'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "servo" -d 'The servo of each axis'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "alarm" -d 'An alarm of the history, or the latest of a remote command'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -f -a "reset" -d 'Reset the alarm'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -f -a "get" -d 'Read signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -f -a "set" -d 'Switch inputs of the controller: servo-on=on, 20=off'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -f -a "pulse" -d 'Switch an input of the controller on and off again'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -f -a "watch" -d 'Tell each change of signals until Ctrl-C'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -f -a "map" -d 'The addresses of words and signals on a fieldbus, for the PLC engineer'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l wi -d 'WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
@@ -2128,38 +2672,39 @@ complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
 json\t'One envelope, or an array of them'
 jsonl\t'An envelope a line, with the time'
 csv\t'Comma-separated values'"
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l jq -d 'Print what a jq filter makes of the JSON' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
 always\t'Even into a file'
 never\t'Not at all'"
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
 leave\t'Disconnect only; the motion goes on'"
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l count -d 'Stop after so many reads' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l sim -d 'Talk to the built-in simulator, in this process'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l all -d 'Talk to every robot of the inventory'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l json -d 'Print JSON (the same as -o json)'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s q -l quiet -d 'Only errors and questions on stderr'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s y -l yes -d 'Answer yes to the question before a motion'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -l dry-run -d 'Send nothing; print what would be sent'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -f -a "yerc" -d 'An FS100 or DX200 on two UDP ports'
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc toyo" -f -a "toyo" -d 'A Toyo controller on a TCP port, like a serial device server, or on a pseudo-terminal'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "yerc" -d 'An FS100 or DX200 on two UDP ports'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "yrcx" -d 'A YRCX as an adapter of EtherNet/IP'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "toyo" -d 'A Toyo controller on a TCP port, like a serial device server, or on a pseudo-terminal'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l bind -d 'Address to listen on, with the port of the robot server; port 0 lets the system choose' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l file-port -d 'Port of the file server; one above the robot server\'s unless given' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l model -d 'Controller model, fs100 or dx200' -r
@@ -2196,6 +2741,42 @@ complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subco
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l bind -d 'Address to listen on, with the TCP port of sessions; port 0 lets the system choose' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l io-port -d 'UDP port of images, 2222 unless given; any where the system chooses that of sessions' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l state -d 'Start state (TOML): robots, memory, programs, alarms, timed events' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l fault -d 'Faults of images on their way, such as drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,seed=7' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l mischief -d 'What the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, reset, mute, garbage' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l console -d 'Take lines on stdin; `help` lists them'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l bind -d 'Address to listen on, with the TCP port; port 0 lets the system choose' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l link -d 'Name the pseudo-terminal by a symbolic link, which is removed at the end' -r -F
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l axes -d 'Axes of the robot' -r
@@ -2234,38 +2815,39 @@ complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subco
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
 json\t'One envelope, or an array of them'
 jsonl\t'An envelope a line, with the time'
 csv\t'Comma-separated values'"
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l jq -d 'Print what a jq filter makes of the JSON' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
 always\t'Even into a file'
 never\t'Not at all'"
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
 leave\t'Disconnect only; the motion goes on'"
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l count -d 'Stop after so many reads' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l sim -d 'Talk to the built-in simulator, in this process'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l all -d 'Talk to every robot of the inventory'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l json -d 'Print JSON (the same as -o json)'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s q -l quiet -d 'Only errors and questions on stderr'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s y -l yes -d 'Answer yes to the question before a motion'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -l dry-run -d 'Send nothing; print what would be sent'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -f -a "yerc" -d 'Frames of the high-speed Ethernet server, as from a packet capture'
-complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc toyo" -f -a "toyo" -d 'Lines of the host communication, of either side'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "yerc" -d 'Frames of the high-speed Ethernet server, as from a packet capture'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "yrcx" -d 'Words of remote commands and their answers'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "toyo" -d 'Lines of the host communication, of either side'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l command -d 'Command whose answer it is, such as 0x75' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l instance -d 'Instance that was asked for' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l attribute -d 'Attribute that was asked for' -r
@@ -2299,6 +2881,38 @@ complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l wi -d 'WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l wo -d 'WO0 to WO15, as in 0x4000,0x0002,0x014E' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
@@ -2329,38 +2943,39 @@ complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
 json\t'One envelope, or an array of them'
 jsonl\t'An envelope a line, with the time'
 csv\t'Comma-separated values'"
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l jq -d 'Print what a jq filter makes of the JSON' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
 always\t'Even into a file'
 never\t'Not at all'"
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
 leave\t'Disconnect only; the motion goes on'"
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l count -d 'Stop after so many reads' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l sim -d 'Talk to the built-in simulator, in this process'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l all -d 'Talk to every robot of the inventory'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l json -d 'Print JSON (the same as -o json)'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s q -l quiet -d 'Only errors and questions on stderr'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s y -l yes -d 'Answer yes to the question before a motion'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -l dry-run -d 'Send nothing; print what would be sent'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -f -a "yerc" -d 'A status code (one byte) or added status code (two bytes) of an FS100 or DX200'
-complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc toyo" -f -a "toyo" -d 'An error code of a Toyo controller'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "yerc" -d 'A status code (one byte) or added status code (two bytes) of an FS100 or DX200'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "yrcx" -d 'An alarm of a YRCX'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "toyo" -d 'An error code of a Toyo controller'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
@@ -2391,6 +3006,36 @@ complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_s
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
