@@ -290,7 +290,7 @@ const YERC: [&str; 41] = [
     "raw",
 ];
 
-const TOYO: [&str; 71] = [
+const TOYO: [&str; 73] = [
     "status",
     "home",
     "position",
@@ -324,6 +324,8 @@ const TOYO: [&str; 71] = [
     "mvm set",
     "torque-table get",
     "torque-table set",
+    "backup",
+    "restore",
     "program list",
     "program get",
     "program put",
