@@ -214,6 +214,9 @@ impl Sources {
             }
             if chosen.len() == before && self.inventory.matching(pattern).next().is_none() {
                 let failure = Failure::usage(format!("there is no robot '{pattern}' in the inventory"));
+                if pattern.contains("://") || pattern.starts_with("sim:") {
+                    return Err(failure.hint("a URL is given by -t (--target)"));
+                }
                 return Err(match (nearest(pattern, known()), &self.inventory.path) {
                     (Some(name), _) => failure.hint(format!("did you mean '{name}'?")),
                     (None, Some(path)) => {

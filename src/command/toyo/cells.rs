@@ -3,8 +3,6 @@
 //! So nothing is written that is there already. What is written is read back: a worn cell says `@OK` and keeps what it
 //! had (ambiguity R29).
 
-use std::collections::HashMap;
-
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -35,12 +33,6 @@ pub struct Cells {
     /// Held that value already.
     pub cells_unchanged: u32,
 }
-
-/// How often each cell was written over one link.
-pub type Wear = HashMap<String, u32>;
-
-/// Writes of one cell over one link that are no accident any more.
-const LOOP: u32 = 3;
 
 impl Cells {
     /// In words: `2 cells written, 1 unchanged`.
@@ -81,13 +73,8 @@ impl Link {
     /// As those of [`Link::store`].
     pub async fn overwrite(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<(), Failure> {
         self.order(&cell.write).await?;
-        let name = cell.read.text();
-        let wear = self.wear.entry(name.clone()).or_default();
-        *wear += 1;
-        if *wear == LOOP {
-            screen.note(&format!(
-                "warning: {name} was written {LOOP} times in a row; a cell of the EEPROM wears out after about a million"
-            ));
+        if let Some(warning) = self.wear.written(cell.read.text().trim_start_matches('@')) {
+            screen.note(&format!("warning: {warning}"));
         }
         let is_stored = self.holds(cell).await.map_err(|failure| {
             let message = format!("{} was accepted, but not read back: {}", cell.write.text(), failure.message);

@@ -1,5 +1,6 @@
 //! The connection to a controller: the one driver that moves characters between the session and a line.
 
+mod borrowed;
 mod stop;
 
 use std::convert::Infallible;
@@ -10,11 +11,11 @@ use std::time::Duration;
 use serde_json::json;
 use tokio::time::Instant;
 
-use super::cells::Wear;
 use super::position::Place;
 use super::reach;
 use super::refusal;
 use super::trace::Trace;
+use super::wear::Wear;
 use crate::command::{Access, Family};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::{Misfit, Record};
@@ -32,6 +33,7 @@ use crate::transport::line::{InProcessLine, Pace};
 use crate::transport::sim::Peer;
 use crate::transport::stream::Stream;
 use crate::transport::tap::Direction;
+use borrowed::{Host, wants_host};
 
 /// The toyo family.
 #[derive(Debug)]
@@ -90,17 +92,6 @@ pub enum Moving {
     Jog,
     /// A program, a return to origin, servo power.
     Program,
-}
-
-/// Who commands the controller.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Host {
-    /// Not asked yet.
-    Unknown,
-    /// The host was ON before.
-    Found,
-    /// This link switched it ON, and gives it back.
-    Taken,
 }
 
 /// A controller's "no" (`@NG`): it has no code.
@@ -162,6 +153,9 @@ impl Family for Toyo {
         if !odd.is_empty() {
             screen.detail(1, &format!("on the line: {}", odd.join(", ")));
         }
+        if let Err(error) = link.wear.keep() {
+            screen.detail(1, &format!("what was written to the EEPROM was not noted: {error}"));
+        }
         given_back.and(link.trace.finish())
     }
 }
@@ -176,6 +170,8 @@ impl Link {
     ) -> Result<Self, Failure> {
         let policy = Policy { timeout: robot.timeout.value, retries: robot.retries.value, character };
         let trace = Trace::open(access, screen, transport.ends())?;
+        let is_kept = !robot.target.value.is_simulated();
+        let wear = if is_kept { Wear::of(&robot.target.value.to_string()) } else { Wear::without_diary() };
         Ok(Self {
             transport,
             line: Line::new(policy),
@@ -191,7 +187,7 @@ impl Link {
             trace,
             waited: Duration::ZERO,
             is_gone: false,
-            wear: Wear::new(),
+            wear,
         })
     }
 
@@ -394,102 +390,6 @@ impl Link {
         Ok(received)
     }
 
-    /// Makes sure that the host commands, and remembers who did before.
-    pub async fn take_host(&mut self) -> Result<(), Failure> {
-        if self.host != Host::Unknown {
-            return Ok(());
-        }
-        if let Transport::Notes(_) = self.transport {
-            self.note(&status_page(2), Some("whether the host is ON"));
-            self.note(&Request::bare(Command::Hson), Some("if it is not"));
-            self.host = Host::Taken;
-            return Ok(());
-        }
-        let status = self.status_of(&[2]).await?;
-        if status.host_on() {
-            self.host = Host::Found;
-            return Ok(());
-        }
-        if status.pendant_on() {
-            return Err(refusal::pendant());
-        }
-        match self.converse(&Request::bare(Command::Hson), false).await? {
-            Answer::Refused => Err(refusal::pendant()),
-            Answer::Done | Answer::Data(_) => {
-                self.host = Host::Taken;
-                Ok(())
-            }
-        }
-    }
-
-    /// Changes something for a while: `back` makes it as it was, in [`Link::put_back`] or when the link ends. A dry run
-    /// notes what it is about.
-    pub async fn borrow(&mut self, change: &Request, back: Request, about: &str) -> Result<(), Failure> {
-        if self.is_dry() {
-            self.note(change, Some(about));
-            self.borrowed.push(back);
-            return Ok(());
-        }
-        // Before it is sent: if the answer is lost, it may have been done.
-        self.borrowed.push(back);
-        match self.try_order(change).await? {
-            Ok(()) => Ok(()),
-            Err(Refusal(command)) => {
-                self.borrowed.pop();
-                Err(refusal::explained(self, command).await)
-            }
-        }
-    }
-
-    /// Makes everything as it was before [`Link::borrow`]. All of it is tried; the first failure counts.
-    pub async fn put_back(&mut self) -> Result<(), Failure> {
-        let mut outcome = Ok(());
-        while let Some(back) = self.borrowed.pop() {
-            let text = back.text();
-            let kept = |why: String| {
-                Failure::new(Kind::Refused, format!("what was changed for a while was not put back by {text}: {why}"))
-                    .hint("`toyo mode` and `toyo task` set it; `toyo status` tells how the controller stands")
-            };
-            if self.is_gone {
-                self.screen.note(&kept("the line is gone".to_owned()).message);
-                continue;
-            }
-            if self.is_dry() {
-                self.note(&back, Some("to put back what was found"));
-                continue;
-            }
-            let failure = match self.converse(&back, true).await {
-                Ok(Answer::Refused) => kept("@NG".to_owned()),
-                Ok(_) => continue,
-                Err(failure) => Failure { kind: failure.kind, ..kept(failure.message) },
-            };
-            outcome = outcome.and(Err(failure));
-        }
-        outcome
-    }
-
-    /// The host stays as it is when the link ends: somebody asked for that.
-    pub fn keep_host(&mut self) {
-        self.host = Host::Found;
-    }
-
-    /// Gives the host back as it was found.
-    async fn give_back(&mut self) -> Result<(), Failure> {
-        if self.host != Host::Taken || self.is_dry() || self.is_gone {
-            return Ok(());
-        }
-        self.host = Host::Unknown;
-        let kept = |why: String| {
-            Failure::new(Kind::Refused, format!("the host was switched ON and could not be switched OFF again: {why}"))
-                .hint("`toyo host off` gives the start input back")
-        };
-        match self.converse(&Request::bare(Command::Hsof), false).await {
-            Ok(Answer::Refused) => Err(kept("@NG".to_owned())),
-            Ok(_) => Ok(()),
-            Err(failure) => Err(Failure { kind: failure.kind, ..kept(failure.message) }),
-        }
-    }
-
     /// Notices a silence at once, asks nothing twice, and keeps text about the traffic until [`Link::stop`]: an axis will
     /// move until it is told to stop, and neither patience nor a terminal that is held must be in the way of that.
     pub fn watch_closely(&mut self) {
@@ -521,13 +421,6 @@ impl Link {
         if let Transport::Notes(notes) = &mut self.transport {
             let text = request.text();
             notes.push(about.map_or_else(|| json!({ "text": text }), |about| json!({ "text": text, "about": about })));
-        }
-    }
-
-    fn note_host_off(&mut self) {
-        if self.host == Host::Taken {
-            self.host = Host::Unknown;
-            self.note(&Request::bare(Command::Hsof), Some("if it was OFF before"));
         }
     }
 
@@ -579,11 +472,6 @@ impl Link {
         }
         Failure::new(Kind::NoAnswer, format!("{}: {what}", self.label)).hint("`toyo ports` lists the ports there are")
     }
-}
-
-/// Whether the host must be ON. Only reads do without for sure (ambiguity C14); a stop must not wait for it.
-fn wants_host(request: &Request) -> bool {
-    request.risk() > Risk::Read && !matches!(request.command(), Command::Hson | Command::Hsof | Command::Stop)
 }
 
 fn status_page(page: u8) -> Request {

@@ -49,6 +49,7 @@ mod timer;
 mod trace;
 mod values;
 mod waiting;
+mod wear;
 
 pub use link::Toyo as Family;
 pub use overview::overview;

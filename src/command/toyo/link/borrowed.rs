@@ -1,0 +1,129 @@
+//! What a link changes for a while, and puts back as it was found: who commands, and modes.
+
+use super::{Link, Refusal, Transport, status_page};
+use crate::command::toyo::refusal;
+use crate::controller::Risk;
+use crate::controller::toyo::request::{Answer, Request};
+use crate::controller::toyo::table::commands::Command;
+use crate::failure::{Failure, Kind};
+
+/// Who commands the controller.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Host {
+    /// Not asked yet.
+    Unknown,
+    /// The host was ON before.
+    Found,
+    /// This link switched it ON, and gives it back.
+    Taken,
+}
+
+impl Link {
+    /// Makes sure that the host commands, and remembers who did before.
+    pub async fn take_host(&mut self) -> Result<(), Failure> {
+        if self.host != Host::Unknown {
+            return Ok(());
+        }
+        if let Transport::Notes(_) = self.transport {
+            self.note(&status_page(2), Some("whether the host is ON"));
+            self.note(&Request::bare(Command::Hson), Some("if it is not"));
+            self.host = Host::Taken;
+            return Ok(());
+        }
+        let status = self.status_of(&[2]).await?;
+        if status.host_on() {
+            self.host = Host::Found;
+            return Ok(());
+        }
+        if status.pendant_on() {
+            return Err(refusal::pendant());
+        }
+        match self.converse(&Request::bare(Command::Hson), false).await? {
+            Answer::Refused => Err(refusal::pendant()),
+            Answer::Done | Answer::Data(_) => {
+                self.host = Host::Taken;
+                Ok(())
+            }
+        }
+    }
+
+    /// Changes something for a while: `back` makes it as it was, in [`Link::put_back`] or when the link ends. A dry run
+    /// notes what it is about.
+    pub async fn borrow(&mut self, change: &Request, back: Request, about: &str) -> Result<(), Failure> {
+        if self.is_dry() {
+            self.note(change, Some(about));
+            self.borrowed.push(back);
+            return Ok(());
+        }
+        // Before it is sent: if the answer is lost, it may have been done.
+        self.borrowed.push(back);
+        match self.try_order(change).await? {
+            Ok(()) => Ok(()),
+            Err(Refusal(command)) => {
+                self.borrowed.pop();
+                Err(refusal::explained(self, command).await)
+            }
+        }
+    }
+
+    /// Makes everything as it was before [`Link::borrow`]. All of it is tried; the first failure counts.
+    pub async fn put_back(&mut self) -> Result<(), Failure> {
+        let mut outcome = Ok(());
+        while let Some(back) = self.borrowed.pop() {
+            let text = back.text();
+            let kept = |why: String| {
+                Failure::new(Kind::Refused, format!("what was changed for a while was not put back by {text}: {why}"))
+                    .hint("`toyo mode` and `toyo task` set it; `toyo status` tells how the controller stands")
+            };
+            if self.is_gone {
+                self.screen.note(&kept("the line is gone".to_owned()).message);
+                continue;
+            }
+            if self.is_dry() {
+                self.note(&back, Some("to put back what was found"));
+                continue;
+            }
+            let failure = match self.converse(&back, true).await {
+                Ok(Answer::Refused) => kept("@NG".to_owned()),
+                Ok(_) => continue,
+                Err(failure) => Failure { kind: failure.kind, ..kept(failure.message) },
+            };
+            outcome = outcome.and(Err(failure));
+        }
+        outcome
+    }
+
+    /// The host stays as it is when the link ends: somebody asked for that.
+    pub fn keep_host(&mut self) {
+        self.host = Host::Found;
+    }
+
+    /// Gives the host back as it was found.
+    pub(super) async fn give_back(&mut self) -> Result<(), Failure> {
+        if self.host != Host::Taken || self.is_dry() || self.is_gone {
+            return Ok(());
+        }
+        self.host = Host::Unknown;
+        let kept = |why: String| {
+            Failure::new(Kind::Refused, format!("the host was switched ON and could not be switched OFF again: {why}"))
+                .hint("`toyo host off` gives the start input back")
+        };
+        match self.converse(&Request::bare(Command::Hsof), false).await {
+            Ok(Answer::Refused) => Err(kept("@NG".to_owned())),
+            Ok(_) => Ok(()),
+            Err(failure) => Err(Failure { kind: failure.kind, ..kept(failure.message) }),
+        }
+    }
+
+    pub(super) fn note_host_off(&mut self) {
+        if self.host == Host::Taken {
+            self.host = Host::Unknown;
+            self.note(&Request::bare(Command::Hsof), Some("if it was OFF before"));
+        }
+    }
+}
+
+/// Whether the host must be ON. Only reads do without for sure (ambiguity C14); a stop must not wait for it.
+pub(super) fn wants_host(request: &Request) -> bool {
+    request.risk() > Risk::Read && !matches!(request.command(), Command::Hson | Command::Hsof | Command::Stop)
+}

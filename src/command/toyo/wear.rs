@@ -1,0 +1,194 @@
+//! Writes of one cell of the EEPROM over and over: within a connection, and by a script that starts a command for each.
+//!
+//! A cell takes about a million rewrites (TO 2-1, note 2), which a loop of ten a second reaches in a day. So written
+//! cells go into a diary in the state folder of the user, which looks back ten minutes. It is an aid: where it cannot
+//! be kept, nothing is lost but the warning.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use etcetera::BaseStrategy as _;
+
+/// Writes of one cell over one link that are no accident any more.
+const LOOP: u32 = 3;
+/// The same over several links, where somebody may be trying values.
+const LOOP_OF_COMMANDS: u32 = 10;
+/// How far the diary looks back.
+const WINDOW: Duration = Duration::from_secs(600);
+/// A diary that is longer is written anew, without what is too old.
+const SIZE: u64 = 64 * 1024;
+
+/// How often each cell was written.
+#[derive(Debug, Default)]
+pub struct Wear {
+    diary: Option<Diary>,
+    /// By this link.
+    own: HashMap<String, u32>,
+    /// By others within the window; read when the first cell is written.
+    others: Option<HashMap<String, u32>>,
+}
+
+#[derive(Debug)]
+struct Diary {
+    path: PathBuf,
+    /// What the cells are of.
+    robot: String,
+}
+
+impl Wear {
+    /// Counts for a robot; with a diary where the user has a state folder.
+    pub fn of(robot: &str) -> Self {
+        let path = etcetera::choose_base_strategy().ok().and_then(|folders| {
+            let folder = folders.state_dir().unwrap_or_else(|| folders.cache_dir());
+            Some(folder.join("armctl").join("eeprom-writes"))
+        });
+        Self { diary: path.map(|path| Diary { path, robot: robot.to_owned() }), ..Self::default() }
+    }
+
+    /// Counts for a link that lasts as long as what it writes to.
+    pub fn without_diary() -> Self {
+        Self::default()
+    }
+
+    /// Counts a write of a cell. Says so if it is one of too many.
+    pub fn written(&mut self, cell: &str) -> Option<String> {
+        let diary = self.diary.as_ref();
+        let others = self.others.get_or_insert_with(|| diary.map(|diary| diary.read(now())).unwrap_or_default());
+        let others = others.get(cell).copied().unwrap_or_default();
+        let own = self.own.entry(cell.to_owned()).or_default();
+        *own += 1;
+        let total = *own + others;
+        let warning = if *own == LOOP {
+            format!("{cell} was written {LOOP} times in a row")
+        } else if *own == 1 && total >= LOOP_OF_COMMANDS {
+            format!("{cell} was written {total} times in {} minutes", WINDOW.as_secs() / 60)
+        } else {
+            return None;
+        };
+        Some(format!("{warning}; a cell of the EEPROM wears out after about a million"))
+    }
+
+    /// Notes in the diary what this link wrote.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn keep(&mut self) -> std::io::Result<()> {
+        let own = std::mem::take(&mut self.own);
+        match &self.diary {
+            Some(diary) if !own.is_empty() => diary.write(&own, now()),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Seconds since 1970.
+fn now() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs())
+}
+
+/// A line of the diary: when, how often, which robot, which cell.
+fn entry(line: &str) -> Option<(u64, u32, &str, &str)> {
+    let mut parts = line.splitn(4, '\t');
+    Some((parts.next()?.parse().ok()?, parts.next()?.parse().ok()?, parts.next()?, parts.next()?))
+}
+
+impl Diary {
+    /// How often each cell of the robot was written lately.
+    fn read(&self, now: u64) -> HashMap<String, u32> {
+        let mut counts = HashMap::new();
+        for (_, count, robot, cell) in fresh(&content(&self.path), now).filter_map(entry) {
+            if robot == self.robot {
+                let sum: &mut u32 = counts.entry(cell.to_owned()).or_default();
+                *sum = sum.saturating_add(count);
+            }
+        }
+        counts
+    }
+
+    fn write(&self, cells: &HashMap<String, u32>, now: u64) -> std::io::Result<()> {
+        if let Some(folder) = self.path.parent() {
+            fs::create_dir_all(folder)?;
+        }
+        if fs::metadata(&self.path).is_ok_and(|found| found.len() > SIZE) {
+            self.shorten(now)?;
+        }
+        let mut lines = String::new();
+        for (cell, count) in cells {
+            // Nothing fails when text is written to a string.
+            let _ = writeln!(lines, "{now}\t{count}\t{}\t{cell}", self.robot.replace(['\t', '\n'], " "));
+        }
+        // Appended at once, so that lines of commands that run at the same time stay whole.
+        fs::OpenOptions::new().create(true).append(true).open(&self.path)?.write_all(lines.as_bytes())
+    }
+
+    /// Leaves out what is too old.
+    fn shorten(&self, now: u64) -> std::io::Result<()> {
+        let text = content(&self.path);
+        let mut beside = tempfile::NamedTempFile::new_in(self.path.parent().unwrap_or(Path::new(".")))?;
+        for line in fresh(&text, now) {
+            writeln!(beside, "{line}")?;
+        }
+        beside.persist(&self.path)?;
+        Ok(())
+    }
+}
+
+/// The diary as text; one that is not there, or is none, is empty.
+fn content(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_default()
+}
+
+/// The lines within the window.
+fn fresh(text: &str, now: u64) -> impl Iterator<Item = &str> {
+    let since = now.saturating_sub(WINDOW.as_secs());
+    text.lines().filter(move |line| entry(line).is_some_and(|(time, ..)| (since..=now).contains(&time)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wear(folder: &Path, robot: &str) -> Wear {
+        let path = folder.join("armctl").join("eeprom-writes");
+        Wear { diary: Some(Diary { path, robot: robot.to_owned() }), ..Wear::default() }
+    }
+
+    #[test]
+    fn three_writes_of_one_cell_over_one_link_are_told_once() {
+        let mut wear = Wear::without_diary();
+        let told: Vec<bool> = (0..5).map(|_| wear.written("@RPAR P01").is_some()).collect();
+        assert_eq!(told, [false, false, true, false, false]);
+        assert_eq!(wear.written("@RPAR P02"), None);
+    }
+
+    #[test]
+    fn a_script_that_starts_a_command_for_each_write_is_told_from_the_tenth_on() {
+        let folder = tempfile::tempdir().unwrap();
+        for count in 1..=11 {
+            let mut other = wear(folder.path(), "press");
+            assert_eq!(other.written("@RPNT 001"), None, "another robot's");
+            let mut wear = wear(folder.path(), "cell 1");
+            let told = wear.written("@RPNT 001");
+            assert_eq!(told.is_some(), count >= 10, "{told:?}");
+            wear.keep().unwrap();
+        }
+    }
+
+    #[test]
+    fn what_is_too_old_or_no_entry_does_not_count_and_goes_when_the_diary_is_long() {
+        let folder = tempfile::tempdir().unwrap();
+        let diary = wear(folder.path(), "cell").diary.unwrap();
+        let cells = HashMap::from([("@RPNT 001".to_owned(), 4)]);
+        diary.write(&cells, 1_000).unwrap();
+        fs::OpenOptions::new().append(true).open(&diary.path).unwrap().write_all(b"nonsense\n\n\t\t\t\n").unwrap();
+        diary.write(&cells, 1_500).unwrap();
+        assert_eq!(diary.read(1_500), HashMap::from([("@RPNT 001".to_owned(), 8)]));
+        assert_eq!(diary.read(1_700), cells);
+        diary.shorten(1_700).unwrap();
+        assert_eq!(content(&diary.path), "1500\t4\tcell\t@RPNT 001\n");
+    }
+}
