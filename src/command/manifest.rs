@@ -30,6 +30,8 @@ pub trait List: Serialize + DeserializeOwned {
 
     /// Format and version that it says to have.
     fn head(&self) -> (&str, u32);
+    /// The name and the target URL of the robot, and whether it is whole.
+    fn state(&self) -> (&str, &str, bool);
     /// Whether what it says can be true.
     fn check(&self) -> Result<(), String>;
 }
@@ -89,6 +91,37 @@ pub fn look<L: List>(folder: &Path) -> Result<Option<L>, Failure> {
         Some(_) => Err(Failure::local(format!("{} holds other files", folder.display()))
             .hint("a backup takes an empty folder, or makes a new one")),
     }
+}
+
+/// The backup in a folder that a new one goes on with, if any: with `resume`, one of the same target. With `force` a new one
+/// takes its place.
+pub fn earlier<L: List>(folder: &Path, target: &str, resume: bool, force: bool) -> Result<Option<L>, Failure> {
+    let Some(earlier) = look::<L>(folder)?.filter(|_| !force) else { return Ok(None) };
+    let (name, its, is_whole) = earlier.state();
+    if !resume {
+        let state = if is_whole { "a backup" } else { "a backup that is not whole" };
+        return Err(Failure::local(format!("{} holds {state} of {name}", folder.display()))
+            .hint("--resume goes on with it, --force makes a new one over it; or choose another folder"));
+    }
+    if its != target {
+        return Err(Failure::usage(format!("{} is a backup of {name} ({its})", folder.display()))
+            .hint("choose another folder for this robot"));
+    }
+    Ok(Some(earlier))
+}
+
+/// How far one part of a backup, or a transfer of many files, got.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum State {
+    /// It was done now.
+    Done,
+    /// It had been done before.
+    Kept,
+    /// It failed; see `error`.
+    Failed,
+    /// An earlier failure ended the work.
+    NotTried,
 }
 
 /// A file in the folder.

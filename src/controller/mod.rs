@@ -6,6 +6,7 @@
 
 use std::time::Duration;
 
+mod entries;
 pub mod text;
 pub mod toyo;
 pub mod units;

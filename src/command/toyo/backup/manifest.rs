@@ -115,6 +115,10 @@ impl List for Manifest {
         (&self.format, self.version)
     }
 
+    fn state(&self) -> (&str, &str, bool) {
+        (&self.robot, &self.target, self.complete)
+    }
+
     fn check(&self) -> Result<(), String> {
         let mut seen = Vec::new();
         for Entry { part: name, copy, error, .. } in &self.parts {

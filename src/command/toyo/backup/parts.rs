@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::manifest::LeftOut;
+use crate::command::manifest::State;
 use crate::command::toyo::cells::Cells;
 use crate::controller::toyo::nearest::nearest;
 use crate::failure::{Failure, Kind};
@@ -138,20 +139,6 @@ pub struct PartResult {
     pub cells: Option<Cells>,
     /// Why it failed.
     pub error: Option<Failure>,
-}
-
-/// How far a part got.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum State {
-    /// Saved, or restored.
-    Done,
-    /// There already, from a backup that was cut off.
-    Kept,
-    /// It failed; see `error`.
-    Failed,
-    /// Something before it ended the work.
-    NotTried,
 }
 
 impl PartResult {

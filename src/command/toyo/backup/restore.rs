@@ -8,9 +8,9 @@ use serde::Serialize;
 
 use super::content::{self, Content};
 use super::manifest::{Controller, LeftOut, Manifest};
-use super::parts::{self, Part, PartResult, Parts, State};
+use super::parts::{self, Part, PartResult, Parts};
 use crate::command::local::own_folder;
-use crate::command::manifest::{self, MANIFEST};
+use crate::command::manifest::{self, MANIFEST, State};
 use crate::command::toyo::cells::{Cell, Cells};
 use crate::command::toyo::link::{Link, wrong};
 use crate::command::toyo::program::steps;

@@ -8,10 +8,10 @@ use serde::Serialize;
 
 use super::content::{self, Text};
 use super::manifest::{Controller, Entry, Manifest};
-use super::parts::{self, Part, PartResult, State};
+use super::parts::{self, Part, PartResult};
 use crate::command::interrupt::interruptible;
 use crate::command::local::{Target, make_folder, own_folder};
-use crate::command::manifest::{self, Hash, MANIFEST, Reason, Saved};
+use crate::command::manifest::{self, Hash, MANIFEST, Reason, Saved, State};
 use crate::command::toyo::link::Link;
 use crate::command::toyo::{Family, files, tasks};
 use crate::command::{Command, Context, Report};
@@ -54,7 +54,7 @@ impl Command for Backup {
     async fn run(&self, context: Context<'_, Family>) -> Result<BackedUp, Failure> {
         let Context { link, screen, robot, several } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
-        let earlier = self.earlier(&folder, robot)?;
+        let earlier = manifest::earlier(&folder, robot.target.value.url(), self.resume, self.force)?;
         if link.is_dry() {
             return self.rehearse(link).await;
         }
@@ -66,25 +66,6 @@ impl Command for Backup {
 }
 
 impl Backup {
-    /// The backup that this one goes on with, if any.
-    fn earlier(&self, folder: &Path, robot: &Robot) -> Result<Option<Manifest>, Failure> {
-        let Some(earlier): Option<Manifest> = manifest::look(folder)? else { return Ok(None) };
-        let Manifest { robot: name, target, complete, .. } = &earlier;
-        if self.force {
-            return Ok(None);
-        }
-        if !self.resume {
-            let state = if *complete { "a backup" } else { "a backup that is not whole" };
-            return Err(Failure::local(format!("{} holds {state} of {name}", folder.display()))
-                .hint("--resume goes on with it, --force makes a new one over it; or choose another folder"));
-        }
-        if target != robot.target.value.url() {
-            return Err(Failure::usage(format!("{} is a backup of {name} ({target})", folder.display()))
-                .hint("choose another folder for this robot"));
-        }
-        Ok(Some(earlier))
-    }
-
     async fn save(
         &self,
         link: &mut Link,

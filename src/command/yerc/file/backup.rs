@@ -10,10 +10,10 @@ use tokio::time::Instant;
 
 use super::manifest::{Entry, Manifest};
 use super::name::{self, Shown, TypeArg, type_word};
-use super::results::{FileResult, Results, Shape, State};
+use super::results::{FileResult, Results, Shape};
 use super::transfer;
 use crate::command::local::{LocalNames, Target, make_folder, own_folder};
-use crate::command::manifest::{self, Hash, MANIFEST, Reason, Saved};
+use crate::command::manifest::{self, Hash, MANIFEST, Reason, Saved, State};
 use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};
@@ -22,7 +22,6 @@ use crate::controller::yerc::files::{self, FileType};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::View;
-use crate::settings::Robot;
 
 /// Fetches every file into a folder.
 #[derive(Debug, Args)]
@@ -53,7 +52,7 @@ impl Command for Backup {
         let Context { link, screen, robot, several } = context;
         let types = TypeArg::chosen(&self.types);
         let folder = own_folder(&self.folder, &robot.name, several);
-        let earlier = self.earlier(&folder, robot)?;
+        let earlier: Option<Manifest> = manifest::earlier(&folder, robot.target.value.url(), self.resume, self.force)?;
         if link.is_dry() {
             transfer::foresee_all(link, types.iter().map(|kind| files::list(*kind)));
             return Ok(BackedUp::new(&folder, Results::new(Vec::new(), SHAPE), false));
@@ -115,27 +114,6 @@ impl Command for Backup {
         let complete = results.failed + results.not_tried == 0;
         ledger.close(complete)?;
         Ok(BackedUp::new(&folder, results, complete))
-    }
-}
-
-impl Backup {
-    /// The backup that this one goes on with, if any.
-    fn earlier(&self, folder: &Path, robot: &Robot) -> Result<Option<Manifest>, Failure> {
-        let Some(earlier): Option<Manifest> = manifest::look(folder)? else { return Ok(None) };
-        let Manifest { robot: name, target, complete, .. } = &earlier;
-        if self.force {
-            return Ok(None);
-        }
-        if !self.resume {
-            let state = if *complete { "a backup" } else { "a backup that is not whole" };
-            return Err(Failure::local(format!("{} holds {state} of {name}", folder.display()))
-                .hint("--resume goes on with it, --force makes a new one over it; or choose another folder"));
-        }
-        if target != robot.target.value.url() {
-            return Err(Failure::usage(format!("{} is a backup of {name} ({target})", folder.display()))
-                .hint("choose another folder for this robot"));
-        }
-        Ok(Some(earlier))
     }
 }
 

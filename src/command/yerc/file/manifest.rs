@@ -98,6 +98,10 @@ impl List for Manifest {
         (&self.format, self.version)
     }
 
+    fn state(&self) -> (&str, &str, bool) {
+        (&self.robot, &self.target, self.complete)
+    }
+
     fn check(&self) -> Result<(), String> {
         let mut names = std::collections::HashSet::new();
         let mut copies = std::collections::HashSet::new();

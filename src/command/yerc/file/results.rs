@@ -9,22 +9,9 @@ use serde::Serialize;
 use super::name::Shown;
 use super::transfer::about;
 use crate::command::Report;
+use crate::command::manifest::State;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
-
-/// How far one file got.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum State {
-    /// It was done now.
-    Done,
-    /// It had been done before.
-    Kept,
-    /// It failed, see `error`.
-    Failed,
-    /// An earlier failure ended the work.
-    NotTried,
-}
 
 /// One file.
 #[derive(Debug, Clone, Serialize, JsonSchema)]

@@ -22,6 +22,7 @@ use super::task::Task;
 use super::trace::Trace;
 use super::world::{COUNTERS, Mode, Switches, TIMERS, World};
 use crate::controller::Now;
+use crate::controller::entries::{self, At, Event};
 use crate::controller::toyo::field::{Mask, Value};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::{Request, instruction};
@@ -84,11 +85,7 @@ impl Default for Start {
 impl Start {
     /// Reads a start state. The error says what is wrong, and in which line.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let entries: Entries = toml::from_str(text).map_err(|error| {
-            let line = 1 + error.span().map_or(0, |span| newlines(text, span.start));
-            format!("line {line}: {}", error.message())
-        })?;
-        build(&entries, text)
+        build(&entries::parse(text)?, text)
     }
 
     /// Another seed for everything random.
@@ -219,39 +216,8 @@ struct Past {
     power_cut: bool,
 }
 
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Event {
-    at_ms: u64,
-    #[serde(rename = "do")]
-    line: String,
-}
-
-/// Lines that end before a place in a text.
-fn newlines(text: &str, place: usize) -> usize {
-    text.bytes().take(place).filter(|&byte| byte == b'\n').count()
-}
-
-/// Says what is wrong with an entry, and where.
-struct Place<'a> {
-    text: &'a str,
-}
-
-impl Place<'_> {
-    fn wrong<T>(&self, entry: &Spanned<T>, what: impl std::fmt::Display) -> String {
-        let line = 1 + newlines(self.text, entry.span().start);
-        format!("line {line}: {what}")
-    }
-
-    /// A value by its key, if that is a number in a range.
-    fn key<T>(&self, key: &str, most: usize, entry: &Spanned<T>) -> Result<usize, String> {
-        let number = key.parse().ok().filter(|number| (1..=most).contains(number));
-        number.ok_or_else(|| self.wrong(entry, format!("'{key}' is not a number from 1 to {most}")))
-    }
-}
-
 fn build(entries: &Entries, text: &str) -> Result<Start, String> {
-    let at = Place { text };
+    let at = At { text };
     let busy = *entries.busy.get_ref();
     if !(0.0..=1.0).contains(&busy) {
         return Err(at.wrong(&entries.busy, "busy is a share from 0 to 1"));
@@ -301,7 +267,7 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
 }
 
 /// The controller with nothing in it.
-fn bare_world(entries: &Entries, at: &Place<'_>) -> Result<World, String> {
+fn bare_world(entries: &Entries, at: &At<'_>) -> Result<World, String> {
     let model = entries.model.get_ref();
     if model != "other" && !KCA.contains(&model.as_str()) {
         return Err(at.wrong(&entries.model, format!("a model is one of {}, or other", KCA.join(", "))));
@@ -381,7 +347,7 @@ fn bare_world(entries: &Entries, at: &Place<'_>) -> Result<World, String> {
     })
 }
 
-fn programs(world: &mut World, entries: &Entries, at: &Place<'_>) -> Result<(), String> {
+fn programs(world: &mut World, entries: &Entries, at: &At<'_>) -> Result<(), String> {
     for (key, lines) in &entries.steps {
         let task = at.key(key, TASKS, lines)?;
         let steps: Result<Vec<Record>, String> = lines
@@ -423,7 +389,7 @@ fn program(world: &mut World, task: usize, steps: Vec<Record>) -> Result<(), Str
     written
 }
 
-fn tables(world: &mut World, entries: &Entries, at: &Place<'_>) -> Result<(), String> {
+fn tables(world: &mut World, entries: &Entries, at: &At<'_>) -> Result<(), String> {
     for (key, rows) in &entries.points {
         for (row, place) in rows {
             let task = at.key(key, TASKS, place)?;
@@ -457,7 +423,7 @@ fn write(world: &mut World, command: &str) -> Result<(), String> {
     edit::carry_out(world, &request).map(|_| ())
 }
 
-fn errors(world: &mut World, entries: &Entries, at: &Place<'_>) -> Result<(), String> {
+fn errors(world: &mut World, entries: &Entries, at: &At<'_>) -> Result<(), String> {
     let code = |text: &str| u8::from_str_radix(text, 16).ok().filter(|code| *code > 0);
     for past in entries.history.iter().rev() {
         let Past { code: text, after_seconds, power_cut } = past.get_ref();
@@ -477,7 +443,7 @@ fn errors(world: &mut World, entries: &Entries, at: &Place<'_>) -> Result<(), St
     Ok(())
 }
 
-fn events(world: &mut World, entries: &[Spanned<Event>], at: &Place<'_>) -> Result<(), String> {
+fn events(world: &mut World, entries: &[Spanned<Event>], at: &At<'_>) -> Result<(), String> {
     let mut events = Vec::new();
     for entry in entries {
         let event = entry.get_ref();
@@ -490,7 +456,7 @@ fn events(world: &mut World, entries: &[Spanned<Event>], at: &Place<'_>) -> Resu
 }
 
 /// `0/01` and eight bits.
-fn port(key: &str, bits: &Spanned<String>, at: &Place<'_>) -> Result<(Port, Mask), String> {
+fn port(key: &str, bits: &Spanned<String>, at: &At<'_>) -> Result<(Port, Mask), String> {
     let parts = key.split_once('/').and_then(|(station, port)| Some((station.parse().ok()?, port.parse().ok()?)));
     let (station, port) = parts.ok_or_else(|| at.wrong(bits, format!("'{key}' is not a port like 0/01")))?;
     let eight = u8::from_str_radix(bits.get_ref(), 2).ok().filter(|_| bits.get_ref().len() == 8);

@@ -19,6 +19,7 @@ use super::playback::Player;
 use super::storage::{Content, Storage, check_name};
 use super::world::{Holds, Meters, Mode, Switches, World};
 use crate::controller::Now;
+use crate::controller::entries::{self, At, Event};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::payload::{
     Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind,
@@ -117,11 +118,7 @@ impl Start {
     ///
     /// The error says what is wrong, and in which line.
     pub fn parse(text: &str, mut read: impl FnMut(&str) -> Result<Vec<u8>, String>) -> Result<Self, String> {
-        let entries: Entries = toml::from_str(text).map_err(|error| {
-            let line = 1 + error.span().map_or(0, |span| newlines(text, span.start));
-            format!("line {line}: {}", error.message())
-        })?;
-        build(&entries, text, &mut read)
+        build(&entries::parse(text)?, text, &mut read)
     }
 
     /// The model it describes.
@@ -304,33 +301,8 @@ struct FileEntry {
     size: Option<u64>,
 }
 
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Event {
-    at_ms: u64,
-    #[serde(rename = "do")]
-    line: String,
-}
-
 fn model<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Model, D::Error> {
     String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
-}
-
-/// Lines that end before a place in a text.
-fn newlines(text: &str, place: usize) -> usize {
-    text.bytes().take(place).filter(|&byte| byte == b'\n').count()
-}
-
-/// Says what is wrong with an entry, and where.
-struct Place<'a> {
-    text: &'a str,
-}
-
-impl Place<'_> {
-    fn wrong<T>(&self, entry: &Spanned<T>, what: impl std::fmt::Display) -> String {
-        let line = 1 + newlines(self.text, entry.span().start);
-        format!("line {line}: {what}")
-    }
 }
 
 fn build(
@@ -338,7 +310,7 @@ fn build(
     text: &str,
     read: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<Start, String> {
-    let at = Place { text };
+    let at = At { text };
     let busy = *entries.busy.get_ref();
     if !(0.0..=1.0).contains(&busy) {
         return Err(at.wrong(&entries.busy, "busy is a share from 0 to 1"));
@@ -390,7 +362,7 @@ fn build(
 }
 
 /// The controller with nothing in it.
-fn bare_world(entries: &Entries, at: &Place<'_>) -> Result<World, String> {
+fn bare_world(entries: &Entries, at: &At<'_>) -> Result<World, String> {
     let [software, robot_model, application, parameter_version] = defaults::versions(entries.model);
     let or = |entry: &Option<String>, default: &str| entry.clone().unwrap_or_else(|| default.to_owned());
     let hours = |hours: u32| Duration::from_secs(3600 * u64::from(hours));
@@ -452,7 +424,7 @@ fn bare_world(entries: &Entries, at: &Place<'_>) -> Result<World, String> {
     })
 }
 
-fn groups(entries: &Entries, at: &Place<'_>) -> Result<Vec<Group>, String> {
+fn groups(entries: &Entries, at: &At<'_>) -> Result<Vec<Group>, String> {
     let axes = *entries.robot_axes.get_ref();
     if !(6..=7).contains(&axes) {
         return Err(at.wrong(&entries.robot_axes, "a robot has 6 or 7 axes"));
@@ -540,7 +512,7 @@ fn position(kind: Kind, entry: &PositionEntry) -> Result<Vec<u8>, String> {
 fn files(
     world: &mut World,
     entries: &[Spanned<FileEntry>],
-    at: &Place<'_>,
+    at: &At<'_>,
     read: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<(), String> {
     for spanned in entries {
@@ -584,7 +556,7 @@ fn alarms(world: &mut World, entries: &Entries) {
     }
 }
 
-fn events(world: &mut World, entries: &[Spanned<Event>], at: &Place<'_>) -> Result<(), String> {
+fn events(world: &mut World, entries: &[Spanned<Event>], at: &At<'_>) -> Result<(), String> {
     let mut sorted: Vec<_> = entries.iter().map(Spanned::get_ref).cloned().collect();
     sorted.sort_by_key(|event| event.at_ms);
     // Carried out in order on a copy, so that a mistake shows now and not in the middle of a run.

@@ -20,6 +20,7 @@ use super::memory::Memory;
 use super::robot::{Method, Motor};
 use super::world::{Link, Mode, Switches, World};
 use crate::controller::Now;
+use crate::controller::entries::{self, At, Event};
 use crate::controller::yrcx::signal::resting;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Value};
@@ -132,7 +133,7 @@ impl Default for Start {
 impl Start {
     /// Reads a start state. The error says what is wrong, and in which line.
     pub fn parse(text: &str) -> Result<Self, String> {
-        build(&read(text)?, text)
+        build(&entries::parse(text)?, text)
     }
 
     /// Another seed for everything random.
@@ -398,41 +399,9 @@ struct AlarmEntry {
     place: String,
 }
 
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Event {
-    at_ms: u64,
-    #[serde(rename = "do")]
-    line: String,
-}
-
-fn read(text: &str) -> Result<Entries, String> {
-    toml::from_str(text).map_err(|error| {
-        let line = 1 + error.span().map_or(0, |span| newlines(text, span.start));
-        format!("line {line}: {}", error.message())
-    })
-}
-
-/// Lines that end before a place in a text.
-fn newlines(text: &str, place: usize) -> usize {
-    text.bytes().take(place).filter(|&byte| byte == b'\n').count()
-}
-
-/// Says what is wrong with an entry, and where.
-struct At<'a> {
-    text: &'a str,
-}
-
-impl At<'_> {
-    fn wrong<T>(&self, entry: &Spanned<T>, what: impl std::fmt::Display) -> String {
-        let line = 1 + newlines(self.text, entry.span().start);
-        format!("line {line}: {what}")
-    }
-}
-
 fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     let at = At { text };
-    let stock = read(STOCK)?;
+    let stock: Entries = entries::parse(STOCK)?;
     let mut world = bare_world(entries, &at)?;
     let (robots, its) =
         if entries.robots.is_empty() { (&stock.robots, At { text: STOCK }) } else { (&entries.robots, At { text }) };
