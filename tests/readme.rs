@@ -22,7 +22,7 @@ const DOCUMENTED: [(&str, &str); 2] = [("yerc", "udp://127.0.0.1:10040"), ("toyo
 /// Separates the commands of a block in the output of its shell.
 const MARK: &str = "\u{1}--next--";
 /// Pages with blocks.
-const PAGES: [&str; 3] = ["README.md", "docs/yerc.md", "docs/toyo.md"];
+const PAGES: [&str; 4] = ["README.md", "docs/yerc.md", "docs/toyo.md", "docs/scripting.md"];
 
 #[test]
 fn console_blocks_print_what_they_show() {

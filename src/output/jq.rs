@@ -1,11 +1,20 @@
 //! `--jq` and `--until`: jq filters over the envelope.
 
-use jaq_core::load::{Arena, File, Loader};
+use jaq_core::load::{Arena, File, Loader, parse};
 use jaq_core::{Compiler, Ctx, Vars, data, unwrap_valr};
 use jaq_json::Val;
 use serde_json::Value;
 
 use crate::failure::Failure;
+
+/// What jq has and the library has not.
+const DEFS: &str = r#"
+def row(f): if isarray then . else error("\(type) is no row: an array is expected") end
+  | map(if . == null then "" elif isstring then f elif isarray or isobject then error("\(type) is no cell of a row")
+        else tostring end);
+def @csv: row("\"" + gsub("\""; "\"\"") + "\"") | join(",");
+def @tsv: row(gsub("\\\\"; "\\\\") | gsub("\t"; "\\t") | gsub("\n"; "\\n") | gsub("\r"; "\\r")) | join("\t");
+"#;
 
 /// A compiled filter.
 pub struct Filter {
@@ -26,7 +35,8 @@ impl Filter {
             Failure::usage(format!("jq filter '{text}': {what}"))
                 .hint("filters see the whole envelope: try '.data', or leave --jq away to see it")
         };
-        let defs = jaq_core::defs().chain(jaq_std::defs()).chain(jaq_json::defs());
+        let ours = parse(DEFS, |parser| parser.defs()).expect("the definitions are correct");
+        let defs = jaq_core::defs().chain(jaq_std::defs()).chain(jaq_json::defs()).chain(ours);
         let funs = jaq_core::funs().chain(jaq_std::funs()).chain(jaq_json::funs());
         let arena = Arena::default();
         let modules =
@@ -75,6 +85,16 @@ mod tests {
         assert!(Filter::new(".data[").unwrap_err().message.contains("does not parse"));
         assert!(Filter::new("nonsense").unwrap_err().message.contains("'nonsense' is not defined"));
         assert!(Filter::new(".a.b").unwrap().apply(&json!({"a": 1})).is_err());
+    }
+
+    #[test]
+    fn rows_are_written_as_jq_writes_them() {
+        let rows = json!([[1, 2.5, null, "say \"hi\"", true], ["tab\tand\nline \\"]]);
+        let made = |filter: &str| Filter::new(filter).unwrap().apply(&rows);
+        assert_eq!(made(".[0] | @csv").unwrap(), [json!("1,2.5,,\"say \"\"hi\"\"\",true")]);
+        assert_eq!(made(".[1] | @tsv").unwrap(), [json!("tab\\tand\\nline \\\\")]);
+        assert!(made("@csv").unwrap_err().message.contains("array is no cell"));
+        assert!(made("{} | @tsv").unwrap_err().message.contains("object is no row"));
     }
 
     #[test]
