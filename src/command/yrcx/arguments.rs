@@ -1,11 +1,31 @@
 //! Arguments that motions share. Numbers are handed on as they were typed: the codec reads them in the unit of their
 //! field and checks their range.
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::position::Unit;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::value::Key;
+use crate::failure::Failure;
+
+/// Which robot of the controller, as `--unit` says; for the question before a motion.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct Which {
+    #[arg(from_global)]
+    unit: u8,
+}
+
+impl Which {
+    /// `robot 2`; where none is named, the first.
+    pub fn name(self) -> String {
+        format!("robot {}", self.unit.max(1))
+    }
+
+    /// `robot 2`; where none is named, all of them.
+    pub fn name_or_all(self) -> String {
+        if self.unit == 0 { "all robots".to_owned() } else { self.name() }
+    }
+}
 
 /// How fast.
 #[derive(Debug, Args)]
@@ -27,10 +47,12 @@ pub enum Speed {
     MmS(String),
 }
 
+const WHOLE: &str = "a speed is whole percent as in 50 or 50%, or 200mm/s; --speed-of-max takes steps of 0.01 %";
+
 fn speed(text: &str) -> Result<Speed, String> {
     let number = |text: &str| {
         let is_number = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-        if is_number { Ok(text.to_owned()) } else { Err("a speed is whole percent as in 50 or 50%, or 200mm/s") }
+        if is_number { Ok(text.to_owned()) } else { Err(WHOLE) }
     };
     let speed = match text.strip_suffix("mm/s") {
         Some(text) => number(text).map(Speed::MmS),
@@ -40,8 +62,17 @@ fn speed(text: &str) -> Result<Speed, String> {
 }
 
 impl Pace {
-    /// Fills it in.
-    pub fn put(&self, draft: Draft) -> Draft {
+    /// Fills in the speed of axes.
+    pub fn put(&self, draft: Draft) -> Result<Draft, Failure> {
+        match &self.speed {
+            Some(Speed::MmS(_)) => Err(Failure::usage("a speed in mm/s is that of a tool along a line or an arc")
+                .hint("give percent, as in --speed 50, or the way, as in --linear")),
+            _ => Ok(self.put_linear(draft)),
+        }
+    }
+
+    /// Fills in the speed of a tool along a line or an arc.
+    pub fn put_linear(&self, draft: Draft) -> Draft {
         let draft = draft.with_some(Key::SpeedOfMax, self.speed_of_max.clone());
         match self.speed.clone() {
             None => draft,
@@ -50,13 +81,13 @@ impl Pace {
         }
     }
 
-    /// ` at 50 %`; empty unless given.
+    /// `at 50 %`.
     pub fn told(&self) -> String {
         match (&self.speed, &self.speed_of_max) {
-            (Some(Speed::Percent(percent)), _) => format!(" at {percent} %"),
-            (Some(Speed::MmS(mm_s)), _) => format!(" at {mm_s} mm/s"),
-            (None, Some(percent)) => format!(" at {percent} % of the maximum"),
-            (None, None) => String::new(),
+            (Some(Speed::Percent(percent)), _) => format!("at {percent} %"),
+            (Some(Speed::MmS(mm_s)), _) => format!("at {mm_s} mm/s"),
+            (None, Some(percent)) => format!("at {percent} % of the maximum"),
+            (None, None) => "at the program speed".to_owned(),
         }
     }
 }
@@ -79,6 +110,179 @@ impl Ramps {
     }
 }
 
+/// Which axes move.
+#[derive(Debug, Args)]
+pub struct Axes {
+    /// Axes that move, as in 1,3; all unless given
+    #[arg(long, value_name = "AXES")]
+    axes: Option<String>,
+}
+
+impl Axes {
+    /// Fills them in.
+    pub fn put(&self, draft: Draft) -> Draft {
+        draft.with_some(Key::Axes, self.axes.clone())
+    }
+
+    /// Fills them in, with a number for each of them in ascending order.
+    pub fn put_numbers(&self, draft: Draft, given: &[String]) -> Result<Draft, Failure> {
+        let keys = self.keys()?;
+        if keys.len() != given.len() {
+            let message = format!("{} numbers for {} axes", given.len(), keys.len());
+            return Err(
+                Failure::usage(message).hint("give one for each axis; name the axes with --axes if not all move")
+            );
+        }
+        Ok(keys.into_iter().zip(given).fold(self.put(draft), |draft, (key, text)| draft.with(key, text.trim())))
+    }
+
+    fn keys(&self) -> Result<Vec<Key>, Failure> {
+        let Some(axes) = &self.axes else { return Ok(Key::AXES.to_vec()) };
+        let key = |axis: &str| {
+            let axis: usize = axis.trim().parse().ok()?;
+            Key::AXES.get(axis.checked_sub(1)?).copied()
+        };
+        let keys: Option<Vec<Key>> = axes.split(',').map(key).collect();
+        let mut keys =
+            keys.ok_or_else(|| Failure::usage(format!("'{axes}' is no list of axes of 1 to 4, as in 1,3")))?;
+        keys.sort_unstable();
+        if keys.windows(2).any(|pair| pair[0] == pair[1]) {
+            return Err(Failure::usage(format!("--axes {axes} names an axis twice")));
+        }
+        Ok(keys)
+    }
+
+    /// `all axes`.
+    pub fn told(&self) -> String {
+        self.axes.as_ref().map_or_else(|| "all axes".to_owned(), |axes| format!("axes {axes} alone"))
+    }
+}
+
+/// Over which axis an arch goes, and how high.
+#[derive(Debug, Args)]
+pub struct Arch {
+    /// In an arch: this axis goes to this position first, as in 3:10.0
+    #[arg(long = "arch", group = "way", value_name = "AXIS:POS", value_parser = peak)]
+    peak: Option<Peak>,
+    /// Where the arch begins; 0 unless given
+    #[arg(long, value_name = "POS", requires = "peak", allow_hyphen_values = true)]
+    arch_start: Option<String>,
+    /// Where the arch ends; 0 unless given
+    #[arg(long, value_name = "POS", requires = "peak", allow_hyphen_values = true)]
+    arch_end: Option<String>,
+    /// What positions of the arch are measured in
+    #[arg(long, value_name = "UNIT", requires = "peak", default_value = "mm", hide_default_value = true)]
+    arch_unit: Unit,
+}
+
+/// An axis and a position as typed.
+#[derive(Debug, Clone)]
+struct Peak {
+    axis: String,
+    position: String,
+}
+
+fn peak(text: &str) -> Result<Peak, String> {
+    let (axis, position) = text.split_once(':').ok_or("an arch is an axis and a position, as in 3:10.0")?;
+    Ok(Peak { axis: axis.to_owned(), position: position.to_owned() })
+}
+
+impl Arch {
+    /// Whether there is one.
+    pub fn is_wanted(&self) -> bool {
+        self.peak.is_some()
+    }
+
+    /// Fills it in, if there is one.
+    pub fn put(&self, draft: Draft) -> Draft {
+        let Some(Peak { axis, position }) = &self.peak else { return draft };
+        draft
+            .with(Key::ArchUnit, i32::from(self.arch_unit == Unit::Mm))
+            .with(Key::ArchAxis, axis.as_str())
+            .with(Key::ArchPosition, position.as_str())
+            .with_some(Key::ArchStart, self.arch_start.clone())
+            .with_some(Key::ArchEnd, self.arch_end.clone())
+    }
+
+    /// ` in an arch over axis 3 at 10.0 mm`; empty where there is none.
+    pub fn told(&self) -> String {
+        let Some(Peak { axis, position }) = &self.peak else { return String::new() };
+        format!(" in an arch over axis {axis} at {position} {}", self.arch_unit.symbol())
+    }
+}
+
+/// On which side the elbow is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Hand {
+    /// Right-handed
+    Right,
+    /// Left-handed
+    Left,
+}
+
+impl Hand {
+    /// As a target in mm has it, which is not how the selection of the arm has it.
+    pub fn of_target(self) -> i32 {
+        match self {
+            Self::Right => 1,
+            Self::Left => 2,
+        }
+    }
+}
+
+/// Along which axes a jog or an inch goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum System {
+    /// An axis of the robot by itself
+    Pulse,
+    /// Along an axis of its Cartesian coordinates
+    Cartesian,
+    /// Along an axis of the coordinates of its tool
+    Tool,
+}
+
+impl System {
+    /// In which unit positions are told.
+    pub fn unit(self) -> Unit {
+        if self == Self::Pulse { Unit::Pulse } else { Unit::Mm }
+    }
+
+    /// ` in Cartesian coordinates`; empty for an axis by itself.
+    pub fn told(self) -> &'static str {
+        match self {
+            Self::Pulse => "",
+            Self::Cartesian => " in Cartesian coordinates",
+            Self::Tool => " in tool coordinates",
+        }
+    }
+}
+
+/// Which way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Direction {
+    /// Plus
+    #[value(name = "+", alias = "plus")]
+    Plus,
+    /// Minus
+    #[value(name = "-", alias = "minus")]
+    Minus,
+}
+
+impl Direction {
+    /// As a field.
+    pub fn value(self) -> i32 {
+        (self == Self::Minus).into()
+    }
+
+    /// `in plus direction`.
+    pub fn told(self) -> &'static str {
+        match self {
+            Self::Plus => "in plus direction",
+            Self::Minus => "in minus direction",
+        }
+    }
+}
+
 /// What to tell at the end.
 #[derive(Debug, Args)]
 pub struct Ending {
@@ -91,9 +295,9 @@ pub struct Ending {
 }
 
 impl Ending {
-    /// Fills it in.
-    pub fn put(&self, draft: Draft) -> Draft {
-        draft.with_some(Key::Report, self.report.map(Unit::report))
+    /// Asks for the position at the end in this unit.
+    pub fn put(draft: Draft, unit: Option<Unit>) -> Draft {
+        draft.with_some(Key::Report, unit.map(Unit::report))
     }
 }
 

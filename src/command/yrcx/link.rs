@@ -5,6 +5,7 @@
 //! link, so that [`Family::halt`] can end it properly.
 
 mod driver;
+mod jog;
 
 use std::convert::Infallible;
 use std::time::Duration;
@@ -103,7 +104,7 @@ struct Totals {
 }
 
 /// What was carried out.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Done {
     /// What the answer holds.
     pub values: Values,
@@ -164,7 +165,8 @@ impl Family for Yrcx {
         link.granted = link.granted.max(Risk::Write);
         link.abandon_sequence();
         if let Some(exchange) = &mut link.exchange {
-            let row = exchange.order().row();
+            let order = exchange.order().clone();
+            let row = order.row();
             let moves = matches!(row.pace, Pace::Motion | Pace::Jog);
             if moves {
                 link.screen.note("stopping the robot: stop input SI(06) off");
@@ -173,8 +175,8 @@ impl Family for Yrcx {
             exchange.interrupt(now);
             let outcome = link.until_ended().await?;
             return match &outcome.ended {
-                Ended::Answered(Answer::Refused { alarm, .. }) if *alarm == STOP_INPUT => {
-                    Ok("the robot was stopped by the stop input SI(06), which is on again".to_owned())
+                Ended::Answered(Answer::Refused { alarm, positions }) if *alarm == STOP_INPUT => {
+                    Ok(format!("{}{}", jog::STOPPED, refusal::stopped(&order, positions)))
                 }
                 Ended::Answered(Answer::Refused { alarm, .. }) => {
                     Ok(format!("{} had ended already: alarm {alarm}, {}", row.id, alarm.text()))
@@ -193,7 +195,11 @@ impl Family for Yrcx {
         let released = Procedure::set(input::STOP, true).ok_or_else(|| Failure::local("the stop input is no input"))?;
         link.carry_out(released).await?;
         link.has_started = false;
-        Ok("the robot was stopped by the stop input SI(06), which is on again".to_owned())
+        Ok(jog::STOPPED.to_owned())
+    }
+
+    fn must_halt(link: &Link) -> bool {
+        link.is_jogging()
     }
 
     fn rehearsed(link: &mut Link) -> Vec<Value> {
@@ -344,6 +350,12 @@ impl Link {
     async fn converse(&mut self, order: &Order) -> Result<Outcome, Failure> {
         self.start(order).await?;
         let outcome = self.until_ended().await?;
+        self.count(order, &outcome);
+        Ok(outcome)
+    }
+
+    /// Takes note of how an order ended.
+    fn count(&mut self, order: &Order, outcome: &Outcome) {
         self.totals.commands += 1;
         self.totals.waited += outcome.elapsed;
         if let Some(status) = outcome.leftover {
@@ -354,7 +366,6 @@ impl Link {
         }
         // Motions have ended with their answer; a program has begun.
         self.has_started |= order.risk() == Risk::Motion && order.row().pace == Pace::Quick;
-        Ok(outcome)
     }
 
     /// Carries out an order until it has ended, or the controller is seen to carry it out (`None`): it then goes on, and

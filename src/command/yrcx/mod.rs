@@ -20,19 +20,23 @@ mod coverage;
 mod info;
 mod io;
 pub mod link;
-mod moves;
+mod motion;
 mod overview;
 mod position;
 mod procedures;
 mod raw;
 mod reach;
 mod refusal;
+mod select;
 mod servo;
 pub mod simulated;
 mod single;
+mod speed;
 mod status;
+mod teach;
 #[cfg(test)]
 mod testing;
+mod torque_limit;
 mod trace;
 mod unit;
 
@@ -41,6 +45,7 @@ pub use overview::overview;
 pub use raw::words;
 pub use unit::Line;
 
+use self::motion::Moving;
 use crate::command::{Verbs, commands};
 
 commands! {
@@ -50,7 +55,41 @@ commands! {
         /// Signals, servos and position in words
         Status(status::Status),
         /// Move a robot to a point or to coordinates
-        Move(moves::Move),
+        Move(Moving<motion::Move>),
+        /// Move a robot by distances
+        Movei(Moving<motion::Movei>),
+        /// Move a robot to a point in the coordinates of its tool
+        Movet(Moving<motion::Movet>),
+        /// Move one axis to a place
+        Drive(Moving<motion::Drive>),
+        /// Move one axis by a distance
+        Drivei(Moving<motion::Drivei>),
+        /// Move a robot to a place on a pallet
+        Pallet(Moving<motion::Pallet>),
+        /// Push with one axis
+        Push(Moving<motion::Push>),
+        /// Move an axis until it is stopped
+        Jog(motion::Jog),
+        /// Move an axis by the inching distance
+        Inch(Moving<motion::Inch>),
+        /// Set the inching distance
+        InchDistance(motion::InchDistance),
+        /// Store where the robot is in a point
+        Teach(teach::Teach),
+        /// Return to origin
+        Origin(motion::Origin),
+        /// Reset the absolute position of an axis
+        AbsReset(motion::AbsReset),
+        /// Set a speed
+        Speed(speed::Speed),
+        /// The shift of the coordinates
+        Shift(Verbs<select::Shift>),
+        /// The hand at the robot's end
+        Hand(Verbs<select::Hand>),
+        /// The hand system of the arm
+        Arm(Verbs<select::Arm>),
+        /// Limit the torque of an axis
+        TorqueLimit(torque_limit::TorqueLimit),
         /// Switch servos on or off, or release their brakes
         Servo(servo::Servo),
         /// Switch motor power on or off

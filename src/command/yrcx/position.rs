@@ -24,6 +24,14 @@ impl Unit {
             Self::Mm => 2,
         }
     }
+
+    /// As it stands behind a number.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Pulse => "pulses",
+            Self::Mm => "mm",
+        }
+    }
 }
 
 /// Where a robot is.

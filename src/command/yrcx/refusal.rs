@@ -1,12 +1,15 @@
 //! Why an order was not carried out, in words: refused here, refused by the controller, or nobody knows.
 
 use super::io::named;
+use super::position::Unit;
 use crate::controller::Risk;
 use crate::controller::yrcx::alarm::Alarm;
 use crate::controller::yrcx::codec::WordError;
+use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::sequence;
 use crate::controller::yrcx::session::{Ended, Hindrance, Outcome, Silence};
 use crate::controller::yrcx::table::{Command, Pace, Row};
+use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::{Failure, Kind};
 
 /// Words that the manual does not allow to be sent are a mistake of the command line.
@@ -26,12 +29,32 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
         (Risk::Motion, Pace::Motion | Pace::Jog) => "refused or broke off",
         _ => "refused",
     };
+    let remedy = match alarm.known().and_then(|known| known.remedies.first()) {
+        Some(remedy) => (*remedy).to_owned(),
+        None => format!("look up {alarm} in the controller's manual; `yrcx info alarm` tells where it came up"),
+    };
+    let kept = if row.keeps_target() { format!("; if it had begun to move, {KEPT}") } else { String::new() };
     Failure::new(Kind::Refused, format!("the controller {what} {}: alarm {alarm}, {}", row.id, alarm.text()))
         .code(alarm.to_string())
-        .hint(match alarm.known().and_then(|known| known.remedies.first()) {
-            Some(remedy) => (*remedy).to_owned(),
-            None => format!("look up {alarm} in the controller's manual; `yrcx info alarm` tells where it came up"),
-        })
+        .hint(format!("{remedy}{kept}"))
+}
+
+/// What a relative motion that was stopped does (4.2.2, 4.2.4).
+const KEPT: &str = "the same command again goes on to its old target, unless the controller's \"MOVEI/DRIVEI start \
+                    position\" is Reset";
+
+/// How an order that the stop input ended leaves the robot: what is known of where it stands, and what comes next.
+pub fn stopped(order: &Order, values: &Values) -> String {
+    let position = match (values.axes(), order.values().int(Key::Report)) {
+        (Some(axes), Some(report)) if report == Unit::Mm.report() => {
+            let mm = axes.map(|steps| format!("{:.3}", f64::from(steps) / 1000.0));
+            format!("; it stands at {} mm", mm.join(", "))
+        }
+        (Some(axes), _) => format!("; it stands at {} pulses", axes.map(|pulses| pulses.to_string()).join(", ")),
+        (None, _) => String::new(),
+    };
+    let kept = if order.row().keeps_target() { format!("; {KEPT}") } else { String::new() };
+    format!("{position}{kept}")
 }
 
 /// An exchange that ended without an answer.
@@ -122,7 +145,8 @@ fn telltale(command: Command) -> String {
     let row = command.row();
     match (row.category(), row.pace) {
         (1, Pace::Motion | Pace::Jog) => {
-            "keep clear; do not send it again; `yrcx info position` tells where the robot is".to_owned()
+            let kept = if row.keeps_target() { format!("; {KEPT}") } else { String::new() };
+            format!("keep clear; do not send it again; `yrcx info position` tells where the robot is{kept}")
         }
         (1, Pace::Power) => "`yrcx status` tells whether servos and motor power are on".to_owned(),
         (5, _) => "keep clear; `yrcx info tasks` tells what runs".to_owned(),
@@ -194,8 +218,7 @@ mod tests {
 
     #[test]
     fn words_that_must_not_be_sent_are_a_mistake_of_the_command_line() {
-        let error =
-            Command::MovePtp.order().with(crate::controller::yrcx::value::Key::Point, 30_000).build().unwrap_err();
+        let error = Command::MovePtp.order().with(Key::Point, 30_000).build().unwrap_err();
         let failure = Failure::from(WordError { alarm: Some(INPUT_FORMAT), ..error });
         assert_eq!(failure.kind, Kind::Usage);
         assert_eq!(failure.message, "WI4 point: 30000 is out of range; allowed: 0 to 29999");

@@ -24,15 +24,30 @@ use crate::transport::image::ImagePeer;
 /// The examples of the manual.
 const EXAMPLES: &str = include_str!("../../../tests/data/yrcx-examples.json");
 
+/// All of them, as the data file has them.
+pub(super) fn entries() -> Vec<Value> {
+    serde_json::from_str(EXAMPLES).unwrap()
+}
+
 fn entry(id: &str) -> Value {
-    let examples: Vec<Value> = serde_json::from_str(EXAMPLES).unwrap();
-    examples.into_iter().find(|example| example["id"] == id).unwrap_or_else(|| panic!("no example {id}"))
+    entries().into_iter().find(|example| example["id"] == id).unwrap_or_else(|| panic!("no example {id}"))
 }
 
 /// WI0 to WI15 of an example of the manual, as dry runs show them.
 #[track_caller]
 pub(super) fn example(id: &str) -> Vec<String> {
-    texts(&entry(id)["wi"])
+    texts(corrected(&entry(id), "wi"))
+}
+
+/// WO0 to WO15 of an example of the manual.
+#[track_caller]
+pub(super) fn answer(id: &str) -> Words {
+    numbers(corrected(&entry(id), "wo"))
+}
+
+/// The words of an example, misprints set right.
+fn corrected<'a>(entry: &'a Value, words: &str) -> &'a Value {
+    entry.get(format!("{words}_corrected")).unwrap_or(&entry[words])
 }
 
 fn texts(words: &Value) -> Vec<String> {
@@ -50,10 +65,9 @@ fn numbers(texts: &Value) -> Words {
 /// The report of a command line that is answered as in an example of the manual.
 #[track_caller]
 pub(super) fn read_example(id: &str, line: &[&str]) -> Value {
-    let example = entry(id);
-    let scripted = Scripted::new([Reply::Ends(1, numbers(&example["wo"]))]);
+    let scripted = Scripted::new([Reply::Ends(1, answer(id))]);
     let (outcome, peer) = run_on(scripted, line);
-    assert_eq!(peer.taken, [numbers(&example["wi"])]);
+    assert_eq!(peer.taken, [numbers(corrected(&entry(id), "wi"))]);
     outcome.unwrap()
 }
 
@@ -80,7 +94,7 @@ pub(super) fn desk(words: &[&str]) -> Value {
 
 /// The words WI0 to WI15 of all commands that `armctl yrcx WORDS…` would send.
 pub(super) fn words(words: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
-    Ok(frames(words)?.iter().map(|frame| texts(&frame["wi"])).collect())
+    Ok(frames(words)?.iter().map(|frame| &frame["wi"]).filter(|words| words.is_array()).map(texts).collect())
 }
 
 /// All that `armctl yrcx WORDS…` would send.

@@ -47,10 +47,9 @@ impl AnyCommand<Family> for OfUnit {
     }
 
     fn intent(&self) -> String {
-        match self.unit {
-            0 => self.command.intent(),
-            unit => format!("{}, robot {unit}", self.command.intent()),
-        }
+        let intent = self.command.intent();
+        let robot = format!("robot {}", self.unit);
+        if self.unit == 0 || intent.contains(&robot) { intent } else { format!("{intent}, {robot}") }
     }
 
     fn demand(&self) -> Demand {

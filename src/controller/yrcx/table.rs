@@ -107,6 +107,21 @@ impl Row {
         matches!(self.risk, Risk::Read) && !matches!(self.command, Command::ProgramShow)
     }
 
+    /// Whether it goes on to its old target when it is given again after a stop, unless a setting says otherwise (4.2.2,
+    /// 4.2.4).
+    pub const fn keeps_target(&self) -> bool {
+        matches!(
+            self.command,
+            Command::MoveiPtp
+                | Command::MoveiLinear
+                | Command::MoveiMm
+                | Command::MoveiPulse
+                | Command::DriveiPoint
+                | Command::DriveiMm
+                | Command::DriveiPulse
+        )
+    }
+
     /// The code as the manual writes it, such as `0xR001`.
     pub fn code_text(&self) -> String {
         if self.has_robot() { format!("0xR{:03X}", self.code) } else { format!("0x{:04X}", self.code) }

@@ -16,7 +16,7 @@ use crate::failure::{Failure, Kind};
 use crate::transport::image::Event;
 
 /// A session that waits for nothing is asked again after this.
-const LONG: Duration = Duration::from_secs(3600);
+pub(super) const LONG: Duration = Duration::from_secs(3600);
 
 impl Link {
     /// After an opening: shows the resting image, and waits until the controller has shown something.

@@ -148,6 +148,11 @@ impl Exchange {
         }
     }
 
+    /// When the command left for the first time.
+    pub fn sent(&self) -> Option<Now> {
+        self.sent
+    }
+
     /// Whether the controller is seen to carry it out.
     pub fn is_running(&self) -> bool {
         self.phase == Phase::Command && self.sent.is_some() && self.status() == Some(Status::Running)

@@ -93,24 +93,10 @@ fn travel(world: &mut World, request: &Request) -> Result<(), Fault> {
     };
     let legs = legs(world, request, &target)?;
     world.begin(robot, Owner::Remote, legs, End::Arrived)?;
-    if is_relative(request.row.command) {
+    if request.row.keeps_target() {
         world.robot_mut(robot)?.kept = Some(Kept { words: request.words, target });
     }
     Ok(())
-}
-
-/// Motions that keep their target when they are given again after a stop (4.2.2, 4.2.4).
-fn is_relative(command: Command) -> bool {
-    matches!(
-        command,
-        Command::MoveiPtp
-            | Command::MoveiLinear
-            | Command::MoveiMm
-            | Command::MoveiPulse
-            | Command::DriveiPoint
-            | Command::DriveiMm
-            | Command::DriveiPulse
-    )
 }
 
 /// Pulses at the end.

@@ -1,0 +1,123 @@
+//! Jogs: motions that go on until the stop input goes off (4.2.6). Whatever happens, it goes off.
+
+use std::time::Duration;
+
+use tokio::time::Instant;
+
+use super::driver::LONG;
+use super::{Done, LEAVE_WITHIN, Link};
+use crate::command::interrupt::abandoned;
+use crate::controller::yrcx::alarm::STOP_INPUT;
+use crate::controller::yrcx::answer::Answer;
+use crate::controller::yrcx::order::Order;
+use crate::controller::yrcx::procedure::Procedure;
+use crate::controller::yrcx::session::{Ended, Outcome};
+use crate::controller::yrcx::signal::input;
+use crate::controller::yrcx::table::Pace;
+use crate::failure::{Failure, Kind};
+
+/// Faults of the link that are survived while a jog is being stopped. A link that has none but faults is given up.
+const MOST_FAULTS: u32 = 100;
+
+impl Link {
+    /// Jogs for `time` from the moment that the command leaves, or until it is dropped and halted; stops it, and says
+    /// where the robot is. That the stop input ended it is no refusal then.
+    ///
+    /// # Errors
+    ///
+    /// The jog was refused, ended by itself, or was not seen to end: the stop input stays off then.
+    pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<Done, Failure> {
+        self.admit(order.row().id, order.risk())?;
+        if self.is_dry() {
+            self.note(order);
+            for on in [false, true] {
+                self.note_steps(&Procedure::set(input::STOP, on).expect("the stop input is an input"));
+            }
+            return Ok(Done::default());
+        }
+        let key = abandoned();
+        self.start(order).await?;
+        let cut = tokio::select! {
+            biased;
+            key = key => Some(Failure::new(Kind::Interrupted, key)),
+            gone = self.go_on(time) => gone.err(),
+        };
+        self.end_jog(order, cut).await
+    }
+
+    /// Turns until the jog has gone on for its time, or has ended.
+    async fn go_on(&mut self, time: Option<Duration>) -> Result<(), Failure> {
+        while let Some(exchange) = &self.exchange {
+            let until = match time.zip(exchange.sent()) {
+                Some((time, sent)) => self.started + sent + time,
+                None => Instant::now() + LONG,
+            };
+            if Instant::now() >= until {
+                break;
+            }
+            self.turn_until(until).await?;
+        }
+        Ok(())
+    }
+
+    /// Stops it, if it has not ended. `cut` says what ended it before its time.
+    async fn end_jog(&mut self, order: &Order, cut: Option<Failure>) -> Result<Done, Failure> {
+        let now = self.now();
+        let is_stopped = self.exchange.is_some();
+        if let Some(exchange) = &mut self.exchange {
+            exchange.interrupt(now);
+        }
+        let mut faults = 0;
+        while self.exchange.is_some() && faults < MOST_FAULTS {
+            faults += u32::from(self.turn().await.is_err());
+        }
+        let ended = match self.ended.take() {
+            Some(outcome) => self.ended_jog(order, outcome, is_stopped).await,
+            None => Err(Failure::new(Kind::OutcomeUnknown, "nothing reaches the controller any more")),
+        };
+        match (cut, ended) {
+            (None, ended) => ended,
+            (Some(cut), Ok(_)) => Err(Failure { message: format!("{}; {STOPPED}", cut.message), ..cut }),
+            (Some(cut), Err(failure)) => {
+                Err(Failure { message: format!("{}; {}", cut.message, failure.message), ..failure })
+            }
+        }
+    }
+
+    async fn ended_jog(&mut self, order: &Order, mut outcome: Outcome, is_stopped: bool) -> Result<Done, Failure> {
+        self.count(order, &outcome);
+        if let Ended::OutcomeUnknown(_) = outcome.ended {
+            self.hold().await;
+            outcome.stop_held = true;
+        }
+        let given = self.given(order.row(), outcome)?;
+        match given.answer {
+            Answer::Refused { alarm: STOP_INPUT, positions } if is_stopped => {
+                Ok(Done { values: positions, elapsed: given.elapsed })
+            }
+            _ => given.done(order.row()),
+        }
+    }
+
+    /// Switches the stop input off, and leaves it off.
+    async fn hold(&mut self) {
+        input::STOP.set(&mut self.output.next, false);
+        let until = Instant::now() + LEAVE_WITHIN;
+        let mut faults = 0;
+        while self.is_up
+            && self.output.last_sent() != Some(&self.output.next)
+            && Instant::now() < until
+            && faults < MOST_FAULTS
+        {
+            faults += u32::from(self.turn_until(until).await.is_err());
+        }
+    }
+
+    /// Whether a jog is under way.
+    pub(super) fn is_jogging(&self) -> bool {
+        self.exchange.as_ref().is_some_and(|exchange| exchange.order().row().pace == Pace::Jog)
+    }
+}
+
+/// What became of what was stopped.
+pub(super) const STOPPED: &str = "the robot was stopped by the stop input SI(06), which is on again";

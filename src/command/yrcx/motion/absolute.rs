@@ -1,0 +1,106 @@
+//! `yrcx abs-reset` (4.2.10, 4.2.11): where an axis of the mark type is, told anew.
+
+use clap::Args;
+
+use super::{Moved, go};
+use crate::command::yrcx::Family;
+use crate::command::yrcx::arguments::{Direction, Which};
+use crate::command::{Command, Context};
+use crate::controller::Risk;
+use crate::controller::yrcx::table;
+use crate::controller::yrcx::value::Key;
+use crate::failure::Failure;
+use crate::gate::Demand;
+
+/// Resets the absolute position of an axis of the mark type.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "First `--move +` or `--move -` to the nearest position where it is possible, of which there are four a \
+    turn of the motor. Look at the marks: a reset at the wrong one puts the origin elsewhere. Then without --move."
+)]
+pub struct AbsReset {
+    /// The axis, 1 to 4
+    #[arg(long, value_name = "AXIS")]
+    axis: String,
+    /// Move only, this way, to the nearest position where a reset is possible
+    #[arg(long = "move", value_name = "DIRECTION", allow_hyphen_values = true)]
+    direction: Option<Direction>,
+    /// Do not wait for the end of the motion
+    #[arg(long, requires = "direction")]
+    no_wait: bool,
+    #[command(flatten)]
+    which: Which,
+}
+
+impl AbsReset {
+    fn command(&self) -> table::Command {
+        match self.direction {
+            Some(_) => table::Command::AbsoluteResetMove,
+            None => table::Command::AbsoluteReset,
+        }
+    }
+
+    /// `axis 2 of robot 1`.
+    fn axis(&self) -> String {
+        format!("axis {} of {}", self.axis, self.which.name())
+    }
+}
+
+impl Command for AbsReset {
+    type Family = Family;
+    type Report = Moved;
+    const ID: &'static str = "yrcx.abs-reset";
+
+    fn risk(&self) -> Risk {
+        self.command().row().risk
+    }
+
+    fn intent(&self) -> String {
+        let axis = self.axis();
+        match self.direction {
+            Some(direction) => format!("move {axis} {} to the nearest reset position", direction.told()),
+            None => format!("make the place where {axis} stands its reset position, and so decide where its origin is"),
+        }
+    }
+
+    fn demand(&self) -> Demand {
+        match self.direction {
+            Some(_) => Demand::Usual,
+            None => Demand::Word("reset"),
+        }
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Moved, Failure> {
+        let draft = context.link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
+        let Some(direction) = self.direction else {
+            let done = context.link.run(&draft.build()?).await?;
+            return Ok(Moved::new(format!("reset the absolute position of {}", self.axis()), Some(&done), None));
+        };
+        let order = draft.with(Key::Direction, direction.value()).build()?;
+        let way = format!("{} {} to a reset position", self.axis(), direction.told());
+        let done = go(context.link, context.screen, &order, self.no_wait, &format!("moving {way}")).await?;
+        let verb = if done.is_some() { "moved" } else { "moving" };
+        Ok(Moved::new(format!("{verb} {way}"), done.as_ref(), None))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::yrcx::testing::{intent, objection, risk, words};
+    use crate::controller::Risk;
+
+    #[test]
+    fn the_move_and_the_reset_are_two_things() {
+        let first = |line: &str| words(&line.split(' ').collect::<Vec<_>>()).unwrap()[0][..3].to_vec();
+        assert_eq!(first("abs-reset --axis 3 --move + --unit 2"), ["0x2030", "0x0000", "0x0004"]);
+        assert_eq!(first("abs-reset --axis 3 --unit 2"), ["0x2031", "0x0000", "0x0004"]);
+        assert_eq!(risk(&["abs-reset", "--axis", "1", "--move", "-"]), Risk::Motion);
+        assert_eq!(
+            intent(&["abs-reset", "--axis", "1", "--move", "-"]),
+            "move axis 1 of robot 1 in minus direction to the nearest reset position"
+        );
+        assert!(intent(&["abs-reset", "--axis", "1", "--unit", "3"]).contains("axis 1 of robot 3"));
+        assert!(words(&["abs-reset", "--axis", "none"]).unwrap_err().message.contains("name exactly 1"));
+        assert!(objection(&["abs-reset"]).contains("--axis"));
+    }
+}

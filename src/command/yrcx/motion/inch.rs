@@ -1,0 +1,119 @@
+//! `yrcx inch` (4.2.7) and `yrcx inch-distance` (4.2.8): by a small distance that is set beforehand.
+
+use clap::Args;
+
+use super::{Motion, Moved};
+use crate::command::orders::Done;
+use crate::command::yrcx::arguments::{Direction, System};
+use crate::command::yrcx::link;
+use crate::command::yrcx::position::Unit;
+use crate::command::yrcx::single::Single;
+use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::Failure;
+
+/// Moves by the inching distance.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "`yrcx inch-distance` sets how far that is, `yrcx info inch` reads it; the speed is the manual speed."
+)]
+pub struct Inch {
+    /// Along which axes
+    system: System,
+    /// Which axis, 1 to 4
+    axis: String,
+    /// Which way
+    direction: Direction,
+}
+
+impl Motion for Inch {
+    type Report = Moved;
+    const ID: &'static str = "yrcx.inch";
+    const VERB: [&'static str; 3] = ["inch", "inching", "inched"];
+
+    fn command(&self) -> Command {
+        match self.system {
+            System::Pulse => Command::InchPulse,
+            System::Cartesian => Command::InchCartesian,
+            System::Tool => Command::InchTool,
+        }
+    }
+
+    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+        Ok(draft.with(Key::Axes, self.axis.as_str()).with(Key::Direction, self.direction.value()))
+    }
+
+    fn axis(&self) -> Option<String> {
+        Some(format!("axis {}", self.axis))
+    }
+
+    fn target(&self) -> String {
+        format!("{}{}", self.direction.told(), self.system.told())
+    }
+
+    fn manner(&self) -> String {
+        "by the inching distance, at the manual speed".to_owned()
+    }
+
+    fn usual_unit(&self) -> Option<Unit> {
+        Some(self.system.unit())
+    }
+
+    fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
+        moved
+    }
+}
+
+/// Sets the inching distance.
+#[derive(Debug, Args)]
+pub struct InchDistance {
+    /// Pulses, or steps of 0.001 mm along coordinates; 1 to 10000
+    distance: String,
+}
+
+impl Single for InchDistance {
+    type Report = Done;
+    const ID: &'static str = "yrcx.inch-distance";
+
+    fn command(&self) -> Command {
+        Command::InchAmountSet
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        draft.with(Key::InchingAmount, self.distance.as_str())
+    }
+
+    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+        Ok(Done::new(format!(
+            "set the inching distance to {}: so many pulses, or steps of 0.001 mm along coordinates",
+            self.distance
+        )))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::yrcx::testing::{intent, objection, words};
+
+    #[test]
+    fn an_inch_has_a_system_an_axis_and_a_direction() {
+        let sent = words(&["inch", "tool", "4", "minus", "--unit", "2", "--report", "pulse"]).unwrap();
+        assert_eq!(sent[0][..4], ["0x2026", "0x4000", "0x0088", "0x0000"]);
+        assert_eq!(
+            intent(&["inch", "cartesian", "2", "+"]),
+            "inch axis 2 of robot 1 in plus direction in Cartesian coordinates (by the inching distance, at the manual speed)"
+        );
+        assert!(words(&["inch", "pulse", "1,2", "+"]).unwrap_err().message.contains("name exactly 1"));
+        assert!(objection(&["inch", "joint", "1", "+"]).contains("pulse, cartesian, tool"));
+    }
+
+    #[test]
+    fn distances_have_a_range() {
+        assert_eq!(words(&["inch-distance", "10000", "--unit", "4"]).unwrap()[0][..3], ["0x4027", "0x0000", "0x2710"]);
+        for wrong in ["0", "10001", "0.1", "1mm"] {
+            let failure = words(&["inch-distance", wrong]).unwrap_err();
+            assert!(failure.message.contains("inching_amount"), "{wrong}: {failure}");
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! `yrcx jog` (4.2.6): an axis goes on until it is stopped, and it is stopped whatever happens.
+
+use std::time::Duration;
+
+use clap::Args;
+
+use super::{Live, Moved};
+use crate::command::yrcx::Family;
+use crate::command::yrcx::arguments::{Direction, Ending, System, Which};
+use crate::command::yrcx::position::Unit;
+use crate::command::{Command, Context};
+use crate::controller::Risk;
+use crate::controller::yrcx::table;
+use crate::controller::yrcx::value::Key;
+use crate::failure::Failure;
+use crate::settings::duration;
+
+/// Jogs an axis at the manual speed, for a time or until Ctrl-C.
+///
+/// It is stopped by the stop input SI(06) after its time, at Ctrl-C, at Ctrl-Z, and whenever the controller shows something
+/// odd; then SI(06) stays off. If armctl is killed or its computer dies, the link goes down with it, and the controller
+/// stops by itself. Soft limits stop it with an alarm.
+#[derive(Debug, Args)]
+pub struct Jog {
+    /// Along which axes
+    system: System,
+    /// Which axis, 1 to 4
+    axis: String,
+    /// Which way
+    direction: Direction,
+    /// How long; until Ctrl-C unless given
+    #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
+    within: Option<Duration>,
+    /// Report the position at the end, in this unit; in that of the axes unless given
+    #[arg(long, value_name = "UNIT")]
+    report: Option<Unit>,
+    #[command(flatten)]
+    which: Which,
+}
+
+impl Jog {
+    fn command(&self) -> table::Command {
+        match self.system {
+            System::Pulse => table::Command::JogPulse,
+            System::Cartesian => table::Command::JogCartesian,
+            System::Tool => table::Command::JogTool,
+        }
+    }
+
+    /// Completes "jog axis 1 …".
+    fn told(&self) -> String {
+        format!("{}{}", self.direction.told(), self.system.told())
+    }
+}
+
+impl Command for Jog {
+    type Family = Family;
+    type Report = Moved;
+    const ID: &'static str = "yrcx.jog";
+
+    fn risk(&self) -> Risk {
+        self.command().row().risk
+    }
+
+    fn intent(&self) -> String {
+        let until = match self.within {
+            Some(time) => format!("for {}", duration::display(time)),
+            None => "until Ctrl-C".to_owned(),
+        };
+        format!("jog axis {} of {} {} ({until}, at the manual speed)", self.axis, self.which.name(), self.told())
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Moved, Failure> {
+        let link = context.link;
+        let unit = self.report.unwrap_or(self.system.unit());
+        let draft = link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
+        let order = Ending::put(draft.with(Key::Direction, self.direction.value()), Some(unit)).build()?;
+        let object = format!("axis {} {}", self.axis, self.told());
+        let live = Live::new(link, context.screen, &format!("jogging {object}"));
+        let done = link.jog(&order, self.within).await;
+        live.end();
+        Ok(Moved::new(format!("jogged {object}"), Some(&done?), Some(unit)))
+    }
+}
+
+#[cfg(test)]
+mod tests;

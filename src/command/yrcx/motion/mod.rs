@@ -1,0 +1,216 @@
+//! Motions by remote commands (4.2): what they share is here, how each is told and reported.
+
+mod absolute;
+mod drive;
+mod inch;
+mod jog;
+mod moves;
+mod origin;
+mod pallet;
+mod push;
+mod relative;
+mod tool;
+
+use std::sync::mpsc::{self, Sender};
+use std::thread::{self, JoinHandle};
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::arguments::{Ending, Which};
+use super::link::{Done, Link};
+use super::position::{Position, Unit};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::yrcx::order::{Draft, Order};
+use crate::controller::yrcx::table;
+use crate::controller::yrcx::value::Values;
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::{Section, View};
+
+pub use absolute::AbsReset;
+pub use drive::{Drive, Drivei};
+pub use inch::{Inch, InchDistance};
+pub use jog::Jog;
+pub use moves::Move;
+pub use origin::Origin;
+pub use pallet::Pallet;
+pub use push::Push;
+pub use relative::Movei;
+pub use tool::Movet;
+
+/// A motion that ends by itself and can tell where the robot is then; [`Moving`] makes a command of it.
+pub trait Motion: Args {
+    /// What it reports.
+    type Report: Report + 'static;
+    /// `yrcx.move`: its name in envelopes and schemas.
+    const ID: &'static str;
+    /// What it does, how it is doing it, what it has done.
+    const VERB: [&'static str; 3] = ["move", "moving", "moved"];
+
+    /// The row of the table.
+    fn command(&self) -> table::Command;
+
+    /// Fills in what was typed.
+    fn fill(&self, draft: Draft) -> Result<Draft, Failure>;
+
+    /// The axis, where it is one: `axis 3`.
+    fn axis(&self) -> Option<String> {
+        None
+    }
+
+    /// Where to: `to point 19 in a straight line`.
+    fn target(&self) -> String;
+
+    /// Which axes, and how fast: `all axes, at 50 %`.
+    fn manner(&self) -> String;
+
+    /// In which unit to report the position, where the command line does not say.
+    fn usual_unit(&self) -> Option<Unit> {
+        None
+    }
+
+    /// What came of it; `values` are those of the answer, if it has ended.
+    fn report(&self, moved: Moved, values: Option<&Values>) -> Self::Report;
+}
+
+/// A motion as a command.
+#[derive(Debug, Args)]
+pub struct Moving<M: Args> {
+    #[command(flatten)]
+    motion: M,
+    #[command(flatten)]
+    ending: Ending,
+    #[command(flatten)]
+    which: Which,
+}
+
+impl<M: Motion> Moving<M> {
+    fn unit(&self) -> Option<Unit> {
+        self.ending.report.or(self.motion.usual_unit())
+    }
+
+    /// The target, after the axis where it is one.
+    fn object(&self) -> String {
+        self.motion.axis().map_or_else(|| self.motion.target(), |axis| format!("{axis} {}", self.motion.target()))
+    }
+}
+
+impl<M: Motion> Command for Moving<M> {
+    type Family = Family;
+    type Report = M::Report;
+    const ID: &'static str = M::ID;
+
+    fn risk(&self) -> Risk {
+        self.motion.command().row().risk
+    }
+
+    fn intent(&self) -> String {
+        let axis = self.motion.axis().map(|axis| format!("{axis} of ")).unwrap_or_default();
+        let [verb, ..] = M::VERB;
+        format!("{verb} {axis}{} {} ({})", self.which.name(), self.motion.target(), self.motion.manner())
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<M::Report, Failure> {
+        let draft = context.link.draft(self.motion.command())?;
+        let order = Ending::put(self.motion.fill(draft)?, self.unit()).build()?;
+        let [_, moving, moved] = M::VERB;
+        let object = self.object();
+        let doing = format!("{moving} {object}");
+        let done = go(context.link, context.screen, &order, self.ending.no_wait, &doing).await?;
+        let has_done = format!("{moved} {object}");
+        let report = Moved::new(if done.is_some() { has_done } else { doing }, done.as_ref(), self.unit());
+        Ok(self.motion.report(report, done.as_ref().map(|done| &done.values)))
+    }
+}
+
+/// Carries out a motion and waits for its end, unless that is not wanted.
+async fn go(
+    link: &mut Link,
+    screen: &Screen,
+    order: &Order,
+    no_wait: bool,
+    doing: &str,
+) -> Result<Option<Done>, Failure> {
+    if no_wait {
+        return link.begin_run(order).await;
+    }
+    let live = Live::new(link, screen, doing);
+    let done = link.run(order).await;
+    live.end();
+    done.map(Some)
+}
+
+/// Shows that something moves and since when, from a thread of its own: a terminal that is held must not hold the stop.
+struct Live(Option<(Sender<()>, JoinHandle<()>)>);
+
+impl Live {
+    /// Begins to show it; a dry run moves nothing.
+    fn new(link: &Link, screen: &Screen, doing: &str) -> Self {
+        let (screen, doing) = (*screen, doing.to_owned());
+        Self((!link.is_dry()).then(|| {
+            let (end, ended) = mpsc::channel();
+            let show = move || {
+                let _progress = screen.spinner(&doing);
+                // It ends when the other side is dropped; nothing is ever sent.
+                ended.recv().unwrap_or_default();
+            };
+            (end, thread::spawn(show))
+        }))
+    }
+
+    /// Clears what it shows, once nothing moves any more.
+    fn end(self) {
+        if let Some((end, thread)) = self.0 {
+            drop(end);
+            thread.join().unwrap_or_default();
+        }
+    }
+}
+
+/// What came of a motion.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Moved {
+    /// In words.
+    done: String,
+    /// Whether the motion has ended; false only with --no-wait.
+    ended: bool,
+    /// From sending the command to its end; null unless it has ended.
+    elapsed_ms: Option<u64>,
+    /// Where the robot is at the end, if that was asked for.
+    #[serde(flatten)]
+    position: Position,
+}
+
+impl Moved {
+    fn new(done: String, answer: Option<&Done>, unit: Option<Unit>) -> Self {
+        Self {
+            done,
+            ended: answer.is_some(),
+            elapsed_ms: answer.map(|answer| u64::try_from(answer.elapsed.as_millis()).unwrap_or(u64::MAX)),
+            position: answer.map(|answer| Position::of(&answer.values, unit)).unwrap_or_default(),
+        }
+    }
+
+    /// The view, with more to say after the time it took.
+    fn view_with(&self, more: &str) -> View {
+        let elapsed = self.elapsed_ms.map(|ms| format!(" in {}.{:03} s", ms / 1000, ms % 1000)).unwrap_or_default();
+        let view = View::text(format!("{}{elapsed}{more}", self.done));
+        match self.position.table() {
+            Some(table) => view.and(Section::Table(table)),
+            None => view,
+        }
+    }
+}
+
+impl Report for Moved {
+    fn view(&self) -> View {
+        self.view_with("")
+    }
+}
+
+#[cfg(test)]
+mod tests;

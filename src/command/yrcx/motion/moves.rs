@@ -1,0 +1,173 @@
+//! `yrcx move` (4.2.1): to a point or two, or to coordinates.
+
+use clap::{ArgGroup, Args};
+
+use super::{Motion, Moved};
+use crate::command::yrcx::arguments::{Arch, Axes, Hand, Pace, Ramps};
+use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::Failure;
+
+/// Moves to a point, or to coordinates.
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("destination").required(true), after_help = "Without --speed the robot moves at the program speed. \
+    While it moves the controller tells that it does and no position: it carries out one remote command at a time.")]
+pub struct Move {
+    /// Point to move to; two points of an arc with --circular, as in 100,101
+    #[arg(long, value_name = "POINT", group = "destination", value_delimiter = ',')]
+    point: Vec<String>,
+    /// Coordinates of the axes in mm, of all four or of those of --axes
+    #[arg(long, value_name = "MM,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
+        conflicts_with_all = ["linear", "circular", "peak"])]
+    to: Vec<String>,
+    /// Coordinates of the axes in pulses, likewise
+    #[arg(long, value_name = "PULSES,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
+        conflicts_with_all = ["linear", "circular", "peak"])]
+    to_pulse: Vec<String>,
+    /// In a straight line
+    #[arg(long, group = "way")]
+    linear: bool,
+    /// In an arc over the first point to the second
+    #[arg(long, group = "way", conflicts_with = "axes")]
+    circular: bool,
+    #[command(flatten)]
+    arch: Arch,
+    #[command(flatten)]
+    axes: Axes,
+    #[command(flatten)]
+    pace: Pace,
+    #[command(flatten)]
+    ramps: Ramps,
+    /// Hand system of the coordinates of --to
+    #[arg(long, value_name = "HAND", conflicts_with_all = ["point", "to_pulse"])]
+    hand: Option<Hand>,
+}
+
+impl Motion for Move {
+    type Report = Moved;
+    const ID: &'static str = "yrcx.move";
+
+    fn command(&self) -> Command {
+        match self {
+            Self { to, .. } if !to.is_empty() => Command::MoveMm,
+            Self { to_pulse, .. } if !to_pulse.is_empty() => Command::MovePulse,
+            Self { linear: true, .. } => Command::MoveLinear,
+            Self { circular: true, .. } => Command::MoveCircular,
+            Self { arch, .. } if arch.is_wanted() => Command::MoveArch,
+            _ => Command::MovePtp,
+        }
+    }
+
+    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+        let draft = match (&self.point[..], self.circular) {
+            ([], _) => self.axes.put_numbers(draft, [&self.to, &self.to_pulse][usize::from(self.to.is_empty())])?,
+            ([point], false) => self.axes.put(draft).with(Key::Point, point.as_str()),
+            ([first, second], true) => draft.with(Key::Point, first.as_str()).with(Key::Point2, second.as_str()),
+            (_, true) => {
+                return Err(Failure::usage("an arc has two points").hint("name both: --point 100,101 --circular"));
+            }
+            (_, false) => return Err(Failure::usage("a motion has one point").hint("an arc has two: add --circular")),
+        };
+        let draft = if self.linear || self.circular { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
+        let draft = self.arch.put(self.ramps.put(draft));
+        Ok(draft.with_some(Key::HandSystem, self.hand.map(Hand::of_target)))
+    }
+
+    fn target(&self) -> String {
+        let place = match (&self.point[..], &self.to[..], &self.to_pulse[..]) {
+            ([first, second], ..) => format!("over point {first} to point {second}"),
+            ([point, ..], ..) => format!("to point {point}"),
+            (_, [_, ..], _) => format!("to {} mm", self.to.join(", ")),
+            _ => format!("to {} pulses", self.to_pulse.join(", ")),
+        };
+        let way = match self.command() {
+            Command::MoveLinear => " in a straight line".to_owned(),
+            Command::MoveCircular => " in an arc".to_owned(),
+            _ => self.arch.told(),
+        };
+        format!("{place}{way}")
+    }
+
+    fn manner(&self) -> String {
+        format!("{}, {}", self.axes.told(), self.pace.told())
+    }
+
+    fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
+        moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::yrcx::testing::{intent, objection, words};
+    use crate::failure::Kind;
+
+    #[test]
+    fn some_axes_and_another_robot() {
+        let sent = words(&["--unit", "2", "move", "--to", "1.5,-2", "--axes", "3,1", "--hand", "left"]).unwrap();
+        assert_eq!(
+            sent[0][..10],
+            ["0x2006", "0x0011", "0x0005", "0x0000", "0x05DC", "0x0000", "0x0000", "0x0000", "0xF830", "0xFFFF"]
+        );
+        let sent = words(&["move", "--point", "1", "--unit=4", "--speed-of-max", "12.34"]).unwrap();
+        assert_eq!(sent[0][..5], ["0x4001", "0x0002", "0x0000", "0x04D2", "0x0001"]);
+    }
+
+    #[test]
+    fn what_cannot_be_meant_is_refused_here() {
+        for (line, part) in [
+            ("move --to 1,2,3", "3 numbers for 4 axes"),
+            ("move --to 1,2 --axes 1", "2 numbers for 1 axes"),
+            ("move --to 1 --axes 5", "axes of 1 to 4"),
+            ("move --to 1,2 --axes 1,1", "names an axis twice"),
+            ("move --to 1.0005,2,3,4", "axis_1"),
+            ("move --point 30000", "point: 30000 is out of range; allowed: 0 to 29999"),
+            ("move --point 1 --speed 101", "speed_percent: 101 is out of range; allowed: 1 to 100 %"),
+            ("move --point 1 --speed-of-max 0.001", "speed_of_max_percent"),
+            ("move --point 1 --speed 100mm/s", "along a line or an arc"),
+            ("move --point 1 --linear --speed 1001mm/s", "allowed: 1 to 1000 mm/s"),
+            ("move --point 1 --circular", "two points"),
+            ("move --point 1,2", "one point"),
+            ("move --point 1 --arch 1,2:5", "arch_axis"),
+            ("move --point 1 --arch 1:5 --accel 5", "accel_percent"),
+        ] {
+            let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
+            assert_eq!(failure.kind, Kind::Usage, "{line}");
+            assert!(failure.message.contains(part), "{line}: {failure}");
+        }
+        for (line, part) in [
+            ("move", "--point"),
+            ("move --point 1 --to 1,2,3,4", "cannot be used with"),
+            ("move --to 1,2,3,4 --linear", "cannot be used with"),
+            ("move --to-pulse 1,2,3,4 --arch 1:1", "cannot be used with"),
+            ("move --point 1 --linear --arch 1:1", "cannot be used with"),
+            ("move --point 1,2 --circular --axes 1", "cannot be used with"),
+            ("move --point 1 --arch-start 1", "--arch"),
+            ("move --point 1 --arch 5", "as in 3:10.0"),
+            ("move --point 1 --hand left", "cannot be used with"),
+            ("move --point 1 --unit 5", "0..=4"),
+        ] {
+            let objection = objection(&line.split(' ').collect::<Vec<_>>());
+            assert!(objection.contains(part), "{line}: {objection}");
+        }
+    }
+
+    #[test]
+    fn the_question_names_robot_target_axes_and_speed() {
+        for (line, told) in [
+            ("move --point 19 --speed 50", "move robot 1 to point 19 (all axes, at 50 %)"),
+            ("--unit 2 move --to 1,2 --axes 1,2", "move robot 2 to 1, 2 mm (axes 1,2 alone, at the program speed)"),
+            (
+                "move --point 5 --arch 3:0 --arch-unit pulse --speed-of-max 0.5",
+                "move robot 1 to point 5 in an arch over axis 3 at 0 pulses (all axes, at 0.5 % of the maximum)",
+            ),
+            (
+                "move --point 1,2 --circular --speed 9mm/s",
+                "move robot 1 over point 1 to point 2 in an arc (all axes, at 9 mm/s)",
+            ),
+        ] {
+            assert_eq!(intent(&line.split(' ').collect::<Vec<_>>()), told);
+        }
+    }
+}

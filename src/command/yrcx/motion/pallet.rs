@@ -1,0 +1,80 @@
+//! `yrcx pallet` (4.2.5): to a place on a pallet.
+
+use clap::Args;
+
+use super::{Motion, Moved};
+use crate::command::yrcx::arguments::{Arch, Pace, Ramps};
+use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::Failure;
+
+/// Moves to a place on a pallet.
+#[derive(Debug, Args)]
+pub struct Pallet {
+    /// Pallet, 0 to 39
+    #[arg(long, value_name = "N")]
+    pallet: String,
+    /// Place on it, from 1 on
+    #[arg(long, value_name = "N")]
+    position: String,
+    #[command(flatten)]
+    arch: Arch,
+    #[command(flatten)]
+    pace: Pace,
+    #[command(flatten)]
+    ramps: Ramps,
+}
+
+impl Motion for Pallet {
+    type Report = Moved;
+    const ID: &'static str = "yrcx.pallet";
+
+    fn command(&self) -> Command {
+        if self.arch.is_wanted() { Command::PalletArch } else { Command::PalletPtp }
+    }
+
+    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+        let draft = draft.with(Key::Pallet, self.pallet.as_str()).with(Key::WorkPosition, self.position.as_str());
+        self.pace.put(self.arch.put(self.ramps.put(draft)))
+    }
+
+    fn target(&self) -> String {
+        format!("to place {} of pallet {}{}", self.position, self.pallet, self.arch.told())
+    }
+
+    fn manner(&self) -> String {
+        format!("all axes, {}", self.pace.told())
+    }
+
+    fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
+        moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::yrcx::testing::{intent, words};
+    use crate::failure::Kind;
+
+    #[test]
+    fn places_and_pallets_have_their_ranges() {
+        let sent =
+            words(&["pallet", "--pallet", "39", "--position", "32767", "--accel", "1", "--decel", "100"]).unwrap();
+        assert_eq!(sent[0][..6], ["0x0018", "0x0060", "0x0000", "0x0000", "0x0027", "0x7FFF"]);
+        assert_eq!(sent[0][10..12], ["0x0001", "0x0064"]);
+        for (line, part) in [
+            ("pallet --pallet 40 --position 1", "pallet: 40 is out of range; allowed: 0 to 39"),
+            ("pallet --pallet 0 --position 0", "work_position: 0 is out of range; allowed: 1 to 32767"),
+            ("pallet --pallet 0 --position 1 --arch 3:1 --accel 50", "accel_percent"),
+        ] {
+            let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
+            assert_eq!(failure.kind, Kind::Usage, "{line}");
+            assert!(failure.message.contains(part), "{line}: {failure}");
+        }
+        assert_eq!(
+            intent(&["pallet", "--pallet", "1", "--position", "21", "--arch", "3:-5", "--speed", "70"]),
+            "move robot 1 to place 21 of pallet 1 in an arch over axis 3 at -5 mm (all axes, at 70 %)"
+        );
+    }
+}

@@ -1,0 +1,128 @@
+//! `yrcx movei` (4.2.2): by the distances of a point, or by distances as typed.
+
+use clap::{ArgGroup, Args};
+
+use super::{Motion, Moved};
+use crate::command::yrcx::arguments::{Axes, Hand, Pace, Ramps};
+use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::Failure;
+
+/// Moves by distances.
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("distance").required(true), after_help = "A relative motion that was stopped goes on to its \
+    old target when it is given again, unless the controller's \"MOVEI/DRIVEI start position\" is Reset.")]
+pub struct Movei {
+    /// Point whose data are the distances
+    #[arg(long, value_name = "POINT", group = "distance")]
+    point: Option<String>,
+    /// Distances of the axes in mm, of all four or of those of --axes
+    #[arg(
+        long,
+        value_name = "MM,…",
+        group = "distance",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        conflicts_with = "linear"
+    )]
+    by: Vec<String>,
+    /// Distances of the axes in pulses, likewise
+    #[arg(
+        long,
+        value_name = "PULSES,…",
+        group = "distance",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        conflicts_with = "linear"
+    )]
+    by_pulse: Vec<String>,
+    /// In a straight line
+    #[arg(long)]
+    linear: bool,
+    #[command(flatten)]
+    axes: Axes,
+    #[command(flatten)]
+    pace: Pace,
+    #[command(flatten)]
+    ramps: Ramps,
+    /// Hand system at the end of --by
+    #[arg(long, value_name = "HAND", conflicts_with_all = ["point", "by_pulse"])]
+    hand: Option<Hand>,
+}
+
+impl Motion for Movei {
+    type Report = Moved;
+    const ID: &'static str = "yrcx.movei";
+
+    fn command(&self) -> Command {
+        match self {
+            Self { by, .. } if !by.is_empty() => Command::MoveiMm,
+            Self { by_pulse, .. } if !by_pulse.is_empty() => Command::MoveiPulse,
+            Self { linear: true, .. } => Command::MoveiLinear,
+            _ => Command::MoveiPtp,
+        }
+    }
+
+    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+        let draft = match &self.point {
+            Some(point) => self.axes.put(draft).with(Key::Point, point.as_str()),
+            None => self.axes.put_numbers(draft, if self.by.is_empty() { &self.by_pulse } else { &self.by })?,
+        };
+        let draft = if self.linear { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
+        Ok(self.ramps.put(draft).with_some(Key::HandSystem, self.hand.map(Hand::of_target)))
+    }
+
+    fn target(&self) -> String {
+        let way = if self.linear { " in a straight line" } else { "" };
+        match (&self.point, &self.by[..]) {
+            (Some(point), _) => format!("by the distances of point {point}{way}"),
+            (None, []) => format!("by {} pulses", self.by_pulse.join(", ")),
+            (None, by) => format!("by {} mm", by.join(", ")),
+        }
+    }
+
+    fn manner(&self) -> String {
+        format!("{}, {}", self.axes.told(), self.pace.told())
+    }
+
+    fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
+        moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::yrcx::testing::{intent, objection, words};
+    use crate::failure::Kind;
+
+    #[test]
+    fn distances_go_to_the_axes_that_are_named() {
+        let sent = words(&["movei", "--by", "-1", "--axes", "4", "--hand", "right", "--unit", "3"]).unwrap();
+        assert_eq!(sent[0][..4], ["0x300E", "0x0009", "0x0008", "0x0000"]);
+        assert_eq!(sent[0][4..12], ["0x0000", "0x0000", "0x0000", "0x0000", "0x0000", "0x0000", "0xFC18", "0xFFFF"]);
+    }
+
+    #[test]
+    fn what_cannot_be_meant_is_refused_here() {
+        for (line, part) in [
+            ("movei --by 1,2", "2 numbers for 4 axes"),
+            ("movei --by-pulse 1.5,2,3,4", "axis_1"),
+            ("movei --point 30000", "out of range"),
+            ("movei --point 1 --speed 9mm/s", "along a line"),
+            ("movei --by 1,2,3,4 --decel 10", "decel_percent"),
+        ] {
+            let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
+            assert_eq!(failure.kind, Kind::Usage, "{line}");
+            assert!(failure.message.contains(part), "{line}: {failure}");
+        }
+        for line in [&["movei"][..], &["movei", "--by", "1", "--linear"], &["movei", "--point", "1", "--hand", "left"]]
+        {
+            assert!(objection(line).starts_with("error"), "{line:?}");
+        }
+        assert_eq!(
+            intent(&["movei", "--by", "1,-2", "--axes", "1,2", "--speed", "5", "--unit", "2"]),
+            "move robot 2 by 1, -2 mm (axes 1,2 alone, at 5 %)"
+        );
+    }
+}

@@ -1,0 +1,55 @@
+//! `yrcx movet` (4.2.21): to a point in the coordinates of the tool.
+
+use clap::Args;
+
+use super::{Motion, Moved};
+use crate::command::yrcx::arguments::{Axes, Pace, Ramps};
+use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::Failure;
+
+/// Moves to a point that is read in tool coordinates: from where the tool is, along its axes.
+#[derive(Debug, Args)]
+pub struct Movet {
+    /// Point to move to
+    #[arg(long, value_name = "POINT")]
+    point: String,
+    /// In a straight line
+    #[arg(long)]
+    linear: bool,
+    #[command(flatten)]
+    axes: Axes,
+    #[command(flatten)]
+    pace: Pace,
+    #[command(flatten)]
+    ramps: Ramps,
+}
+
+impl Motion for Movet {
+    type Report = Moved;
+    const ID: &'static str = "yrcx.movet";
+
+    fn command(&self) -> Command {
+        if self.linear { Command::MovetLinear } else { Command::MovetPtp }
+    }
+
+    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+        let draft = self.axes.put(draft).with(Key::Point, self.point.as_str());
+        let draft = if self.linear { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
+        Ok(self.ramps.put(draft))
+    }
+
+    fn target(&self) -> String {
+        let way = if self.linear { " in a straight line" } else { "" };
+        format!("to point {} in tool coordinates{way}", self.point)
+    }
+
+    fn manner(&self) -> String {
+        format!("{}, {}", self.axes.told(), self.pace.told())
+    }
+
+    fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
+        moved
+    }
+}
