@@ -33,7 +33,7 @@ pub const PULSE: Unit = Unit { symbol: "pulses", decimals: 0 };
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum UnitError {
     /// Not an optional sign, digits, and optionally a point with digits.
-    #[error("'{text}' is not a number of {symbol}")]
+    #[error("'{text}' is not a number{}", of(symbol))]
     Malformed {
         /// What was given.
         text: String,
@@ -41,7 +41,7 @@ pub enum UnitError {
         symbol: &'static str,
     },
     /// More digits than the controller can take.
-    #[error("'{text}' has more than {decimals} digits after the point, the resolution of {symbol} here")]
+    #[error("'{text}' has more than {decimals} digits after the point, the resolution{} here", of(symbol))]
     TooFine {
         /// What was given.
         text: String,
@@ -62,6 +62,11 @@ pub enum UnitError {
         /// Greatest value in this unit.
         highest: String,
     },
+}
+
+/// What is counted, where it has a name.
+fn of(symbol: &str) -> String {
+    if symbol.is_empty() { String::new() } else { format!(" of {symbol}") }
 }
 
 impl Unit {

@@ -53,6 +53,8 @@ transcripts! {
     usage
     variables
     yrcx
+    yrcx_jog
+    yrcx_motion
 }
 
 #[test]

@@ -5,6 +5,7 @@ use clap::{Args, ValueEnum};
 
 use super::position::Unit;
 use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 
@@ -30,7 +31,7 @@ impl Which {
 /// How fast.
 #[derive(Debug, Args)]
 pub struct Pace {
-    /// 50 or 50% of the program speed, or 200mm/s along a line or an arc
+    /// Percent, as in 50 or 50%, in place of the program speed
     #[arg(long, value_name = "SPEED", value_parser = speed)]
     pub speed: Option<Speed>,
     /// Percent of the robot's maximum, in steps of 0.01
@@ -41,7 +42,7 @@ pub struct Pace {
 /// A speed as typed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Speed {
-    /// Of the program speed.
+    /// In place of the program speed.
     Percent(String),
     /// Of the tool.
     MmS(String),
@@ -104,9 +105,14 @@ pub struct Ramps {
 }
 
 impl Ramps {
-    /// Fills it in.
-    pub fn put(&self, draft: Draft) -> Draft {
-        draft.with_some(Key::Accel, self.accel.clone()).with_some(Key::Decel, self.decel.clone())
+    /// Fills it in, where the command has a place for it.
+    pub fn put(&self, draft: Draft, command: Command) -> Result<Draft, Failure> {
+        let row = command.row();
+        if (self.accel.is_some() || self.decel.is_some()) && row.request().all(|field| field.key != Key::Accel) {
+            return Err(Failure::usage(format!("{} has neither --accel nor --decel", row.id))
+                .hint("motions to a point have, without an arch; others go by the robot's parameters"));
+        }
+        Ok(draft.with_some(Key::Accel, self.accel.clone()).with_some(Key::Decel, self.decel.clone()))
     }
 }
 
@@ -139,8 +145,8 @@ impl Axes {
     fn keys(&self) -> Result<Vec<Key>, Failure> {
         let Some(axes) = &self.axes else { return Ok(Key::AXES.to_vec()) };
         let key = |axis: &str| {
-            let axis: usize = axis.trim().parse().ok()?;
-            Key::AXES.get(axis.checked_sub(1)?).copied()
+            let number: usize = axis.trim().parse().ok()?;
+            Key::AXES.get(number.checked_sub(1)?).copied()
         };
         let keys: Option<Vec<Key>> = axes.split(',').map(key).collect();
         let mut keys =

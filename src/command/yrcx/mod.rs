@@ -50,7 +50,6 @@ use crate::command::{Verbs, commands};
 
 commands! {
     /// What can be asked of a YRCX controller.
-    #[expect(clippy::large_enum_variant, reason = "there is one a process")]
     pub enum Yrcx of Family {
         /// Signals, servos and position in words
         Status(status::Status),

@@ -7,6 +7,7 @@ use tokio::time::Instant;
 use super::driver::LONG;
 use super::{Done, LEAVE_WITHIN, Link};
 use crate::command::interrupt::abandoned;
+use crate::command::yrcx::refusal;
 use crate::controller::yrcx::alarm::STOP_INPUT;
 use crate::controller::yrcx::answer::Answer;
 use crate::controller::yrcx::order::Order;
@@ -30,8 +31,8 @@ impl Link {
         self.admit(order.row().id, order.risk())?;
         if self.is_dry() {
             self.note(order);
-            for on in [false, true] {
-                self.note_steps(&Procedure::set(input::STOP, on).expect("the stop input is an input"));
+            for procedure in [false, true].into_iter().filter_map(|on| Procedure::set(input::STOP, on)) {
+                self.note_steps(&procedure);
             }
             return Ok(Done::default());
         }
@@ -77,7 +78,10 @@ impl Link {
         };
         match (cut, ended) {
             (None, ended) => ended,
-            (Some(cut), Ok(_)) => Err(Failure { message: format!("{}; {STOPPED}", cut.message), ..cut }),
+            (Some(cut), Ok(done)) => {
+                let place = refusal::stopped(order, &done.values);
+                Err(Failure { message: format!("{}; {STOPPED}{place}", cut.message), ..cut })
+            }
             (Some(cut), Err(failure)) => {
                 Err(Failure { message: format!("{}; {}", cut.message, failure.message), ..failure })
             }

@@ -43,7 +43,7 @@ impl Destination {
 
     /// `point 100`, `5.000 mm`.
     pub fn told(&self) -> String {
-        told(&self.point, "point", &self.to, &self.to_pulse)
+        told("point", [&self.point, &self.to, &self.to_pulse].map(Option::as_deref))
     }
 }
 
@@ -62,13 +62,12 @@ struct Distance {
     by_pulse: Option<String>,
 }
 
-/// The one of three that is given.
-fn told(point: &Option<String>, name: &str, mm: &Option<String>, pulses: &Option<String>) -> String {
-    match (point, mm, pulses) {
-        (Some(point), ..) => format!("{name} {point}"),
-        (_, Some(mm), _) => format!("{mm} mm"),
-        (_, _, Some(pulses)) => format!("{pulses} pulses"),
-        (None, None, None) => String::new(),
+/// The one that is given of a point, mm and pulses.
+fn told(name: &str, given: [Option<&str>; 3]) -> String {
+    match given {
+        [Some(point), ..] => format!("{name} {point}"),
+        [_, Some(mm), _] => format!("{mm} mm"),
+        [_, _, pulses] => format!("{} pulses", pulses.unwrap_or_default()),
     }
 }
 
@@ -153,7 +152,7 @@ impl Motion for Drivei {
 
     fn target(&self) -> String {
         let Distance { point, by, by_pulse } = &self.distance;
-        format!("by {}", told(point, "the distance of point", by, by_pulse))
+        format!("by {}", told("the distance of point", [point, by, by_pulse].map(Option::as_deref)))
     }
 
     fn manner(&self) -> String {

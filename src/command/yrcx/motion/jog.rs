@@ -15,12 +15,13 @@ use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 use crate::settings::duration;
 
-/// Jogs an axis at the manual speed, for a time or until Ctrl-C.
-///
-/// It is stopped by the stop input SI(06) after its time, at Ctrl-C, at Ctrl-Z, and whenever the controller shows something
-/// odd; then SI(06) stays off. If armctl is killed or its computer dies, the link goes down with it, and the controller
-/// stops by itself. Soft limits stop it with an alarm.
+/// Jogs an axis, and stops it.
 #[derive(Debug, Args)]
+#[command(
+    after_help = "The axis moves at the manual speed. The stop input SI(06) stops it after its time and at Ctrl-C, and stays \
+    off if the controller does not show the end. If armctl or its computer dies, the link goes down with it, and the \
+    controller stops by itself. A soft limit stops the axis with an alarm."
+)]
 pub struct Jog {
     /// Along which axes
     system: System,

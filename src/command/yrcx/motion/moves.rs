@@ -25,10 +25,10 @@ pub struct Move {
     #[arg(long, value_name = "PULSES,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
         conflicts_with_all = ["linear", "circular", "peak"])]
     to_pulse: Vec<String>,
-    /// In a straight line
+    /// In a straight line; --speed may be 200mm/s then
     #[arg(long, group = "way")]
     linear: bool,
-    /// In an arc over the first point to the second
+    /// In an arc over the first point to the second; --speed may be 200mm/s then
     #[arg(long, group = "way", conflicts_with = "axes")]
     circular: bool,
     #[command(flatten)]
@@ -70,7 +70,7 @@ impl Motion for Move {
             (_, false) => return Err(Failure::usage("a motion has one point").hint("an arc has two: add --circular")),
         };
         let draft = if self.linear || self.circular { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
-        let draft = self.arch.put(self.ramps.put(draft));
+        let draft = self.arch.put(self.ramps.put(draft, self.command())?);
         Ok(draft.with_some(Key::HandSystem, self.hand.map(Hand::of_target)))
     }
 
@@ -130,7 +130,8 @@ mod tests {
             ("move --point 1 --circular", "two points"),
             ("move --point 1,2", "one point"),
             ("move --point 1 --arch 1,2:5", "arch_axis"),
-            ("move --point 1 --arch 1:5 --accel 5", "accel_percent"),
+            ("move --point 1 --arch 1:5 --accel 5", "move-arch has neither --accel"),
+            ("move --point 1 --accel 0", "accel_percent: 0 is out of range; allowed: 1 to 100 %"),
         ] {
             let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
             assert_eq!(failure.kind, Kind::Usage, "{line}");

@@ -36,7 +36,7 @@ impl Motion for Pallet {
 
     fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
         let draft = draft.with(Key::Pallet, self.pallet.as_str()).with(Key::WorkPosition, self.position.as_str());
-        self.pace.put(self.arch.put(self.ramps.put(draft)))
+        self.pace.put(self.arch.put(self.ramps.put(draft, self.command())?))
     }
 
     fn target(&self) -> String {
@@ -66,7 +66,7 @@ mod tests {
         for (line, part) in [
             ("pallet --pallet 40 --position 1", "pallet: 40 is out of range; allowed: 0 to 39"),
             ("pallet --pallet 0 --position 0", "work_position: 0 is out of range; allowed: 1 to 32767"),
-            ("pallet --pallet 0 --position 1 --arch 3:1 --accel 50", "accel_percent"),
+            ("pallet --pallet 0 --position 1 --arch 3:1 --accel 50", "pallet-arch has neither"),
         ] {
             let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
             assert_eq!(failure.kind, Kind::Usage, "{line}");

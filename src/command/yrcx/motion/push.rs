@@ -36,12 +36,12 @@ pub struct Push {
     pace: Pace,
 }
 
-/// A time in whole milliseconds; its range is that of the field.
+/// A time in whole milliseconds.
 fn milliseconds(text: &str) -> Result<i32, String> {
     let time = duration::parse(text)?;
     match i32::try_from(time.as_millis()) {
-        Ok(ms) if time.subsec_nanos() % 1_000_000 == 0 => Ok(ms),
-        _ => Err(format!("'{text}' is no number of whole milliseconds, as in 100ms")),
+        Ok(ms @ 1..=32_767) if time.subsec_nanos() % 1_000_000 == 0 => Ok(ms),
+        _ => Err(format!("a push takes 1ms to 32767ms in whole milliseconds, not {}s", time.as_secs_f64())),
     }
 }
 
@@ -75,7 +75,8 @@ impl Motion for Push {
     }
 
     fn report(&self, moved: Moved, values: Option<&Values>) -> Pushed {
-        Pushed { moved, push_result: values.and_then(|values| values.int(Key::PushResult)) }
+        let push_result = values.and_then(|values| values.int(Key::PushResult));
+        Pushed { moved, push_completed: push_result.map(|result| result == 1), push_result }
     }
 }
 
@@ -84,15 +85,17 @@ impl Motion for Push {
 pub struct Pushed {
     #[serde(flatten)]
     moved: Moved,
-    /// 1: it pushed until its time was over; 0: it ended otherwise; null unless it has ended.
+    /// Whether it pushed until its time was over; null unless it has ended.
+    push_completed: Option<bool>,
+    /// The same as it travels: 1, or 0.
     push_result: Option<i32>,
 }
 
 impl Report for Pushed {
     fn view(&self) -> View {
-        self.moved.view_with(match self.push_result {
-            Some(1) => "; it pushed until its time was over",
-            Some(_) => "; it ended before it had pushed for its time",
+        self.moved.view_with(match self.push_completed {
+            Some(true) => "; it pushed until its time was over",
+            Some(false) => "; it ended without pushing for all of its time",
             None => "",
         })
     }
@@ -112,15 +115,16 @@ mod tests {
         assert_eq!(all[0][8..10], ["0xFC18", "0x7FFF"]);
         for (line, part) in [
             ("push --axis 1 --to 1 --force 1001", "push_force_percent: 1001 is out of range; allowed: -1000 to 1000 %"),
-            ("push --axis 1 --to 1 --time 100", "push_time_ms: 100000"),
-            ("push --axis 1 --to 1 --time 0s", "allowed: 1 to 32767 ms"),
             ("push --axis 1,3 --to 1", "name exactly 1"),
         ] {
             let failure = sent(line).unwrap_err();
             assert_eq!(failure.kind, Kind::Usage, "{line}");
             assert!(failure.message.contains(part), "{line}: {failure}");
         }
-        assert!(objection(&["push", "--axis", "1", "--to", "1", "--time", "0.5ms"]).contains("whole milliseconds"));
+        for (time, told) in [("100", "not 100s"), ("0s", "not 0s"), ("1.5ms", "not 0.0015s"), ("a", "is no duration")] {
+            let objection = objection(&["push", "--axis", "1", "--to", "1", "--time", time]);
+            assert!(objection.contains(told), "{objection}");
+        }
         assert_eq!(
             intent(&["push", "--axis", "3", "--to", "10", "--speed", "50", "--force", "100", "--time", "100ms"]),
             "push with axis 3 of robot 1 towards 10 mm (at 50 %, with 100 % of the rated torque, for 100ms)"

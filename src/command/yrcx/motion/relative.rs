@@ -37,7 +37,7 @@ pub struct Movei {
         conflicts_with = "linear"
     )]
     by_pulse: Vec<String>,
-    /// In a straight line
+    /// In a straight line; --speed may be 200mm/s then
     #[arg(long)]
     linear: bool,
     #[command(flatten)]
@@ -70,7 +70,7 @@ impl Motion for Movei {
             None => self.axes.put_numbers(draft, if self.by.is_empty() { &self.by_pulse } else { &self.by })?,
         };
         let draft = if self.linear { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
-        Ok(self.ramps.put(draft).with_some(Key::HandSystem, self.hand.map(Hand::of_target)))
+        Ok(self.ramps.put(draft, self.command())?.with_some(Key::HandSystem, self.hand.map(Hand::of_target)))
     }
 
     fn target(&self) -> String {
@@ -110,7 +110,7 @@ mod tests {
             ("movei --by-pulse 1.5,2,3,4", "axis_1"),
             ("movei --point 30000", "out of range"),
             ("movei --point 1 --speed 9mm/s", "along a line"),
-            ("movei --by 1,2,3,4 --decel 10", "decel_percent"),
+            ("movei --by 1,2,3,4 --decel 10", "movei-mm has neither"),
         ] {
             let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
             assert_eq!(failure.kind, Kind::Usage, "{line}");

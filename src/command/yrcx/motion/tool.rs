@@ -15,7 +15,7 @@ pub struct Movet {
     /// Point to move to
     #[arg(long, value_name = "POINT")]
     point: String,
-    /// In a straight line
+    /// In a straight line; --speed may be 200mm/s then
     #[arg(long)]
     linear: bool,
     #[command(flatten)]
@@ -37,7 +37,7 @@ impl Motion for Movet {
     fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
         let draft = self.axes.put(draft).with(Key::Point, self.point.as_str());
         let draft = if self.linear { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
-        Ok(self.ramps.put(draft))
+        self.ramps.put(draft, self.command())
     }
 
     fn target(&self) -> String {
