@@ -164,15 +164,14 @@ impl Family for Yrcx {
     async fn halt(link: &mut Link) -> Result<String, Failure> {
         link.granted = link.granted.max(Risk::Write);
         link.abandon_sequence();
+        let now = link.started.elapsed();
         if let Some(exchange) = &mut link.exchange {
+            exchange.interrupt(now);
             let order = exchange.order().clone();
             let row = order.row();
-            let moves = matches!(row.pace, Pace::Motion | Pace::Jog);
-            if moves {
-                link.screen.note("stopping the robot: stop input SI(06) off");
+            if matches!(row.pace, Pace::Motion | Pace::Jog) {
+                link.tell_of_stop();
             }
-            let now = link.started.elapsed();
-            exchange.interrupt(now);
             let outcome = link.until_ended().await?;
             return match &outcome.ended {
                 Ended::Answered(Answer::Refused { alarm, positions }) if *alarm == STOP_INPUT => {
@@ -190,7 +189,7 @@ impl Family for Yrcx {
         if !link.has_started {
             return Ok("nothing was sent that moves the robot".to_owned());
         }
-        link.screen.note("stopping the robot: stop input SI(06) off");
+        link.tell_of_stop();
         link.carry_out(Procedure::stop()).await?;
         let released = Procedure::set(input::STOP, true).ok_or_else(|| Failure::local("the stop input is no input"))?;
         link.carry_out(released).await?;
@@ -348,6 +347,9 @@ impl Link {
 
     /// One command, one answer.
     async fn converse(&mut self, order: &Order) -> Result<Outcome, Failure> {
+        if order.row().pace == Pace::Jog {
+            return Ok(self.see_through(order, None).await?.outcome);
+        }
         self.start(order).await?;
         let outcome = self.until_ended().await?;
         self.count(order, &outcome);
@@ -492,6 +494,12 @@ impl Link {
             ));
         }
         Ok(())
+    }
+
+    /// Says so from a thread of its own: a terminal that is held must not hold the stop.
+    fn tell_of_stop(&self) {
+        let screen = self.screen;
+        std::thread::spawn(move || screen.note("stopping the robot: stop input SI(06) off"));
     }
 
     fn note(&mut self, order: &Order) {

@@ -2,6 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
+use super::arguments::Which;
 use super::link;
 use super::single::Single;
 use crate::command::orders::Done;
@@ -18,6 +19,8 @@ pub struct Servo {
     /// Only this axis, 1 to 4
     #[arg(long, value_name = "AXIS")]
     axis: Option<String>,
+    #[command(flatten)]
+    which: Which,
 }
 
 /// What a servo can be.
@@ -57,10 +60,11 @@ impl Single for Servo {
     }
 
     fn intent(&self) -> String {
+        let servos = format!("{} of {}", self.told(), self.which.name());
         match self.state {
-            ServoState::On => format!("switch {} on", self.told()),
-            ServoState::Off => format!("switch {} off", self.told()),
-            ServoState::Free => format!("switch {} off and release the brakes: an axis may drop", self.told()),
+            ServoState::On => format!("switch {servos} on"),
+            ServoState::Off => format!("switch {servos} off"),
+            ServoState::Free => format!("switch {servos} off and release the brakes: an axis may drop"),
         }
     }
 
@@ -142,6 +146,6 @@ mod tests {
         assert_eq!(words(&["servo", "on", "--axis", "1,2"]).unwrap_err().kind, Kind::Usage);
         assert!(words(&["motor", "on", "--unit", "1"]).unwrap_err().message.contains("--unit"));
         assert!(objection(&["servo", "brake"]).contains("free"));
-        assert_eq!(intent(&["servo", "on", "--unit", "3"]), "switch the servos of all axes on, robot 3");
+        assert_eq!(intent(&["servo", "on", "--unit", "3"]), "switch the servos of all axes of robot 3 on");
     }
 }

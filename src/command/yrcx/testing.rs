@@ -176,13 +176,18 @@ impl Bench {
 
     /// Lets a command line run for so long, and drops it then, as Ctrl-C does.
     pub(super) fn interrupt(&mut self, words: &[&str], after: Duration) {
+        assert!(self.cut(words, after), "it still runs");
+    }
+
+    /// The same, and whether it still ran.
+    pub(super) fn cut(&mut self, words: &[&str], after: Duration) -> bool {
         let (_, command) = resolved("sim:", words).unwrap();
         let Self { runtime, robot, link, .. } = self;
         runtime.block_on(async {
             let screen = quiet();
             let run = command.run(Context { robot, link, screen: &screen, several: false });
-            assert!(tokio::time::timeout(after, run).await.is_err(), "it still runs");
-        });
+            tokio::time::timeout(after, run).await.is_err()
+        })
     }
 
     /// What Ctrl-C does to a motion.

@@ -122,7 +122,8 @@ impl Link {
             return Ok(());
         }
         let now = self.now();
-        let is_short = |exchange: &Exchange| matches!(exchange.order().row().pace, Pace::Quick | Pace::Power);
+        // A jog has no end of its own.
+        let is_short = |exchange: &Exchange| exchange.order().row().pace != Pace::Motion;
         if let Some(exchange) = self.exchange.as_mut().filter(|exchange| is_short(exchange)) {
             exchange.interrupt(now);
         }

@@ -20,6 +20,15 @@ use crate::failure::{Failure, Kind};
 /// Faults of the link that are survived while a jog is being stopped. A link that has none but faults is given up.
 const MOST_FAULTS: u32 = 100;
 
+/// How a jog ended.
+pub(super) struct Seen {
+    pub(super) outcome: Outcome,
+    /// Whether it had not ended before it was stopped.
+    is_stopped: bool,
+    /// What ended it before its time.
+    cut: Option<Failure>,
+}
+
 impl Link {
     /// Jogs for `time` from the moment that the command leaves, or until it is dropped and halted; stops it, and says
     /// where the robot is. That the stop input ended it is no refusal then.
@@ -36,6 +45,28 @@ impl Link {
             }
             return Ok(Done::default());
         }
+        let Seen { outcome, is_stopped, cut } = self.see_through(order, time).await?;
+        let given = self.given(order.row(), outcome);
+        let done = given.and_then(|given| match given.answer {
+            Answer::Refused { alarm: STOP_INPUT, positions } if is_stopped => {
+                Ok(Done { values: positions, elapsed: given.elapsed })
+            }
+            _ => given.done(order.row()),
+        });
+        match (cut, done) {
+            (None, done) => done,
+            (Some(cut), Ok(done)) => {
+                let place = refusal::stopped(order, &done.values);
+                Err(Failure { message: format!("{}; {STOPPED}{place}", cut.message), ..cut })
+            }
+            (Some(cut), Err(failure)) => {
+                Err(Failure { message: format!("{}; {}", cut.message, failure.message), ..failure })
+            }
+        }
+    }
+
+    /// Jogs, and stops. What does not end as it should leaves the stop input off.
+    pub(super) async fn see_through(&mut self, order: &Order, time: Option<Duration>) -> Result<Seen, Failure> {
         let key = abandoned();
         self.start(order).await?;
         let cut = tokio::select! {
@@ -43,7 +74,25 @@ impl Link {
             key = key => Some(Failure::new(Kind::Interrupted, key)),
             gone = self.go_on(time) => gone.err(),
         };
-        self.end_jog(order, cut).await
+        let (now, is_stopped) = (self.now(), self.exchange.is_some());
+        if let Some(exchange) = &mut self.exchange {
+            exchange.interrupt(now);
+        }
+        let mut faults = 0;
+        while self.exchange.is_some() && faults < MOST_FAULTS {
+            faults += u32::from(self.turn().await.is_err());
+        }
+        let Some(mut outcome) = self.ended.take() else {
+            let why = cut.map(|cut| format!("{}; ", cut.message)).unwrap_or_default();
+            let message = format!("{why}the axis may still move: nothing reaches the controller any more");
+            return Err(Failure::new(Kind::OutcomeUnknown, message).hint("press the emergency stop"));
+        };
+        self.count(order, &outcome);
+        if let Ended::OutcomeUnknown(_) = outcome.ended {
+            self.hold().await;
+            outcome.stop_held = true;
+        }
+        Ok(Seen { outcome, is_stopped, cut })
     }
 
     /// Turns until the jog has gone on for its time, or has ended.
@@ -59,48 +108,6 @@ impl Link {
             self.turn_until(until).await?;
         }
         Ok(())
-    }
-
-    /// Stops it, if it has not ended. `cut` says what ended it before its time.
-    async fn end_jog(&mut self, order: &Order, cut: Option<Failure>) -> Result<Done, Failure> {
-        let now = self.now();
-        let is_stopped = self.exchange.is_some();
-        if let Some(exchange) = &mut self.exchange {
-            exchange.interrupt(now);
-        }
-        let mut faults = 0;
-        while self.exchange.is_some() && faults < MOST_FAULTS {
-            faults += u32::from(self.turn().await.is_err());
-        }
-        let ended = match self.ended.take() {
-            Some(outcome) => self.ended_jog(order, outcome, is_stopped).await,
-            None => Err(Failure::new(Kind::OutcomeUnknown, "nothing reaches the controller any more")),
-        };
-        match (cut, ended) {
-            (None, ended) => ended,
-            (Some(cut), Ok(done)) => {
-                let place = refusal::stopped(order, &done.values);
-                Err(Failure { message: format!("{}; {STOPPED}{place}", cut.message), ..cut })
-            }
-            (Some(cut), Err(failure)) => {
-                Err(Failure { message: format!("{}; {}", cut.message, failure.message), ..failure })
-            }
-        }
-    }
-
-    async fn ended_jog(&mut self, order: &Order, mut outcome: Outcome, is_stopped: bool) -> Result<Done, Failure> {
-        self.count(order, &outcome);
-        if let Ended::OutcomeUnknown(_) = outcome.ended {
-            self.hold().await;
-            outcome.stop_held = true;
-        }
-        let given = self.given(order.row(), outcome)?;
-        match given.answer {
-            Answer::Refused { alarm: STOP_INPUT, positions } if is_stopped => {
-                Ok(Done { values: positions, elapsed: given.elapsed })
-            }
-            _ => given.done(order.row()),
-        }
     }
 
     /// Switches the stop input off, and leaves it off.

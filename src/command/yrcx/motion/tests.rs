@@ -154,6 +154,29 @@ fn an_interrupt_stops_every_kind_of_motion() {
 }
 
 #[test]
+fn an_interrupt_at_any_moment_leaves_nothing_that_moves() {
+    for line in ["move --point 1", "jog pulse 1 +", "jog pulse 1 + --for 50ms"] {
+        let (mut stopped, mut unsent) = (0, 0);
+        for ms in (0..90).step_by(3) {
+            let mut bench = Bench::new(Scripted::new([Reply::UntilStop(words_of(&[0x4000, 12, 400]))]));
+            if !bench.cut(&split(line), Duration::from_millis(ms)) {
+                continue;
+            }
+            let told = bench.halt().unwrap();
+            let peer = bench.into_peer();
+            let bits: &[u16] = match peer.taken.len() {
+                0 => &[REST],
+                _ => &[REST, HELD, REST],
+            };
+            assert_eq!((&peer.bits[..], peer.image.0[0]), (bits, 0), "{line} {ms}: {told}");
+            stopped += u32::from(!peer.taken.is_empty());
+            unsent += u32::from(peer.taken.is_empty());
+        }
+        assert!(stopped > 10 && unsent > 0, "{line}: {stopped} stopped, {unsent} not sent");
+    }
+}
+
+#[test]
 fn an_answer_that_is_lost_is_an_unknown_outcome_of_every_kind() {
     for line in KINDS {
         let lost = Reply::Loses(2, Duration::from_millis(300));

@@ -85,6 +85,23 @@ fn what_does_not_end_leaves_the_stop_input_off() {
 }
 
 #[test]
+fn a_jog_by_its_words_is_stopped_as_well() {
+    let (outcome, peer) = run_on(Scripted::new([ends(20, &[0])]), &["raw", "--wi", "0x20,0,0x81"]);
+    assert!(outcome.unwrap_err().message.contains("the stop input SI(06) stays off"));
+    assert_eq!(peer.bits, [REST, HELD]);
+    let mut bench = Bench::new(Scripted::new([Reply::UntilStop(answer("4.2.6-pulse"))]));
+    bench.interrupt(&["raw", "--wi", "0x20,0,0x81"], Duration::from_secs(1));
+    assert!(bench.halt().unwrap().starts_with("the robot was stopped"));
+}
+
+#[test]
+fn a_jog_that_nobody_stopped_is_stopped_when_the_link_closes() {
+    let mut bench = Bench::new(Scripted::new([Reply::UntilStop(answer("4.2.6-pulse"))]));
+    bench.interrupt(&JOG, Duration::from_secs(1));
+    assert_eq!(bench.into_peer().bits, [REST, HELD, REST]);
+}
+
+#[test]
 fn a_link_that_is_lost_rests_with_the_stop_input_off() {
     let mut bench = Bench::new(Scripted::new([Reply::Loses(20, Duration::from_secs(1)), ends(0, &[0x0200])]));
     let failure = bench.run(&JOG).unwrap_err();
