@@ -244,7 +244,7 @@ fn schemas_describe_reports() {
 }
 
 /// Every command that the contract names, by family. An entry leaves this list only with a new major version.
-const CONTRACT: [(&str, &[&str]); 2] = [("yerc", &YERC), ("toyo", &TOYO)];
+const CONTRACT: [(&str, &[&str]); 3] = [("yerc", &YERC), ("toyo", &TOYO), ("yrcx", YRCX)];
 
 const YERC: [&str; 41] = [
     "status",
@@ -364,6 +364,45 @@ const TOYO: [&str; 73] = [
     "raw",
     "ports",
     "sim run",
+];
+
+const YRCX: &[&str] = &[
+    "status",
+    "move",
+    "movei",
+    "movet",
+    "drive",
+    "drivei",
+    "pallet",
+    "push",
+    "jog",
+    "inch",
+    "inch-distance",
+    "teach",
+    "origin",
+    "abs-reset",
+    "speed",
+    "shift select",
+    "hand select",
+    "arm select",
+    "torque-limit",
+    "servo",
+    "motor",
+    "info version",
+    "info position",
+    "info servo",
+    "info alarm",
+    "alarm reset",
+    "io get",
+    "io set",
+    "io pulse",
+    "io watch",
+    "io map",
+    "power-on",
+    "run",
+    "stop",
+    "reset",
+    "raw",
 ];
 
 #[test]

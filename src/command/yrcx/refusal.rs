@@ -33,15 +33,22 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
         Some(remedy) => (*remedy).to_owned(),
         None => format!("look up {alarm} in the controller's manual; `yrcx info alarm` tells where it came up"),
     };
-    let kept = if row.keeps_target() { format!("; if it had begun to move, {KEPT}") } else { String::new() };
+    let kept = kept(row, "if it had begun to move, ");
     Failure::new(Kind::Refused, format!("the controller {what} {}: alarm {alarm}, {}", row.id, alarm.text()))
         .code(alarm.to_string())
         .hint(format!("{remedy}{kept}"))
 }
 
-/// What a relative motion that was stopped does (4.2.2, 4.2.4).
-const KEPT: &str = "the same command again goes on to its old target, unless the controller's \"MOVEI/DRIVEI start \
-                    position\" is Reset";
+/// What a relative motion that was stopped does when it is given again (4.2.2, 4.2.4); empty for others.
+fn kept(row: &Row, condition: &str) -> String {
+    if !row.keeps_target() {
+        return String::new();
+    }
+    format!(
+        "; {condition}the same command again goes on to its old target, unless the controller's \"MOVEI/DRIVEI start \
+         position\" is Reset"
+    )
+}
 
 /// How an order that the stop input ended leaves the robot: what is known of where it stands, and what comes next.
 pub fn stopped(order: &Order, values: &Values) -> String {
@@ -53,8 +60,7 @@ pub fn stopped(order: &Order, values: &Values) -> String {
         (Some(axes), _) => format!("; it stands at {} pulses", axes.map(|pulses| pulses.to_string()).join(", ")),
         (None, _) => String::new(),
     };
-    let kept = if order.row().keeps_target() { format!("; {KEPT}") } else { String::new() };
-    format!("{position}{kept}")
+    format!("{position}{}", kept(order.row(), ""))
 }
 
 /// An exchange that ended without an answer.
@@ -145,7 +151,7 @@ fn telltale(command: Command) -> String {
     let row = command.row();
     match (row.category(), row.pace) {
         (1, Pace::Motion | Pace::Jog) => {
-            let kept = if row.keeps_target() { format!("; {KEPT}") } else { String::new() };
+            let kept = kept(row, "");
             format!("keep clear; do not send it again; `yrcx info position` tells where the robot is{kept}")
         }
         (1, Pace::Power) => "`yrcx status` tells whether servos and motor power are on".to_owned(),
