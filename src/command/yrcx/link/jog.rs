@@ -5,14 +5,14 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 use super::driver::LONG;
-use super::{Done, LEAVE_WITHIN, Link};
+use super::{Done, Link};
 use crate::command::interrupt::abandoned;
 use crate::command::yrcx::refusal;
 use crate::controller::yrcx::alarm::STOP_INPUT;
 use crate::controller::yrcx::answer::Answer;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::procedure::Procedure;
-use crate::controller::yrcx::session::{Ended, Outcome};
+use crate::controller::yrcx::session::Outcome;
 use crate::controller::yrcx::signal::input;
 use crate::controller::yrcx::table::Pace;
 use crate::failure::{Failure, Kind};
@@ -65,7 +65,7 @@ impl Link {
         }
     }
 
-    /// Jogs, and stops. What does not end as it should leaves the stop input off.
+    /// Jogs, and stops. An exchange that does not end as it should leaves the stop input off.
     pub(super) async fn see_through(&mut self, order: &Order, time: Option<Duration>) -> Result<Seen, Failure> {
         let key = abandoned();
         self.start(order).await?;
@@ -82,16 +82,12 @@ impl Link {
         while self.exchange.is_some() && faults < MOST_FAULTS {
             faults += u32::from(self.turn().await.is_err());
         }
-        let Some(mut outcome) = self.ended.take() else {
+        let Some(outcome) = self.ended.take() else {
             let why = cut.map(|cut| format!("{}; ", cut.message)).unwrap_or_default();
             let message = format!("{why}the axis may still move: nothing reaches the controller any more");
             return Err(Failure::new(Kind::OutcomeUnknown, message).hint("press the emergency stop"));
         };
         self.count(order, &outcome);
-        if let Ended::OutcomeUnknown(_) = outcome.ended {
-            self.hold().await;
-            outcome.stop_held = true;
-        }
         Ok(Seen { outcome, is_stopped, cut })
     }
 
@@ -108,20 +104,6 @@ impl Link {
             self.turn_until(until).await?;
         }
         Ok(())
-    }
-
-    /// Switches the stop input off, and leaves it off.
-    async fn hold(&mut self) {
-        input::STOP.set(&mut self.output.next, false);
-        let until = Instant::now() + LEAVE_WITHIN;
-        let mut faults = 0;
-        while self.is_up
-            && self.output.last_sent() != Some(&self.output.next)
-            && Instant::now() < until
-            && faults < MOST_FAULTS
-        {
-            faults += u32::from(self.turn_until(until).await.is_err());
-        }
     }
 
     /// Whether a jog is under way.

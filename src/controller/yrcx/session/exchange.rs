@@ -268,8 +268,10 @@ impl Exchange {
 
     /// Ends it, good or bad: from here on only the status reset is shown.
     fn finish(&mut self, now: Now, output: &mut Output, ended: Ended) {
-        if self.stopping && !matches!(ended, Ended::Answered(_)) {
-            // It may still move: the stop input stays off.
+        let is_jog_at_large = self.order.row().pace == Pace::Jog && matches!(ended, Ended::OutcomeUnknown(_));
+        if (self.stopping && !matches!(ended, Ended::Answered(_))) || is_jog_at_large {
+            // It may still move, and a jog for ever: the stop input stays off.
+            input::STOP.set(&mut output.next, false);
             self.outcome.stop_held = true;
             self.stopping = false;
         }

@@ -179,6 +179,11 @@ fn move_to_19() -> Order {
     Command::MovePtp.order().with(Key::Point, 19).with(Key::SpeedPercent, 50).build().unwrap()
 }
 
+fn jog() -> Order {
+    let order = Command::JogPulse.order().with(Key::Axes, "1").with(Key::Direction, "-");
+    order.with(Key::Report, "pulse").build().unwrap()
+}
+
 fn servo_status() -> Order {
     Command::ServoStatus.order().build().unwrap()
 }
@@ -340,14 +345,7 @@ fn silence_has_its_reason() {
 
 #[test]
 fn an_interrupt_stops_a_motion_and_gives_the_stop_input_back() {
-    let order = Command::JogPulse
-        .order()
-        .with(Key::Axes, "1")
-        .with(Key::Direction, "-")
-        .with(Key::Report, "pulse")
-        .build()
-        .unwrap();
-    let mut world = World::new(order, Script { runs: None, ..Script::default() });
+    let mut world = World::new(jog(), Script { runs: None, ..Script::default() });
     world.interrupt = Some(500);
     let outcome = world.run();
     let Ended::Answered(Answer::Refused { alarm, positions }) = outcome.ended else { panic!("{outcome:?}") };
@@ -358,6 +356,21 @@ fn an_interrupt_stops_a_motion_and_gives_the_stop_input_back() {
     assert!((500..=520).contains(&off));
     assert!(on - off >= 100, "{edges:?}");
     assert!(world.sent.iter().all(|(_, image)| input::EMERGENCY_STOP.is_on(image)));
+}
+
+#[test]
+fn a_jog_that_is_not_seen_to_end_is_stopped_for_good() {
+    let odd = Script { answer: [0x1234; 16], ..Script::default() };
+    let vanishing = Script { answer: [0; 16], once: true, ..Script::default() };
+    for script in [Script { takes: false, ..Script::default() }, odd, vanishing] {
+        let mut world = World::new(jog(), script);
+        let outcome = world.run();
+        assert!(matches!(outcome.ended, Ended::OutcomeUnknown(_)) && outcome.stop_held, "{outcome:?}");
+        assert!(!world.stop_edges().last().unwrap().1);
+        // A motion ends by itself.
+        let mut world = World::new(move_to_19(), world.script);
+        assert!(!world.run().stop_held && world.stop_edges().len() == 1);
+    }
 }
 
 #[test]
