@@ -3,7 +3,7 @@
 use super::io::named;
 use super::position::Unit;
 use crate::controller::Risk;
-use crate::controller::yrcx::alarm::Alarm;
+use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use crate::controller::yrcx::codec::WordError;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::sequence;
@@ -33,11 +33,18 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
         Some(remedy) => (*remedy).to_owned(),
         None => format!("look up {alarm} in the controller's manual; `yrcx info alarm` tells where it came up"),
     };
+    let way_out = WAYS_OUT.iter().find(|(_, alarms)| alarms.contains(&alarm)).map(|(way, _)| *way).unwrap_or_default();
     let kept = kept(row, "if it had begun to move, ");
     Failure::new(Kind::Refused, format!("the controller {what} {}: alarm {alarm}, {}", row.id, alarm.text()))
         .code(alarm.to_string())
-        .hint(format!("{remedy}{kept}"))
+        .hint(format!("{remedy}{way_out}{kept}"))
 }
+
+/// Commands that end what an alarm is about.
+const WAYS_OUT: [(&str, &[Alarm]); 2] = [
+    (": `yrcx io set stop=on`", &[STOP_INPUT]),
+    ("; `yrcx recover` ends the alarm", &[Alarm::new(12, 551), Alarm::new(12, 552), Alarm::new(12, 600)]),
+];
 
 /// What a relative motion that was stopped does when it is given again (4.2.2, 4.2.4); empty for others.
 fn kept(row: &Row, condition: &str) -> String {
@@ -208,7 +215,7 @@ const TELLTALES: [(&[Command], &str); 12] = [
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::controller::yrcx::alarm::{INPUT_FORMAT, STOP_INPUT};
+    use crate::controller::yrcx::alarm::INPUT_FORMAT;
 
     #[test]
     fn an_alarm_has_its_number_and_a_remedy() {
@@ -219,7 +226,9 @@ mod tests {
         let unknown = refused(Command::VarGet.row(), Alarm::new(17, 1));
         assert_eq!(unknown.message, "the controller refused var-get: alarm 17.1, motor control");
         assert!(unknown.hint.unwrap().starts_with("look up 17.1"));
-        assert!(refused(Command::JogPulse.row(), STOP_INPUT).message.contains("12.400"));
+        let stopped = refused(Command::JogPulse.row(), STOP_INPUT);
+        assert!(stopped.message.contains("12.400") && stopped.hint.unwrap().ends_with("`yrcx io set stop=on`"));
+        assert!(refused(Command::MovePtp.row(), Alarm::new(12, 551)).hint.unwrap().contains("yrcx recover"));
     }
 
     #[test]
