@@ -132,7 +132,12 @@ impl Rule {
                     value if (least..=most).contains(&value) => Ok(()),
                     value => wrong(
                         Key::Value,
-                        format!("{value} is out of range for {}; allowed: {least} to {most}", parameter.name),
+                        format!(
+                            "{value} is out of range for {}; allowed: {least} to {most} {}",
+                            parameter.name, parameter.unit
+                        )
+                        .trim_end()
+                        .to_owned(),
                     ),
                 }
             }

@@ -8,7 +8,7 @@ mod layouts;
 pub mod parameter;
 mod rows;
 
-pub use field::{Charset, Field, Form, Need, Show, When};
+pub use field::{COMMON_LINES, Charset, Field, Form, Need, Show, When};
 pub use rows::{Command, ROWS};
 
 use super::value::Key;

@@ -163,6 +163,11 @@ impl Exchange {
         self.running.take()
     }
 
+    /// How long ago the command left; nothing unless it has.
+    pub fn elapsed(&self, now: Now) -> Duration {
+        self.sent.map_or(Duration::ZERO, |sent| now.saturating_sub(sent))
+    }
+
     /// The operator wants it to end. What was not sent is not sent any more. A motion is stopped with SI(06), and its end
     /// awaited; continuous output is ended; any other command is over in a moment anyway.
     pub fn interrupt(&mut self, now: Now) {
@@ -379,7 +384,9 @@ impl ImageSession for Exchange {
         if !self.linked || self.phase == Phase::Over {
             return;
         }
-        if self.phase == Phase::Command && self.order.is_continuous() && self.input != Some(*input) {
+        // The signals beside it change by themselves.
+        let changed = || self.input.map(|known| known.command()) != Some(input.command());
+        if self.phase == Phase::Command && self.order.is_continuous() && changed() {
             let running = Answer::parse(&self.order, &input.command());
             self.running = running.filter(|answer| matches!(answer, Answer::Running(_))).or(self.running.take());
         }

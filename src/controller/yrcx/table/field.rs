@@ -443,7 +443,7 @@ impl Show {
 const NOTHING: &str = "none";
 
 /// Added to the line while the COMMON program runs (4.6.4).
-const COMMON_LINES: i32 = 10_000;
+pub const COMMON_LINES: i32 = 10_000;
 
 impl Charset {
     const fn fill(self) -> u8 {
