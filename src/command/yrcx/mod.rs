@@ -15,30 +15,41 @@
 
 mod alarm;
 mod arguments;
+mod clock;
 #[cfg(test)]
 mod coverage;
+mod data;
 mod info;
 mod io;
 pub mod link;
 mod motion;
+mod moves;
+mod numbers;
 mod overview;
+mod param;
+mod point_calc;
+mod port;
 mod position;
 mod procedures;
+mod program;
 mod raw;
 mod reach;
 mod refusal;
 mod select;
 mod servo;
+mod several;
 pub mod simulated;
 mod single;
 mod speed;
 mod status;
 mod teach;
+mod status_reset;
 #[cfg(test)]
 mod testing;
 mod torque_limit;
 mod trace;
 mod unit;
+mod var;
 
 pub use link::Yrcx as Family;
 pub use overview::overview;
@@ -93,8 +104,30 @@ commands! {
         Servo(servo::Servo),
         /// Switch motor power on or off
         Motor(servo::Motor),
-        /// Versions, positions, servos, alarms
+        /// Points
+        Point(Verbs<data::Point>),
+        /// Comments of points
+        Comment(Verbs<data::Comment>),
+        /// Pallets
+        PalletData(Verbs<data::PalletData>),
+        /// Shifts of coordinates
+        ShiftData(Verbs<data::ShiftData>),
+        /// Hands
+        HandData(Verbs<data::HandData>),
+        /// Points and shifts that the controller computes
+        PointCalc(Verbs<point_calc::PointCalc>),
+        /// Static variables SGI and SGR
+        Var(Verbs<var::Var>),
+        /// Parameters of robots and axes
+        Param(Verbs<param::Param>),
+        /// Ports of eight signals
+        Port(Verbs<port::Port>),
+        /// Programs and their tasks
+        Program(Verbs<program::Program>),
+        /// Versions, positions, servos, tasks, alarms
         Info(Verbs<info::Info>),
+        /// The controller's clock
+        Clock(Verbs<clock::Clock>),
         /// Alarms
         Alarm(Verbs<alarm::Alarm>),
         /// Signals: what the controller shows and is shown
@@ -113,6 +146,8 @@ commands! {
         Run(procedures::Run),
         /// Stop the robot program, by signals
         Stop(procedures::Stop),
+        /// Reset the status of remote commands
+        StatusReset(status_reset::StatusReset),
         /// Send the words of any remote command, and explain the answer
         Raw(raw::Raw),
     }

@@ -50,6 +50,13 @@ fn corrected<'a>(entry: &'a Value, words: &str) -> &'a Value {
     entry.get(format!("{words}_corrected")).unwrap_or(&entry[words])
 }
 
+/// The same, with words that the manual misprints as they must be.
+#[track_caller]
+pub(super) fn corrected(id: &str) -> Vec<String> {
+    let entry = entry(id);
+    texts(entry.get("wi_corrected").unwrap_or(&entry["wi"]))
+}
+
 fn texts(words: &Value) -> Vec<String> {
     words.as_array().unwrap().iter().map(|word| word.as_str().unwrap().to_owned()).collect()
 }
@@ -68,6 +75,17 @@ pub(super) fn read_example(id: &str, line: &[&str]) -> Value {
     let scripted = Scripted::new([Reply::Ends(1, answer(id))]);
     let (outcome, peer) = run_on(scripted, line);
     assert_eq!(peer.taken, [numbers(corrected(&entry(id), "wi"))]);
+    outcome.unwrap()
+}
+
+/// The report of a command line that sends the commands of several examples, each answered as there.
+#[track_caller]
+pub(super) fn read_in_turn(ids: &[&str], line: &[&str]) -> Value {
+    let examples: Vec<Value> = ids.iter().map(|id| entry(id)).collect();
+    let (outcome, peer) =
+        run_on(Scripted::new(examples.iter().map(|example| Reply::Ends(1, numbers(&example["wo"])))), line);
+    let sent = examples.iter().map(|example| numbers(example.get("wi_corrected").unwrap_or(&example["wi"])));
+    assert_eq!(peer.taken, sent.collect::<Vec<_>>());
     outcome.unwrap()
 }
 
@@ -212,6 +230,8 @@ impl Bench {
 pub(super) enum Reply {
     /// Shows these words after so many scans with the run status.
     Ends(u32, Words),
+    /// Shows these words, one a scan and then the last, until the command goes away: continuous output.
+    Shows(Vec<Words>),
     /// Runs until the stop input goes off, and ends with these words.
     UntilStop(Words),
     /// Is gone for so long, so many scans after the command came.
@@ -283,6 +303,15 @@ impl Scripted {
                 let words = *words;
                 self.image.set_command(&words);
                 self.current = None;
+            }
+            Reply::Shows(_) if wi0 == 0 => {
+                self.image.set_command(&[0; COMMAND_WORDS]);
+                self.current = None;
+            }
+            Reply::Shows(all) => {
+                let at = usize::try_from(*scans).expect("few scans").min(all.len());
+                let words = all[at - 1];
+                self.image.set_command(&words);
             }
             Reply::UntilStop(words) if !input::STOP.is_on(&master) => {
                 let words = *words;

@@ -43,15 +43,15 @@ impl Single for Alarm {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct AlarmReport {
     /// Group and category, as in `12.600`; null if there is none.
-    code: Option<String>,
+    pub code: Option<String>,
     /// What is known about it.
-    meaning: Option<&'static str>,
+    pub meaning: Option<&'static str>,
     /// What to do, as far as known.
-    remedies: &'static [&'static str],
+    pub remedies: &'static [&'static str],
     /// Robot, controller or task.
-    place: Option<String>,
+    pub place: Option<String>,
     /// Axis, motor, option slot or program task.
-    part: Option<String>,
+    pub part: Option<String>,
 }
 
 impl AlarmReport {

@@ -1,43 +1,62 @@
 //! `yrcx info position` (4.7.4).
 
+use std::time::Duration;
+
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::Report;
-use crate::command::yrcx::link::Done;
+use crate::command::yrcx::Family;
 use crate::command::yrcx::position::{Position, Unit};
-use crate::command::yrcx::single::{Single, shown};
-use crate::controller::yrcx::table::Command;
+use crate::command::yrcx::single::shown;
+use crate::command::{Command, Context, Report};
+use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
-use crate::output::view::{Section, View};
+use crate::output::view::{Cell, Section, Table, View};
 
-/// Reads the position.
+/// Reads the position, once or as it changes.
 #[derive(Debug, Args)]
+#[command(
+    after_help = "With --continuous the controller shows the position as long as the command lasts and takes no \
+    other remote command; a program may move the robot meanwhile. `-o csv` and `-o jsonl` write a line each time."
+)]
 pub struct Where {
     /// Unit of the position
     #[arg(long, value_name = "UNIT", default_value = "mm")]
     report: Unit,
+    /// Tell each new position until Ctrl-C, --count or --for
+    #[arg(long)]
+    continuous: bool,
 }
 
-impl Single for Where {
+impl Command for Where {
+    type Family = Family;
     type Report = Place;
     const ID: &'static str = "yrcx.info.position";
 
-    fn command(&self) -> Command {
-        match self.report {
-            Unit::Mm => Command::PositionMm,
-            Unit::Pulse => Command::PositionPulse,
-        }
+    fn is_endless(&self) -> bool {
+        self.continuous
     }
 
-    fn report(&self, done: &Done) -> Result<Place, Failure> {
+    async fn run(&self, context: Context<'_, Family>) -> Result<Place, Failure> {
+        let link = context.link;
+        let command = match self.report {
+            Unit::Mm => table::Command::PositionMm,
+            Unit::Pulse => table::Command::PositionPulse,
+        };
+        let order = link.draft(command)?.with(Key::Continuous, self.continuous).build()?;
+        let done = if self.continuous { link.next_output(&order).await? } else { link.run(&order).await? };
         Ok(Place {
             position: Position::of(&done.values, Some(self.report)),
-            hand: shown(Command::PositionMm, &done.values, Key::HandSystem),
+            hand: shown(table::Command::PositionMm, &done.values, Key::HandSystem),
+            elapsed_ms: self.continuous.then(|| milliseconds(done.elapsed)),
         })
     }
+}
+
+fn milliseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
 }
 
 /// Where a robot is.
@@ -47,10 +66,29 @@ pub struct Place {
     position: Position,
     /// `right`, `left` or `none`: the hand system of a position in millimetres.
     hand: Option<String>,
+    /// Since the output began; null unless it is continuous.
+    elapsed_ms: Option<u64>,
+}
+
+impl Place {
+    /// One of many: a line.
+    fn line(&self, elapsed_ms: u64) -> Table {
+        let mut table = Table::new(&["elapsed (ms)", "axis 1", "axis 2", "axis 3", "axis 4", "unit"], "");
+        let (axes, unit) = match (self.position.position_mm, self.position.position_pulses) {
+            (Some(axes), _) => (axes.map(|axis| Cell::number(format!("{axis:.3}"))), "mm"),
+            (None, axes) => (axes.unwrap_or_default().map(Cell::from), "pulses"),
+        };
+        let [first, second, third, fourth] = axes;
+        table.row([elapsed_ms.into(), first, second, third, fourth, unit.into()]);
+        table
+    }
 }
 
 impl Report for Place {
     fn view(&self) -> View {
+        if let Some(elapsed_ms) = self.elapsed_ms {
+            return View::table(self.line(elapsed_ms));
+        }
         let table = self.position.table().map(Section::Table);
         let hand = self.hand.as_ref().filter(|hand| *hand != "none");
         let hand = hand.map(|hand| Section::Fields(vec![("hand system", hand.as_str().into())]));
@@ -60,9 +98,12 @@ impl Report for Place {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{example, read_example, words};
+    use crate::command::yrcx::testing::{Bench, Reply, Scripted, example, read_example, words};
+    use crate::failure::Kind;
 
     #[test]
     fn the_examples_of_the_manual() {
@@ -74,5 +115,53 @@ mod tests {
         let place = read_example("4.7.4-mm", &["info", "position"]);
         assert_eq!(place["hand"], json!("none"), "bit 0, which the example has, is not used");
         assert!(place["position_mm"][0].is_f64() && place["position_pulses"].is_null(), "{place}");
+    }
+
+    const CONTINUOUS: [&str; 3] = ["info", "position", "--continuous"];
+
+    /// The words of continuous output with the first axis there.
+    fn output(position: u16) -> [u16; 16] {
+        let mut words = [0; 16];
+        (words[0], words[4]) = (0x0100, position);
+        words
+    }
+
+    #[test]
+    fn continuous_output_tells_each_change() {
+        assert_eq!(words(&CONTINUOUS).unwrap()[0][..2], ["0x0506", "0x0001"]);
+        let mut bench =
+            Bench::new(Scripted::new([Reply::Shows(vec![output(0), output(1000), output(1000), output(2500)])]));
+        let first = bench.run(&CONTINUOUS).unwrap();
+        let second = bench.run(&CONTINUOUS).unwrap();
+        assert_eq!((&first["position_mm"][0], &second["position_mm"][0]), (&json!(1.0), &json!(2.5)));
+        assert!(first["elapsed_ms"].as_u64() < second["elapsed_ms"].as_u64(), "{first} {second}");
+        bench.interrupt(&CONTINUOUS, Duration::from_secs(60));
+        let peer = bench.into_peer();
+        assert_eq!((peer.taken.len(), peer.image.0[0]), (1, 0), "the status reset ends it");
+    }
+
+    #[test]
+    fn zeros_that_stay_are_a_position() {
+        let mut bench = Bench::new(Scripted::new([Reply::Shows(vec![output(0)])]));
+        assert_eq!(bench.run(&CONTINUOUS).unwrap()["position_mm"], json!([0.0, 0.0, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn another_command_ends_continuous_output() {
+        let mut done = output(7);
+        done[0] = 0x0200;
+        let script = [Reply::Shows(vec![output(1000)]), Reply::Ends(1, done)];
+        let mut bench = Bench::new(Scripted::new(script));
+        bench.run(&CONTINUOUS).unwrap();
+        assert_eq!(bench.run(&["info", "position"]).unwrap()["position_mm"][0], json!(0.007));
+        assert_eq!(bench.into_peer().taken.len(), 2);
+    }
+
+    #[test]
+    fn a_lost_link_is_no_position_and_the_next_call_begins_anew() {
+        let script = [Reply::Loses(2, Duration::from_millis(50)), Reply::Shows(vec![output(1000)])];
+        let mut bench = Bench::new(Scripted::new(script));
+        assert_eq!(bench.run(&CONTINUOUS).unwrap_err().kind, Kind::NoAnswer);
+        assert_eq!(bench.run(&CONTINUOUS).unwrap()["position_mm"][0], json!(1.0));
     }
 }

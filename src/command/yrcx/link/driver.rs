@@ -45,10 +45,18 @@ impl Link {
 
     /// Sees to it that a command that was left alone has ended, and tells if it did not end well.
     async fn end_earlier(&mut self) -> Result<(), Failure> {
-        let Some(row) = self.exchange.as_ref().map(|exchange| exchange.order().row()) else { return Ok(()) };
+        let Some(exchange) = &self.exchange else {
+            // It ended while something else was waited for: nobody may take that for the end of the next one.
+            self.ended = None;
+            return Ok(());
+        };
+        let (row, is_output) = (exchange.order().row(), exchange.order().is_continuous());
         self.turn_until(Instant::now()).await?;
-        while let Some(exchange) = &self.exchange {
-            if exchange.is_running() {
+        let now = self.now();
+        while let Some(exchange) = &mut self.exchange {
+            if is_output {
+                exchange.interrupt(now);
+            } else if exchange.is_running() {
                 return Err(Failure::new(Kind::NoAnswer, format!("{}: {} is still under way", self.label, row.id))
                     .hint(
                         "a controller carries out one remote command at a time; `yrcx io set stop=off` stops a motion",
@@ -56,7 +64,7 @@ impl Link {
             }
             self.turn().await?;
         }
-        if let Some(outcome) = self.ended.take()
+        if let Some(outcome) = self.ended.take().filter(|_| !is_output)
             && let Err(failure) = self.given(row, outcome).and_then(|given| given.done(row))
         {
             self.screen.note(&format!("warning: {failure}"));

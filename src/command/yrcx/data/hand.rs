@@ -1,0 +1,177 @@
+//! `yrcx hand-data` (4.3.5).
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::mm;
+use crate::command::orders::Done;
+use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::yrcx::several::{Refused, read_numbers};
+use crate::command::yrcx::single::Single;
+use crate::command::yrcx::{Family, link};
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::table;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
+
+commands! {
+    /// What can be done with hands.
+    pub enum HandData of Family {
+        /// Read hands: 1, 0..31
+        Get(Get),
+        /// Define a hand: 1 --data-1 10000 --data-2 -2 --data-3 5
+        Set(Set),
+    }
+}
+
+/// Said of the one number that has no unit.
+const DATA_1: &str = "Data 1 is shown and given as it travels, since the manual measures it in two ways: its example of a \
+                      Cartesian robot has 10000 for 10.000 mm, its text a whole number.";
+
+/// Reads hands, one after the other.
+#[derive(Debug, Args)]
+#[command(after_help = DATA_1)]
+pub struct Get {
+    /// Hands, 0 to 31: 1, 0..31 or 1,5
+    #[arg(required = true, value_name = "HAND", value_delimiter = ',',
+        value_parser = |text: &str| Numbers::parse(table::Command::HandGet, Key::Hand, text))]
+    hands: Vec<Numbers>,
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Hands;
+    const ID: &'static str = "yrcx.hand-data.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Hands, Failure> {
+        let found = read_numbers(context, "hands", (table::Command::HandGet, Key::Hand), &self.hands).await?;
+        let hands = found.entries.iter().map(|(hand, values)| Row::of(*hand, values)).collect();
+        Ok(Hands { hands, refused: found.refused })
+    }
+}
+
+/// Hands.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Hands {
+    hands: Vec<Row>,
+    /// Hands that the controller has not.
+    refused: Vec<Refused>,
+}
+
+/// A hand.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Row {
+    hand: i32,
+    /// The robot that has it.
+    robot: i32,
+    /// As it travels: the manual does not tell its unit for certain.
+    data_1: i32,
+    data_2_mm: f64,
+    data_3_mm: f64,
+    /// 1 for a hand on the R axis, else 0.
+    data_4: i32,
+}
+
+impl Row {
+    fn of(hand: i32, values: &Values) -> Self {
+        let int = |key| values.int(key).unwrap_or_default();
+        Self {
+            hand,
+            robot: int(Key::Owner),
+            data_1: int(Key::Data1),
+            data_2_mm: f64::from(int(Key::Data2)) / 1000.0,
+            data_3_mm: f64::from(int(Key::Data3)) / 1000.0,
+            data_4: int(Key::Data4),
+        }
+    }
+}
+
+impl Report for Hands {
+    fn view(&self) -> View {
+        let columns = ["hand", "robot", "data 1", "data 2 (mm)", "data 3 (mm)", "on R axis"];
+        let mut table = Table::new(&columns, "no hands");
+        for Row { hand, robot, data_1, data_2_mm, data_3_mm, data_4 } in &self.hands {
+            let on_r_axis = match data_4 {
+                0 => "no".into(),
+                1 => "yes".into(),
+                other => Cell::from(*other),
+            };
+            table.row([(*hand).into(), (*robot).into(), (*data_1).into(), mm(*data_2_mm), mm(*data_3_mm), on_r_axis]);
+        }
+        View::table(table)
+    }
+}
+
+/// Defines a hand of the robot of --unit.
+#[derive(Debug, Args)]
+#[command(after_help = DATA_1)]
+pub struct Set {
+    /// Hand, 0 to 31
+    #[arg(value_name = "HAND", value_parser = |text: &str| single(table::Command::HandSet, Key::Hand, text))]
+    hand: i32,
+    /// Data 1, a whole number as it travels
+    #[arg(long = "data-1", value_name = "NUMBER", allow_negative_numbers = true)]
+    first: String,
+    /// Data 2 in mm
+    #[arg(long = "data-2", value_name = "MM", allow_negative_numbers = true)]
+    second: String,
+    /// Data 3 in mm
+    #[arg(long = "data-3", value_name = "MM", allow_negative_numbers = true)]
+    third: String,
+    /// It is mounted on the R axis (data 4 is 1)
+    #[arg(long)]
+    on_r_axis: bool,
+}
+
+impl Single for Set {
+    type Report = Done;
+    const ID: &'static str = "yrcx.hand-data.set";
+
+    fn command(&self) -> table::Command {
+        table::Command::HandSet
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        let data = [(Key::Data1, &self.first), (Key::Data2, &self.second), (Key::Data3, &self.third)];
+        let draft = draft.with(Key::Hand, self.hand).with(Key::Data4, self.on_r_axis);
+        data.into_iter().fold(draft, |draft, (key, text)| draft.with(key, text.as_str()))
+    }
+
+    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+        let Self { hand, first, second, third, on_r_axis } = self;
+        let place = if *on_r_axis { ", on the R axis" } else { "" };
+        Ok(Done::new(format!("defined hand {hand}: {first}, {second} mm, {third} mm{place}")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::command::yrcx::testing::{example, read_example, words};
+    use crate::failure::Kind;
+
+    const SET: [&str; 9] = ["hand-data", "set", "1", "--data-1", "10000", "--data-2", "-2", "--data-3", "5"];
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        assert_eq!(words(&SET).unwrap(), [example("4.3.5-define")]);
+        assert_eq!(read_example("4.3.5-define", &SET)["done"], "defined hand 1: 10000, -2 mm, 5 mm");
+        let read = read_example("4.3.5-reference", &["hand-data", "get", "1"]);
+        let hand = json!({"hand": 1, "robot": 1, "data_1": 10000, "data_2_mm": -2.0, "data_3_mm": 5.0, "data_4": 0});
+        assert_eq!(read["hands"], json!([hand]));
+    }
+
+    #[test]
+    fn a_hand_belongs_to_a_robot_and_is_read_without() {
+        let sent = words(&[&SET[..], &["--on-r-axis", "--unit", "3"]].concat()).unwrap();
+        assert_eq!((sent[0][0].as_str(), sent[0][10].as_str()), ("0x3110", "0x0001"));
+        assert_eq!(words(&["hand-data", "get", "1", "--unit", "3"]).unwrap_err().kind, Kind::Usage);
+        let first = |data| words(&["hand-data", "set", "1", "--data-1", data, "--data-2", "0", "--data-3", "0"]);
+        assert!(first("10.5").unwrap_err().message.contains("data_1"));
+        assert_eq!(first("10.000").is_ok(), false, "nobody knows whether that is 10 or 10000");
+    }
+}

@@ -1,0 +1,162 @@
+//! `yrcx pallet-data` (4.3.3).
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::orders::Done;
+use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::yrcx::several::{Refused, read_numbers};
+use crate::command::yrcx::single::Single;
+use crate::command::yrcx::{Family, link};
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::table;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::Failure;
+use crate::output::view::{Table, View};
+
+commands! {
+    /// What can be done with pallets.
+    pub enum PalletData of Family {
+        /// Read pallets: 10, 0..39
+        Get(Get),
+        /// Define a pallet: 10 --nx 10 --ny 15 --first-point 100
+        Set(Set),
+    }
+}
+
+/// Reads pallets, one after the other.
+#[derive(Debug, Args)]
+pub struct Get {
+    /// Pallets, 0 to 39: 10, 0..39 or 1,5
+    #[arg(required = true, value_name = "PALLET", value_delimiter = ',',
+        value_parser = |text: &str| Numbers::parse(table::Command::PalletGet, Key::Pallet, text))]
+    pallets: Vec<Numbers>,
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Pallets;
+    const ID: &'static str = "yrcx.pallet-data.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Pallets, Failure> {
+        let found = read_numbers(context, "pallets", (table::Command::PalletGet, Key::Pallet), &self.pallets).await?;
+        let pallets = found.entries.iter().map(|(pallet, values)| Row::of(*pallet, values)).collect();
+        Ok(Pallets { pallets, refused: found.refused })
+    }
+}
+
+/// Pallets.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Pallets {
+    pallets: Vec<Row>,
+    /// Pallets that the controller has not.
+    refused: Vec<Refused>,
+}
+
+/// A pallet.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Row {
+    pallet: i32,
+    /// Places in X.
+    nx: i32,
+    /// Places in Y.
+    ny: i32,
+    /// Places in Z.
+    nz: i32,
+    /// The first of the five points that define it.
+    first_point: i32,
+}
+
+impl Row {
+    fn of(pallet: i32, values: &Values) -> Self {
+        let [nx, ny, nz, first_point] =
+            [Key::CountX, Key::CountY, Key::CountZ, Key::FirstPoint].map(|key| values.int(key).unwrap_or_default());
+        Self { pallet, nx, ny, nz, first_point }
+    }
+}
+
+impl Report for Pallets {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["pallet", "nx", "ny", "nz", "first point"], "no pallets");
+        for Row { pallet, nx, ny, nz, first_point } in &self.pallets {
+            table.row([pallet, nx, ny, nz, first_point].map(|number| (*number).into()));
+        }
+        View::table(table)
+    }
+}
+
+/// Defines a pallet.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The controller keeps the corners of a pallet in five points, from the first one on; `yrcx point \
+    set` or `yrcx teach` defines those."
+)]
+pub struct Set {
+    /// Pallet, 0 to 39
+    #[arg(value_name = "PALLET", value_parser = |text: &str| single(table::Command::PalletSet, Key::Pallet, text))]
+    pallet: i32,
+    /// Places in X; at most 32767 places in all
+    #[arg(long, value_name = "COUNT")]
+    nx: String,
+    /// Places in Y
+    #[arg(long, value_name = "COUNT")]
+    ny: String,
+    /// Places in Z
+    #[arg(long, value_name = "COUNT", default_value = "1")]
+    nz: String,
+    /// First of its five points, 0 to 29995
+    #[arg(long, value_name = "POINT")]
+    first_point: String,
+}
+
+impl Single for Set {
+    type Report = Done;
+    const ID: &'static str = "yrcx.pallet-data.set";
+
+    fn command(&self) -> table::Command {
+        table::Command::PalletSet
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        let draft = draft.with(Key::Pallet, self.pallet).with(Key::FirstPoint, self.first_point.as_str());
+        let counts = [(Key::CountX, &self.nx), (Key::CountY, &self.ny), (Key::CountZ, &self.nz)];
+        counts.into_iter().fold(draft, |draft, (key, count)| draft.with(key, count.as_str()))
+    }
+
+    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+        let Self { pallet, nx, ny, nz, first_point } = self;
+        Ok(Done::new(format!("defined pallet {pallet}: {nx} x {ny} x {nz}, first point {first_point}")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::command::yrcx::testing::{example, objection, read_example, words};
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        let set = ["pallet-data", "set", "10", "--nx", "10", "--ny", "15", "--first-point", "100"];
+        assert_eq!(words(&set).unwrap(), [example("4.3.3-define")]);
+        assert_eq!(read_example("4.3.3-define", &set)["done"], "defined pallet 10: 10 x 15 x 1, first point 100");
+        let read = read_example("4.3.3-reference", &["pallet-data", "get", "10"]);
+        assert_eq!(read["pallets"], json!([{"pallet": 10, "nx": 10, "ny": 15, "nz": 1, "first_point": 100}]));
+    }
+
+    #[test]
+    fn a_pallet_has_so_many_places_and_no_more() {
+        for (line, part) in [
+            ("1 --nx 256 --ny 128 --first-point 1", "X times Y times Z is 32768; 1 to 32767"),
+            ("1 --nx 0 --ny 1 --first-point 1", "X times Y times Z is 0"),
+            ("1 --nx 1 --ny 1 --first-point 29996", "allowed: 0 to 29995"),
+        ] {
+            let line: Vec<&str> = ["pallet-data", "set"].into_iter().chain(line.split(' ')).collect();
+            let failure = words(&line).unwrap_err();
+            assert!(failure.message.contains(part), "{failure}");
+        }
+        assert!(objection(&["pallet-data", "get", "40"]).contains("allowed: 0 to 39"));
+    }
+}

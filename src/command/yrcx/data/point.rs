@@ -1,0 +1,226 @@
+//! `yrcx point` (4.3.1).
+
+use clap::{ArgGroup, Args};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::{Four, four, mm};
+use crate::command::orders::Done;
+use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::yrcx::position::{Position, Unit};
+use crate::command::yrcx::several::{Refused, read_numbers};
+use crate::command::yrcx::single::{Single, shown};
+use crate::command::yrcx::{Family, link};
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::table;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
+
+commands! {
+    /// What can be done with points.
+    pub enum Point of Family {
+        /// Read points: 100, 0..29
+        Get(Get),
+        /// Define a point: 100 --mm 10,-20,5,-18
+        Set(Set),
+    }
+}
+
+/// Reads points, one after the other.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Points that are not defined are named on stderr, and in `refused` of the JSON. `-o csv` prints a \
+    table for a spreadsheet."
+)]
+pub struct Get {
+    /// Points, 0 to 29999: 100, 0..29 or 0..29,100
+    #[arg(required = true, value_name = "POINT", value_delimiter = ',',
+        value_parser = |text: &str| Numbers::parse(table::Command::PointGet, Key::Point, text))]
+    points: Vec<Numbers>,
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Points;
+    const ID: &'static str = "yrcx.point.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Points, Failure> {
+        let found = read_numbers(context, "points", (table::Command::PointGet, Key::Point), &self.points).await?;
+        let points = found.entries.iter().map(|(point, values)| Row::of(*point, values)).collect();
+        Ok(Points { points, refused: found.refused })
+    }
+}
+
+/// Points.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Points {
+    points: Vec<Row>,
+    /// Points that the controller has not.
+    refused: Vec<Refused>,
+}
+
+/// A point.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Row {
+    point: i32,
+    /// In the unit that it was defined in; the other one is null.
+    #[serde(flatten)]
+    position: Position,
+    /// `right` or `left`: the hand system of a point in millimetres, null unless it has one.
+    hand: Option<String>,
+}
+
+impl Row {
+    fn of(point: i32, values: &Values) -> Self {
+        let unit = if values.int(Key::Unit) == Some(1) { Unit::Mm } else { Unit::Pulse };
+        let hand = shown(table::Command::PointGet, values, Key::HandSystem).filter(|hand| hand != "none");
+        Self { point, position: Position::of(values, Some(unit)), hand }
+    }
+
+    fn cells(&self) -> [Cell; 4] {
+        match (self.position.position_mm, self.position.position_pulses) {
+            (Some(axes), _) => axes.map(mm),
+            (None, Some(axes)) => axes.map(Cell::from),
+            (None, None) => std::array::from_fn(|_| "-".into()),
+        }
+    }
+}
+
+impl Report for Points {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["point", "axis 1", "axis 2", "axis 3", "axis 4", "unit", "hand"], "no points");
+        for row in &self.points {
+            let unit = if row.position.position_mm.is_some() { "mm" } else { "pulses" };
+            let [first, second, third, fourth] = row.cells();
+            let hand = Cell::maybe(row.hand.as_deref());
+            table.row([row.point.into(), first, second, third, fourth, unit.into(), hand]);
+        }
+        View::table(table)
+    }
+}
+
+/// Defines a point.
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("coordinates").required(true),
+    after_help = "Give 0 for an axis that the robot has not. `yrcx teach` stores where the robot is.")]
+pub struct Set {
+    /// Point, 0 to 29999
+    #[arg(value_name = "POINT", value_parser = |text: &str| single(table::Command::PointSet, Key::Point, text))]
+    point: i32,
+    /// Coordinates of axes 1 to 4 in mm, degrees of what turns
+    #[arg(long, value_name = "MM,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
+    mm: Option<Four>,
+    /// Coordinates of axes 1 to 4 in pulses
+    #[arg(long, value_name = "PULSES,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
+    pulse: Option<Four>,
+    /// Hand system of coordinates in mm
+    #[arg(long, value_name = "HAND", value_parser = ["right", "left"], conflicts_with = "pulse")]
+    hand: Option<String>,
+}
+
+impl Set {
+    fn coordinates(&self) -> (&'static str, Option<&Four>) {
+        if self.mm.is_some() { ("mm", self.mm.as_ref()) } else { ("pulse", self.pulse.as_ref()) }
+    }
+}
+
+impl Single for Set {
+    type Report = Done;
+    const ID: &'static str = "yrcx.point.set";
+
+    fn command(&self) -> table::Command {
+        table::Command::PointSet
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        let (unit, four) = self.coordinates();
+        let draft = draft.with(Key::Point, self.point).with(Key::Unit, unit);
+        let draft = four.into_iter().fold(draft, |draft, four| four.put(draft));
+        draft.with_some(Key::HandSystem, self.hand.clone())
+    }
+
+    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+        let (unit, four) = self.coordinates();
+        let numbers = four.map(Four::told).unwrap_or_default();
+        let unit = if unit == "mm" { "mm" } else { "pulses" };
+        let hand = self.hand.as_ref().map(|hand| format!(", {hand}-handed")).unwrap_or_default();
+        Ok(Done::new(format!("defined point {}: {numbers} {unit}{hand}", self.point)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::command::yrcx::testing::{Reply, Scripted, example, objection, read_example, run_on, words};
+    use crate::failure::Kind;
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        let set = ["point", "set", "100", "--pulse", "10000,-20000,5000,-18000"];
+        assert_eq!(words(&set).unwrap(), [example("4.3.1-define")]);
+        assert_eq!(read_example("4.3.1-define", &set)["done"], "defined point 100: 10000, -20000, 5000, -18000 pulses");
+        let read = read_example("4.3.1-reference", &["point", "get", "50"]);
+        let mm = [10.0, -20.0, 5.0, -18.0];
+        let row = json!({"point": 50, "position_mm": mm, "position_pulses": null, "hand": null});
+        assert_eq!(read, json!({"points": [row], "refused": []}));
+    }
+
+    #[test]
+    fn coordinates_have_a_unit_and_a_hand() {
+        let sent = words(&["point", "set", "0", "--mm", "1,-2.5,0,0", "--hand", "left"]).unwrap();
+        assert_eq!(sent[0][..8], ["0x0100", "0x0005", "0x0000", "0x0000", "0x03E8", "0x0000", "0xF63C", "0xFFFF"]);
+        for (line, part) in [
+            ("point set 1", "--mm"),
+            ("point set 1 --mm 1,2,3", "four numbers are wanted, one an axis, as in 10,-20,5,-18; 3 given"),
+            ("point set 1 --mm 1,2,3,4 --pulse 1,2,3,4", "cannot be used with"),
+            ("point set 1 --pulse 1,2,3,4 --hand left", "cannot be used with"),
+            ("point set 30000 --mm 1,2,3,4", "allowed: 0 to 29999"),
+            ("point get 0..30000", "allowed: 0 to 29999"),
+        ] {
+            let objection = objection(&line.split(' ').collect::<Vec<_>>());
+            assert!(objection.contains(part), "{line}: {objection}");
+        }
+        let failure = words(&["point", "set", "1", "--mm", "1.0005,2,3,4"]).unwrap_err();
+        assert!(failure.message.contains("axis_1"), "{failure}");
+        assert_eq!(words(&["point", "get", "1", "--unit", "2"]).unwrap_err().kind, Kind::Usage);
+        assert_eq!(words(&["point", "get", "0..29"]).unwrap().len(), 30);
+    }
+
+    fn answer(point: u16) -> Reply {
+        let mut words = [0; 16];
+        (words[0], words[2]) = (0x0200, point);
+        Reply::Ends(0, words)
+    }
+
+    fn refusal(group: u16, category: u16) -> Reply {
+        let mut words = [0; 16];
+        words[..3].copy_from_slice(&[0x4000, group, category]);
+        Reply::Ends(0, words)
+    }
+
+    #[test]
+    fn what_is_not_defined_stands_beside_what_is() {
+        let line = ["point", "get", "3..5"];
+        let (read, _) = run_on(Scripted::new([refusal(2, 904), answer(4), refusal(2, 904)]), &line);
+        let read = read.unwrap();
+        assert_eq!((&read["points"][0]["point"], &read["refused"][1]["number"]), (&json!(4), &json!(5)));
+        assert_eq!(read["refused"][0]["code"], "2.904");
+        let (none, peer) = run_on(Scripted::new([refusal(2, 904), refusal(2, 904), refusal(2, 904)]), &line);
+        assert_eq!((none.unwrap_err().code.as_deref(), peer.taken.len()), (Some("2.904"), 3));
+    }
+
+    #[test]
+    fn a_controller_that_takes_no_commands_is_not_asked_again() {
+        let (outcome, peer) = run_on(Scripted::new([answer(3), refusal(12, 76)]), &["point", "get", "3..29999"]);
+        assert_eq!((outcome.unwrap_err().code.as_deref(), peer.taken.len()), (Some("12.76"), 2));
+    }
+
+    #[test]
+    fn an_answer_for_another_point_is_no_answer() {
+        let (outcome, _) = run_on(Scripted::new([answer(4)]), &["point", "get", "3"]);
+        assert_eq!(outcome.unwrap_err().kind, Kind::Malformed);
+    }
+}

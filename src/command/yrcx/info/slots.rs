@@ -1,0 +1,90 @@
+//! `yrcx info slots` (4.7.15).
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::Report;
+use crate::command::yrcx::link::Done;
+use crate::command::yrcx::single::{Single, shown};
+use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::Key;
+use crate::failure::Failure;
+use crate::output::view::{Table, View};
+
+/// Reads what is in the option slots.
+#[derive(Debug, Args)]
+#[command(after_help = "The manual has no number for PROFINET.")]
+pub struct Slots {
+    /// Controller, 1 to 4
+    #[arg(long, value_name = "N", default_value = "1")]
+    controller: String,
+}
+
+const SLOTS: [Key; 4] = [Key::Slot1, Key::Slot2, Key::Slot3, Key::Slot4];
+
+impl Single for Slots {
+    type Report = Modules;
+    const ID: &'static str = "yrcx.info.slots";
+
+    fn command(&self) -> Command {
+        Command::Slots
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        draft.with(Key::Controller, self.controller.as_str())
+    }
+
+    fn report(&self, done: &Done) -> Result<Modules, Failure> {
+        let slots = (1..).zip(SLOTS).filter_map(|(slot, key)| {
+            let code = format!("0x{:04X}", done.values.int(key)?);
+            Some(Slot { slot, module: shown(Command::Slots, &done.values, key)?, code })
+        });
+        Ok(Modules { slots: slots.collect() })
+    }
+}
+
+/// Option slots of a controller.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Modules {
+    slots: Vec<Slot>,
+}
+
+/// An option slot.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Slot {
+    /// 1 to 4.
+    slot: usize,
+    /// In words; `none` if it is empty.
+    module: String,
+    /// As the controller tells it.
+    code: String,
+}
+
+impl Report for Modules {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["slot", "module", "code"], "no slots");
+        for Slot { slot, module, code } in &self.slots {
+            table.row([(*slot).into(), module.as_str().into(), code.as_str().into()]);
+        }
+        View::table(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::command::yrcx::testing::{example, read_example, words};
+
+    #[test]
+    fn the_example_of_the_manual() {
+        assert_eq!(words(&["info", "slots", "--controller", "1"]).unwrap(), [example("4.7.15-reference")]);
+        let slots = &read_example("4.7.15-reference", &["info", "slots"])["slots"];
+        assert_eq!(slots[0], json!({"slot": 1, "module": "EtherNet/IP", "code": "0x0401"}));
+        assert_eq!(slots[1]["module"], "DIO NPN general-purpose input");
+        assert_eq!(slots[3], json!({"slot": 4, "module": "none", "code": "0x0000"}));
+        assert!(words(&["info", "slots", "--controller", "5"]).unwrap_err().message.contains("allowed: 1 to 4"));
+    }
+}

@@ -1,0 +1,93 @@
+//! Numbers of points, variables, tasks on a command line, in the ranges of the protocol's fields.
+
+use std::collections::HashSet;
+
+use crate::controller::yrcx::table::{Command, Field};
+use crate::controller::yrcx::value::{Key, Value};
+
+/// A number, or a range of them: `5`, `0..29`, `SGI0..SGI5`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Numbers(Vec<i32>);
+
+impl Numbers {
+    /// Reads a number or a range for a field of a command; each must be one that may be sent.
+    pub fn parse(command: Command, key: Key, text: &str) -> Result<Self, String> {
+        let field = field(command, key)?;
+        let Some((first, last)) = text.split_once("..").or_else(|| text.split_once('-')) else {
+            return Ok(Self(vec![number(field, text)?]));
+        };
+        let (first, last) = (number(field, first)?, number(field, last)?);
+        if first > last {
+            return Err("the range ends before it begins".to_owned());
+        }
+        let numbers: Vec<i32> = (first..=last).collect();
+        numbers.iter().try_for_each(|number| field.accept(&Value::Int(*number)))?;
+        Ok(Self(numbers))
+    }
+
+    /// All numbers that were given, each once and in that order.
+    pub fn of(given: &[Self]) -> Vec<i32> {
+        let mut seen = HashSet::new();
+        given.iter().flat_map(|numbers| &numbers.0).copied().filter(|number| seen.insert(*number)).collect()
+    }
+}
+
+/// A single number for a field of a command.
+pub fn single(command: Command, key: Key, text: &str) -> Result<i32, String> {
+    number(field(command, key)?, text)
+}
+
+/// A number as the field shows it, such as `SGI5`.
+pub fn named(command: Command, key: Key, number: i32) -> String {
+    field(command, key).map_or_else(|_| number.to_string(), |field| field.show(&Value::Int(number)))
+}
+
+/// Numbers in the order given, those that follow each other as `5..9`.
+pub fn runs(numbers: &[i32]) -> String {
+    let mut runs: Vec<(i32, i32)> = Vec::new();
+    for &number in numbers {
+        match runs.last_mut() {
+            Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
+            _ => runs.push((number, number)),
+        }
+    }
+    let run = |&(first, last): &(i32, i32)| if first == last { first.to_string() } else { format!("{first}..{last}") };
+    runs.iter().map(run).collect::<Vec<_>>().join(", ")
+}
+
+fn field(command: Command, key: Key) -> Result<&'static Field, String> {
+    command.row().request().find(|field| field.key == key).ok_or_else(|| format!("{} has no {key}", command.row().id))
+}
+
+fn number(field: &Field, text: &str) -> Result<i32, String> {
+    // Names of variables are in capitals.
+    match field.parse(&text.trim().to_ascii_uppercase())? {
+        Value::Int(number) => field.accept(&Value::Int(number)).map(|()| number),
+        Value::Real(_) | Value::Text(_) => Err(format!("'{text}' is no whole number")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_and_ranges() {
+        let points = |text| Numbers::parse(Command::PointGet, Key::Point, text);
+        let given = [points("7").unwrap(), points("2..4").unwrap(), points("3-5").unwrap()];
+        assert_eq!(Numbers::of(&given), [7, 2, 3, 4, 5]);
+        assert_eq!(runs(&Numbers::of(&given)), "7, 2..5");
+        assert_eq!(Numbers::of(&[points("0..29999").unwrap()]).len(), 30_000);
+        assert_eq!(points("0..30000").unwrap_err(), "30000 is out of range; allowed: 0 to 29999");
+        assert_eq!(points("5..2").unwrap_err(), "the range ends before it begins");
+        assert!(points("").is_err() && points("-3").is_err() && points("x").is_err() && points("1..").is_err());
+    }
+
+    #[test]
+    fn variables_have_names() {
+        let variables = |text| Numbers::parse(Command::VarGet, Key::Variable, text);
+        assert_eq!(Numbers::of(&[variables("sgi30..SGI31").unwrap(), variables("SGR0").unwrap()]), [30, 31, 256]);
+        assert!(variables("SGI30..SGR1").unwrap_err().contains("SGI0 to SGI31, SGR0 to SGR31"));
+        assert_eq!(named(Command::VarGet, Key::Variable, 257), "SGR1");
+    }
+}

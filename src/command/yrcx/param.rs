@@ -1,0 +1,208 @@
+//! `yrcx param` (4.4.2): parameters of the robot and of its axes.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::numbers::single;
+use super::several::ask_all;
+use super::single::Single;
+use super::{Family, link};
+use crate::command::orders::Done;
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::yrcx::order::{Draft, Order};
+use crate::controller::yrcx::table;
+use crate::controller::yrcx::table::parameter::{PARAMETERS, Parameter};
+use crate::controller::yrcx::value::Key;
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
+
+commands! {
+    /// What can be done with parameters.
+    pub enum Param of Family {
+        /// Read parameters: WEIGHT, or TOLE --axis 1,3
+        Get(Get),
+        /// Set a parameter: TOLE 1000 --axis 3
+        Set(Set),
+    }
+}
+
+/// Which parameters there are.
+fn listing() -> String {
+    let line = |parameter: &Parameter| {
+        let Parameter { number, name, meaning, span: (least, most), .. } = *parameter;
+        let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
+        let most = if most == i32::MAX { "what the robot carries".to_owned() } else { most.to_string() };
+        format!("  {name:<8} {number:>3}  {meaning}, {least} to {most}{unit}")
+    };
+    let of = |per_axis| PARAMETERS.iter().filter(move |parameter| parameter.per_axis == per_axis).map(line);
+    let lines = |per_axis| of(per_axis).collect::<Vec<_>>().join("\n");
+    format!("Of the robot:\n{}\n\nOf an axis:\n{}", lines(false), lines(true))
+}
+
+fn parameter(text: &str) -> Result<&'static Parameter, String> {
+    let number = single(table::Command::ParamGet, Key::Parameter, text)?;
+    Parameter::of(number).ok_or_else(|| format!("there is no parameter {number}"))
+}
+
+/// Reads parameters, one after the other.
+#[derive(Debug, Args)]
+#[command(after_help = listing())]
+pub struct Get {
+    /// Parameters by name or number, as in TOLE or 259
+    #[arg(required = true, value_name = "PARAMETER", value_delimiter = ',', value_parser = parameter)]
+    parameters: Vec<&'static Parameter>,
+    /// Axes, 1 to 4: 3, or 1,2,3,4; for parameters of an axis
+    #[arg(long, value_name = "AXES", value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=4))]
+    axis: Vec<u8>,
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Parameters;
+    const ID: &'static str = "yrcx.param.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Parameters, Failure> {
+        let Context { link, screen, .. } = context;
+        let axes: Vec<Option<u8>> =
+            if self.axis.is_empty() { vec![None] } else { self.axis.iter().copied().map(Some).collect() };
+        let wanted = self.parameters.iter().flat_map(|parameter| axes.iter().map(|axis| (*parameter, *axis)));
+        let wanted: Vec<(&Parameter, Option<u8>)> = wanted.collect();
+        let order = |(parameter, axis): &(&Parameter, Option<u8>)| {
+            let draft = link.draft(table::Command::ParamGet)?.with(Key::Parameter, parameter.number);
+            Ok(draft.with_some(Key::Axes, axis.map(|axis| axis.to_string())).build()?)
+        };
+        let orders = wanted.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
+        let answers = ask_all(link, screen, "reading parameters", &orders).await?;
+        let parameters = wanted.iter().zip(&answers).map(|((parameter, axis), values)| Row {
+            parameter: parameter.name,
+            number: parameter.number,
+            axis: *axis,
+            value: values.int(Key::Value).unwrap_or_default(),
+            unit: Some(parameter.unit).filter(|unit| !unit.is_empty()),
+            meaning: parameter.meaning,
+        });
+        Ok(Parameters { parameters: parameters.collect() })
+    }
+}
+
+/// Parameters.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Parameters {
+    parameters: Vec<Row>,
+}
+
+/// A parameter.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Row {
+    /// Its name in the robot language.
+    parameter: &'static str,
+    number: u16,
+    /// 1 to 4; null for a parameter of the robot.
+    axis: Option<u8>,
+    value: i32,
+    /// What it is measured in; null where the manual does not say.
+    unit: Option<&'static str>,
+    meaning: &'static str,
+}
+
+impl Report for Parameters {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["parameter", "axis", "value", "unit", "meaning"], "no parameters");
+        for row in &self.parameters {
+            let axis = row.axis.map_or_else(|| "-".into(), Cell::from);
+            table.row([row.parameter.into(), axis, row.value.into(), Cell::maybe(row.unit), row.meaning.into()]);
+        }
+        View::table(table)
+    }
+}
+
+/// Sets a parameter.
+#[derive(Debug, Args)]
+#[command(after_help = listing())]
+pub struct Set {
+    /// Parameter by name or number, as in TOLE or 259
+    #[arg(value_name = "PARAMETER", value_parser = parameter)]
+    parameter: &'static Parameter,
+    /// A whole number in the unit of the parameter
+    #[arg(value_name = "VALUE", allow_negative_numbers = true)]
+    value: String,
+    /// Axis, 1 to 4; for a parameter of an axis
+    #[arg(long, value_name = "AXIS")]
+    axis: Option<String>,
+}
+
+impl Single for Set {
+    type Report = Done;
+    const ID: &'static str = "yrcx.param.set";
+
+    fn command(&self) -> table::Command {
+        table::Command::ParamSet
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        let draft = draft.with(Key::Parameter, self.parameter.number).with(Key::Value, self.value.as_str());
+        draft.with_some(Key::Axes, self.axis.clone())
+    }
+
+    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+        let Parameter { name, unit, .. } = self.parameter;
+        let axis = self.axis.as_ref().map(|axis| format!(" of axis {axis}")).unwrap_or_default();
+        Ok(Done::new(format!("{name}{axis} = {} {unit}", self.value).trim_end()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::command::yrcx::testing::{example, objection, read_example, words};
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        let set = ["param", "set", "TOLE", "1000", "--axis", "3"];
+        assert_eq!(words(&set).unwrap(), [example("4.4.2-assign")]);
+        assert_eq!(read_example("4.4.2-assign", &set)["done"], "TOLE of axis 3 = 1000 pulses");
+        let read = read_example("4.4.2-reference", &["param", "get", "outpos", "--axis", "1"]);
+        let row = json!({
+            "parameter": "OUTPOS", "number": 260, "axis": 1, "value": 131_071, "unit": "pulses",
+            "meaning": "OUT effective position",
+        });
+        assert_eq!(read, json!({"parameters": [row]}));
+    }
+
+    #[test]
+    fn several_parameters_of_several_axes() {
+        let sent = words(&["param", "get", "TOLE,260", "--axis", "1,4", "--unit", "2"]).unwrap();
+        let heads: Vec<String> = sent.iter().map(|words| words[..4].join(" ")).collect();
+        assert_eq!(
+            heads,
+            [
+                "0x2224 0x0000 0x0103 0x0001",
+                "0x2224 0x0000 0x0103 0x0008",
+                "0x2224 0x0000 0x0104 0x0001",
+                "0x2224 0x0000 0x0104 0x0008",
+            ]
+        );
+        assert_eq!(words(&["param", "set", "2", "500"]).unwrap()[0][2..5], ["0x0002", "0x0000", "0x01F4"]);
+    }
+
+    #[test]
+    fn axis_and_range_are_checked() {
+        for (line, part) in [
+            ("param set TOLE 16385 --axis 3", "16385 is out of range for TOLE; allowed: 1 to 16384 pulses"),
+            ("param set PSHFRC -1001 --axis 3", "allowed: -1000 to 1000"),
+            ("param set TOLE 1", "TOLE belongs to an axis; name one"),
+            ("param get TOLE", "TOLE belongs to an axis; name one"),
+            ("param set WEIGHT 1 --axis 1", "WEIGHT belongs to the robot, not to an axis"),
+            ("param set TOLE 1 --axis 1,2", "axes"),
+            ("param set TOLE 1.5 --axis 1", "value"),
+        ] {
+            let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
+            assert!(failure.message.contains(part), "{line}: {failure}");
+        }
+        assert!(objection(&["param", "get", "TOLL", "--axis", "1"]).contains("259 = TOLE"));
+        assert!(objection(&["param", "get", "261"]).contains("261"));
+        assert!(objection(&["param", "get", "TOLE", "--axis", "5"]).contains("1..=4"));
+    }
+}

@@ -1,0 +1,277 @@
+//! `yrcx point-calc` (4.4.3, 4.4.4): the controller computes points and shifts.
+
+use clap::{ArgGroup, Args};
+
+use super::numbers::single;
+use super::single::Single;
+use super::{Family, link};
+use crate::command::commands;
+use crate::command::orders::Done;
+use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::Key;
+use crate::failure::Failure;
+
+commands! {
+    /// What the controller can do with points and shifts that it has.
+    pub enum PointCalc of Family {
+        /// Copy a point: 100 --to 1
+        Copy(Copy),
+        /// Add a point to another one: 100 --to 1
+        Add(Add),
+        /// Subtract a point from another one: 100 --from 1
+        Sub(Sub),
+        /// Copy a place of a pallet to a point: 2 --place 133 --to 100
+        Pallet(Pallet),
+        /// Set one element of a point: 1 --element 4 --mm 1.0
+        Element(Element),
+        /// Set one element of a shift: 1 --element 2 --mm 1.0
+        ShiftElement(ShiftElement),
+    }
+}
+
+fn point(text: &str) -> Result<i32, String> {
+    single(Command::PointCopy, Key::Point, text)
+}
+
+/// Copies a point.
+#[derive(Debug, Args)]
+pub struct Copy {
+    /// Point to copy, 0 to 29999
+    #[arg(value_name = "POINT", value_parser = point)]
+    point: i32,
+    /// Point that becomes the same
+    #[arg(long, value_name = "POINT", value_parser = point)]
+    to: i32,
+}
+
+impl Single for Copy {
+    type Report = Done;
+    const ID: &'static str = "yrcx.point-calc.copy";
+
+    fn command(&self) -> Command {
+        Command::PointCopy
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        draft.with(Key::Point, self.to).with(Key::Point2, self.point)
+    }
+
+    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+        Ok(Done::new(format!("P{} = P{}", self.to, self.point)))
+    }
+}
+
+/// Adds a point to another one, axis by axis.
+#[derive(Debug, Args)]
+pub struct Add {
+    /// Point to add, 0 to 29999
+    #[arg(value_name = "POINT", value_parser = point)]
+    point: i32,
+    /// Point that changes
+    #[arg(long, value_name = "POINT", value_parser = point)]
+    to: i32,
+}
+
+impl Single for Add {
+    type Report = Done;
+    const ID: &'static str = "yrcx.point-calc.add";
+
+    fn command(&self) -> Command {
+        Command::PointAdd
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        draft.with(Key::Point, self.to).with(Key::Point2, self.point)
+    }
+
+    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+        Ok(Done::new(format!("P{to} = P{to} + P{}", self.point, to = self.to)))
+    }
+}
+
+/// Subtracts a point from another one, axis by axis.
+#[derive(Debug, Args)]
+pub struct Sub {
+    /// Point to subtract, 0 to 29999
+    #[arg(value_name = "POINT", value_parser = point)]
+    point: i32,
+    /// Point that changes
+    #[arg(long, value_name = "POINT", value_parser = point)]
+    from: i32,
+}
+
+impl Single for Sub {
+    type Report = Done;
+    const ID: &'static str = "yrcx.point-calc.sub";
+
+    fn command(&self) -> Command {
+        Command::PointSub
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        draft.with(Key::Point, self.from).with(Key::Point2, self.point)
+    }
+
+    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+        Ok(Done::new(format!("P{from} = P{from} - P{}", self.point, from = self.from)))
+    }
+}
+
+/// Copies a place of a pallet to a point.
+#[derive(Debug, Args)]
+pub struct Pallet {
+    /// Pallet, 0 to 39
+    #[arg(value_name = "PALLET", value_parser = |text: &str| single(Command::PointPallet, Key::Pallet, text))]
+    pallet: i32,
+    /// Work position, from 1 to as many as the pallet has
+    #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::PointPallet, Key::WorkPosition, text))]
+    place: i32,
+    /// Point that becomes the same
+    #[arg(long, value_name = "POINT", value_parser = point)]
+    to: i32,
+}
+
+impl Single for Pallet {
+    type Report = Done;
+    const ID: &'static str = "yrcx.point-calc.pallet";
+
+    fn command(&self) -> Command {
+        Command::PointPallet
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        let draft = draft.with(Key::Point, self.to).with(Key::Pallet, self.pallet);
+        draft.with(Key::WorkPosition, self.place)
+    }
+
+    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+        Ok(Done::new(format!("P{} = place {} of pallet {}", self.to, self.place, self.pallet)))
+    }
+}
+
+/// Sets one element of a point, in the unit of the point.
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("value").required(true))]
+pub struct Element {
+    /// Point, 0 to 29999
+    #[arg(value_name = "POINT", value_parser = point)]
+    point: i32,
+    /// Element, 1 to 6: the axis
+    #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::PointElementMm, Key::Element, text))]
+    element: i32,
+    /// Its value in mm, for a point in mm
+    #[arg(long, value_name = "MM", group = "value", allow_negative_numbers = true)]
+    mm: Option<String>,
+    /// Its value in pulses, for a point in pulses
+    #[arg(long, value_name = "PULSES", group = "value", allow_negative_numbers = true)]
+    pulse: Option<String>,
+}
+
+impl Single for Element {
+    type Report = Done;
+    const ID: &'static str = "yrcx.point-calc.element";
+
+    fn command(&self) -> Command {
+        if self.mm.is_some() { Command::PointElementMm } else { Command::PointElementPulse }
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        let value = self.mm.clone().or_else(|| self.pulse.clone());
+        draft.with(Key::Point, self.point).with(Key::Element, self.element).with_some(Key::Value, value)
+    }
+
+    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+        let (value, unit) = match &self.mm {
+            Some(value) => (Some(value), "mm"),
+            None => (self.pulse.as_ref(), "pulses"),
+        };
+        let value = value.map_or("", String::as_str);
+        Ok(Done::new(format!("element {} of P{} = {value} {unit}", place(self.element), self.point)))
+    }
+}
+
+/// Sets one element of a shift.
+#[derive(Debug, Args)]
+pub struct ShiftElement {
+    /// Shift, 0 to 39
+    #[arg(value_name = "SHIFT", value_parser = |text: &str| single(Command::ShiftElement, Key::Shift, text))]
+    shift: i32,
+    /// Element, 1 to 4: the axis
+    #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::ShiftElement, Key::Element, text))]
+    element: i32,
+    /// Its value in mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    mm: String,
+}
+
+impl Single for ShiftElement {
+    type Report = Done;
+    const ID: &'static str = "yrcx.point-calc.shift-element";
+
+    fn command(&self) -> Command {
+        Command::ShiftElement
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        let draft = draft.with(Key::Shift, self.shift).with(Key::Element, self.element);
+        draft.with(Key::Value, self.mm.as_str())
+    }
+
+    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+        Ok(Done::new(format!("element {} of shift {} = {} mm", place(self.element), self.shift, self.mm)))
+    }
+}
+
+/// The place of the one bit that is set, from 1.
+fn place(bits: i32) -> u32 {
+    bits.trailing_zeros() + 1
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::yrcx::testing::{example, objection, read_example, words};
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        for (id, line, done) in [
+            ("4.4.3-assign-point", "copy 100 --to 1", "P1 = P100"),
+            ("4.4.3-add-point", "add 100 --to 1", "P1 = P1 + P100"),
+            ("4.4.3-assign-pallet-point", "pallet 2 --place 133 --to 100", "P100 = place 133 of pallet 2"),
+            ("4.4.4-point-element", "element 1 --element 4 --mm 1.000", "element 4 of P1 = 1.000 mm"),
+            ("4.4.4-shift-element", "shift-element 1 --element 2 --mm 1", "element 2 of shift 1 = 1 mm"),
+        ] {
+            let line: Vec<&str> = ["point-calc"].into_iter().chain(line.split(' ')).collect();
+            assert_eq!(words(&line).unwrap(), [example(id)], "{id}");
+            assert_eq!(read_example(id, &line)["done"], done);
+        }
+    }
+
+    #[test]
+    fn the_point_that_changes_comes_first() {
+        let sent = words(&["point-calc", "sub", "100", "--from", "1"]).unwrap();
+        assert_eq!(sent[0][..4], ["0x0235", "0x0000", "0x0001", "0x0064"]);
+        let sent = words(&["point-calc", "element", "7", "--element", "6", "--pulse", "-1"]).unwrap();
+        assert_eq!(sent[0][..6], ["0x0240", "0x0000", "0x0007", "0x0020", "0xFFFF", "0xFFFF"]);
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        for (line, part) in [
+            ("copy 1", "--to"),
+            ("copy 30000 --to 1", "allowed: 0 to 29999"),
+            ("pallet 40 --place 1 --to 1", "allowed: 0 to 39"),
+            ("pallet 1 --place 0 --to 1", "allowed: 1 to 32767"),
+            ("element 1 --element 7 --mm 1", "there are 1 to 6"),
+            ("element 1 --element 1,2 --mm 1", "name exactly 1"),
+            ("element 1 --element 1", "--mm"),
+            ("element 1 --element 1 --mm 1 --pulse 1", "cannot be used with"),
+            ("shift-element 1 --element 5 --mm 1", "there are 1 to 4"),
+        ] {
+            let objection = objection(&["point-calc"].into_iter().chain(line.split(' ')).collect::<Vec<_>>());
+            assert!(objection.contains(part), "{line}: {objection}");
+        }
+        let failure = words(&["point-calc", "element", "1", "--element", "1", "--pulse", "1.5"]).unwrap_err();
+        assert!(failure.message.contains("value"), "{failure}");
+    }
+}

@@ -1,0 +1,274 @@
+//! `yrcx port` (4.5.1): ports of eight signals as remote commands see them.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::numbers::{named, single};
+use super::several::ask_all;
+use super::single::Single;
+use super::{Family, link};
+use crate::command::orders::Done;
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::yrcx::order::{Draft, Order};
+use crate::controller::yrcx::table;
+use crate::controller::yrcx::value::Key;
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
+
+commands! {
+    /// What can be done with ports.
+    pub enum Port of Family {
+        /// Read ports or signals: DI2, DO12, DO2.1
+        Get(Get),
+        /// Switch a port or a signal: DO12 7, DO2.1 on
+        Set(Set),
+    }
+}
+
+/// How ports are named, said in the help of both verbs.
+const NAMES: &str = "DO12 is a port, DO2.1 and 'DO(21)' are its bit 1. There are DI, DO, MO, SI and SO 0-7, 10-17 and 20-27, \
+                     LO 0 and 1, and TO 0; DO, MO, LO, TO and SO can be switched, DO, MO and SO from port 2 on. `yrcx io` \
+                     shows and switches SI and SO without remote commands.";
+
+/// A port, or a signal of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Place {
+    /// The number of its type.
+    kind: i32,
+    port: i32,
+    bit: Option<i32>,
+}
+
+/// `DO12`, `DO12()`, `DO2.1`, `DO(21)`.
+fn place(text: &str) -> Result<Place, String> {
+    let wrong = || format!("'{text}' is no port such as DO12 and no signal such as DO2.1");
+    let (kind, rest) = text.split_at_checked(2).ok_or_else(wrong)?;
+    let kind = single(table::Command::PortGet, Key::PortType, kind).map_err(|_| wrong())?;
+    let (port, bit) = match rest.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')) {
+        Some(digits) => {
+            let (port, bit) = digits.split_at_checked(digits.len().saturating_sub(1)).ok_or_else(wrong)?;
+            (if port.is_empty() { "0" } else { port }, Some(bit))
+        }
+        None => match rest.split_once('.') {
+            Some((port, bit)) => (port, Some(bit)),
+            None => (rest.strip_suffix("()").unwrap_or(rest), None),
+        },
+    };
+    let number = |text: &str| {
+        let is_number = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+        if is_number { text.parse().map_err(|_| wrong()) } else { Err(wrong()) }
+    };
+    let place = Place { kind, port: number(port)?, bit: bit.map(number).transpose()? };
+    place.order(table::Command::PortGet.order()).map(|_| place)
+}
+
+fn signal_or_port(text: &str) -> Result<Place, String> {
+    let place = place(text)?;
+    let draft = table::Command::PortSet.order().with(Key::Value, 0);
+    place.order(draft).map(|_| place)
+}
+
+impl Place {
+    /// Its port in a command of ports.
+    fn order(self, draft: Draft) -> Result<Order, String> {
+        if let Some(bit) = self.bit.filter(|bit| *bit > 7) {
+            return Err(format!("a port has bits 0 to 7, not {bit}"));
+        }
+        let order = draft.with(Key::PortType, self.kind).with(Key::Port, self.port).build();
+        order.map_err(|error| match error.place.key {
+            Some(Key::PortType) => format!("{} are inputs, which nobody can switch", self.kind_name()),
+            _ => format!("{}: {}", self.port_name(), error.problem),
+        })
+    }
+
+    fn kind_name(self) -> String {
+        named(table::Command::PortGet, Key::PortType, self.kind)
+    }
+
+    fn port_name(self) -> String {
+        format!("{}{}", self.kind_name(), self.port)
+    }
+
+    fn told(self) -> String {
+        match self.bit {
+            Some(bit) => format!("{}.{bit}", self.port_name()),
+            None => self.port_name(),
+        }
+    }
+}
+
+/// Reads ports, one after the other.
+#[derive(Debug, Args)]
+#[command(after_help = NAMES)]
+pub struct Get {
+    /// Ports, or signals of them
+    #[arg(required = true, value_name = "PORT", value_delimiter = ',', value_parser = place)]
+    places: Vec<Place>,
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Ports;
+    const ID: &'static str = "yrcx.port.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Ports, Failure> {
+        let Context { link, screen, .. } = context;
+        let order = |place: &Place| place.order(link.draft(table::Command::PortGet)?).map_err(Failure::usage);
+        let orders = self.places.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
+        let answers = ask_all(link, screen, "reading ports", &orders).await?;
+        let rows = self.places.iter().zip(&answers);
+        let rows = rows.map(|(place, values)| Row::of(*place, values.int(Key::Value).unwrap_or_default()));
+        Ok(Ports { ports: rows.collect() })
+    }
+}
+
+/// Ports and signals.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Ports {
+    ports: Vec<Row>,
+}
+
+/// A port, or a signal of it.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Row {
+    /// `DO12`, or `DO2.1` for a signal.
+    port: String,
+    /// Of a port, 0 to 255; of a signal, 0 or 1.
+    value: i32,
+    /// Of a port, bit 7 first: `00000111`; null for a signal.
+    bits: Option<String>,
+}
+
+impl Row {
+    fn of(place: Place, value: i32) -> Self {
+        let port = place.told();
+        match place.bit {
+            Some(bit) => Self { port, value: value >> bit & 1, bits: None },
+            None => Self { port, value, bits: Some(format!("{value:08b}")) },
+        }
+    }
+}
+
+impl Report for Ports {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["port", "value", "bits 7 - 0"], "no ports");
+        for Row { port, value, bits } in &self.ports {
+            table.row([port.as_str().into(), (*value).into(), Cell::maybe(bits.as_deref())]);
+        }
+        View::table(table)
+    }
+}
+
+/// Switches all signals of a port, or one of them.
+#[derive(Debug, Args)]
+#[command(after_help = NAMES)]
+pub struct Set {
+    /// A port, or a signal of one
+    #[arg(value_name = "PORT", value_parser = signal_or_port)]
+    place: Place,
+    /// For a port 0 to 255, also as 0x07 or 0b00000111; for a signal on or off
+    #[arg(value_name = "VALUE", value_parser = value)]
+    value: u8,
+}
+
+fn value(text: &str) -> Result<u8, String> {
+    let wrong = || format!("'{text}' is neither on nor off, nor a number from 0 to 255 such as 7, 0x07 or 0b00000111");
+    let digits = |text: &str, radix| {
+        let text = text.replace('_', "");
+        let is_number = text.bytes().all(|byte| byte.is_ascii_alphanumeric());
+        u8::from_str_radix(&text, radix).ok().filter(|_| is_number).ok_or_else(wrong)
+    };
+    match text {
+        "on" => Ok(1),
+        "off" => Ok(0),
+        _ => match (text.strip_prefix("0x"), text.strip_prefix("0b")) {
+            (Some(hex), _) => digits(hex, 16),
+            (_, Some(binary)) => digits(binary, 2),
+            _ => digits(text, 10),
+        },
+    }
+}
+
+impl Single for Set {
+    type Report = Done;
+    const ID: &'static str = "yrcx.port.set";
+
+    fn command(&self) -> table::Command {
+        if self.place.bit.is_some() { table::Command::PortSetBit } else { table::Command::PortSet }
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        let Place { kind, port, bit } = self.place;
+        let draft = draft.with(Key::PortType, kind).with(Key::Port, port).with_some(Key::PortBit, bit);
+        draft.with(Key::Value, i32::from(self.value))
+    }
+
+    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+        let place = self.place.told();
+        Ok(Done::new(match self.place.bit {
+            Some(_) => format!("switched {place} {}", if self.value == 1 { "on" } else { "off" }),
+            None => format!("{place} = {} ({:08b})", self.value, self.value),
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::{place, value};
+    use crate::command::yrcx::testing::{example, objection, read_example, words};
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        for (id, line, done) in [
+            ("4.5.1-assign-port", ["port", "set", "DO12", "7"], "DO12 = 7 (00000111)"),
+            ("4.5.1-assign-bit", ["port", "set", "DO(21)", "1"], "switched DO2.1 on"),
+        ] {
+            assert_eq!(words(&line).unwrap(), [example(id)], "{id}");
+            assert_eq!(read_example(id, &line)["done"], done);
+        }
+        let read = read_example("4.5.1-reference-do12", &["port", "get", "DO12()"]);
+        assert_eq!(read["ports"], json!([{"port": "DO12", "value": 7, "bits": "00000111"}]));
+        let read = read_example("4.5.1-reference-di2", &["port", "get", "DI2"]);
+        assert_eq!(read["ports"], json!([{"port": "DI2", "value": 127, "bits": "01111111"}]));
+        let read = read_example("4.5.1-reference-di2", &["port", "get", "di2.7"]);
+        assert_eq!(read["ports"], json!([{"port": "DI2.7", "value": 0, "bits": null}]));
+    }
+
+    #[test]
+    fn signals_have_two_spellings() {
+        assert_eq!(place("DO(21)"), place("do2.1"));
+        assert_eq!(place("MO(107)"), place("MO10.7"));
+        assert_eq!(place("LO(0)"), place("LO0.0"));
+        for wrong in
+            ["", "D", "DO", "XO1", "DO8", "DO30", "DO2.8", "DO(28)", "LO2", "TO1", "DO+1", "DO()", "DO1.", "DOé"]
+        {
+            assert!(place(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn values_are_decimal_hexadecimal_or_binary() {
+        assert_eq!([value("7"), value("0x07"), value("0b0000_0111")], [Ok(7), Ok(7), Ok(7)]);
+        assert_eq!((value("on"), value("off"), value("255")), (Ok(1), Ok(0), Ok(255)));
+        for wrong in ["256", "-1", "+1", "", "0x", "0b2", "maybe"] {
+            assert!(value(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn inputs_are_not_switched() {
+        for (line, part) in [
+            (["port", "set", "DI2", "1"], "DI are inputs"),
+            (["port", "set", "DO1", "1"], "DO1: 1 is out of range; allowed: 2 to 7, 10 to 17, 20 to 27"),
+            (["port", "set", "DO2", "256"], "0 to 255"),
+            (["port", "set", "DO2.9", "1"], "bits 0 to 7"),
+        ] {
+            let objection = objection(&line);
+            assert!(objection.contains(part), "{line:?}: {objection}");
+        }
+        assert!(words(&["port", "set", "DO2.1", "2"]).unwrap_err().message.contains("allowed: 0 to 1"));
+    }
+}

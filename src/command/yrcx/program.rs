@@ -1,0 +1,360 @@
+//! `yrcx program` (4.6): programs and the tasks they run in.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::single::Single;
+use super::{Family, link};
+use crate::command::orders::Done;
+use crate::command::{Report, commands};
+use crate::controller::yrcx::order::Draft;
+use crate::controller::yrcx::table::{COMMON_LINES, Command};
+use crate::controller::yrcx::value::Key;
+use crate::failure::Failure;
+use crate::output::view::View;
+
+commands! {
+    /// What can be done with programs.
+    pub enum Program of Family {
+        /// Register a program in a task
+        Select(Select),
+        /// Run a program, or all of them
+        Run(Run),
+        /// Run one line, also of a subroutine
+        Step(Step),
+        /// Skip one line
+        Skip(Skip),
+        /// Run one line, a subroutine as a whole
+        Next(Next),
+        /// Put a program back to its first line, or all of them
+        Reset(Reset),
+        /// Read what a program does
+        Show(Show),
+    }
+}
+
+/// A program.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct Which {
+    /// Program by its number, 1 to 100
+    #[arg(long, value_name = "N")]
+    program: Option<String>,
+    /// Program by its name: the first 16 of A-Z, 0-9 and _
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+    /// Program by the task that it is registered in, 1 to 16
+    #[arg(long, value_name = "N")]
+    task: Option<String>,
+}
+
+/// A program, or all of them.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct WhichOrAll {
+    /// Program by its number, 1 to 100
+    #[arg(long, value_name = "N")]
+    program: Option<String>,
+    /// Program by its name: the first 16 of A-Z, 0-9 and _
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+    /// Program by the task that it is registered in, 1 to 16
+    #[arg(long, value_name = "N")]
+    task: Option<String>,
+    /// All programs that are registered
+    #[arg(long)]
+    all: bool,
+}
+
+/// Fills in how a program is named.
+fn put(draft: Draft, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> Draft {
+    draft
+        .with_some(Key::Program, program.cloned())
+        .with_some(Key::ProgramName, name.cloned())
+        .with_some(Key::Task, task.cloned())
+}
+
+fn told(program: Option<&String>, name: Option<&String>, task: Option<&String>) -> String {
+    match (program, name, task) {
+        (Some(number), ..) => format!("program {number}"),
+        (_, Some(name), _) => format!("program {name}"),
+        (_, _, Some(task)) => format!("the program of task {task}"),
+        _ => "all programs".to_owned(),
+    }
+}
+
+impl Which {
+    fn put(&self, draft: Draft) -> Draft {
+        put(draft, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+    }
+
+    fn told(&self) -> String {
+        told(self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+    }
+}
+
+impl WhichOrAll {
+    fn put(&self, draft: Draft) -> Draft {
+        let draft = draft.with_some(Key::Selection, self.all.then_some(0));
+        put(draft, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+    }
+
+    fn told(&self) -> String {
+        told(self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+    }
+}
+
+/// How a program is named that is in no task yet.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct Registered {
+    /// Program by its number, 1 to 100
+    #[arg(long, value_name = "N")]
+    program: Option<String>,
+    /// Program by its name: the first 16 of A-Z, 0-9 and _
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+}
+
+/// Registers a program in a task.
+#[derive(Debug, Args)]
+pub struct Select {
+    #[command(flatten)]
+    program: Registered,
+    /// Task, 1 to 16; the lowest vacant one unless given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=16))]
+    task: Option<u16>,
+    /// Priority of the task, 1 to 64
+    #[arg(long, value_name = "N")]
+    priority: String,
+}
+
+impl Single for Select {
+    type Report = Done;
+    const ID: &'static str = "yrcx.program.select";
+
+    fn command(&self) -> Command {
+        Command::ProgramSelect
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        let draft = put(draft, self.program.program.as_ref(), self.program.name.as_ref(), None);
+        draft.with_some(Key::Task, self.task).with(Key::Priority, self.priority.as_str())
+    }
+
+    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+        let program = told(self.program.program.as_ref(), self.program.name.as_ref(), None);
+        let task = self.task.map_or_else(|| "the lowest vacant task".to_owned(), |task| format!("task {task}"));
+        Ok(Done::new(format!("registered {program} in {task} with priority {}", self.priority)))
+    }
+}
+
+/// Declares the commands that start programs.
+macro_rules! starts {
+    ($($(#[$meta:meta])* $name:ident $id:literal $row:ident $which:ident $intent:literal $done:literal;)*) => {
+        $(
+            #[derive(Debug, Args)]
+            $(#[$meta])*
+            pub struct $name {
+                #[command(flatten)]
+                which: $which,
+            }
+
+            impl Single for $name {
+                type Report = Done;
+                const ID: &'static str = $id;
+
+                fn command(&self) -> Command {
+                    Command::$row
+                }
+
+                fn fill(&self, draft: Draft) -> Draft {
+                    self.which.put(draft)
+                }
+
+                fn intent(&self) -> String {
+                    format!($intent, self.which.told())
+                }
+
+                fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+                    Ok(Done::new(format!($done, self.which.told())))
+                }
+            }
+        )*
+    };
+}
+
+starts! {
+    /// Runs a program, or all that are registered. The controller answers as soon as it has accepted that.
+    #[command(after_help = "`yrcx io get program-running` tells whether a program runs; `yrcx stop` stops it.")]
+    Run "yrcx.program.run" ProgramRun WhichOrAll "run {}" "started {}";
+    /// Runs one line of a program, also of a subroutine.
+    Step "yrcx.program.step" ProgramStep Which "run one line of {}" "ran one line of {}";
+    /// Skips one line of a program.
+    Skip "yrcx.program.skip" ProgramSkip Which "skip one line of {}" "skipped one line of {}";
+    /// Runs one line of a program, a subroutine as a whole.
+    Next "yrcx.program.next" ProgramNext Which "run one line of {}, a subroutine as a whole" "ran one line of {}";
+    /// Puts a program back to its first line, or all that are registered.
+    #[command(after_help = "`yrcx io get program-reset` tells whether all programs are reset, `yrcx info line` where each \
+        stands.")]
+    Reset "yrcx.program.reset" ProgramReset WhichOrAll "reset {}" "reset {}";
+}
+
+/// Reads what a program does that is not running.
+#[derive(Debug, Args)]
+pub struct Show {
+    #[command(flatten)]
+    which: Which,
+}
+
+impl Single for Show {
+    type Report = Execution;
+    const ID: &'static str = "yrcx.program.show";
+
+    fn command(&self) -> Command {
+        Command::ProgramShow
+    }
+
+    fn fill(&self, draft: Draft) -> Draft {
+        self.which.put(draft)
+    }
+
+    fn report(&self, done: &link::Done) -> Result<Execution, Failure> {
+        let int = |key| done.values.int(key).unwrap_or_default();
+        let line = Line::of(int(Key::Line));
+        Ok(Execution {
+            program: int(Key::Program),
+            name: done.values.text(Key::ProgramName).unwrap_or_default().to_owned(),
+            task: int(Key::Task),
+            priority: int(Key::Priority),
+            line,
+        })
+    }
+}
+
+/// Where a program stands.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Execution {
+    /// Number of the program.
+    program: i32,
+    name: String,
+    task: i32,
+    /// 1 to 64.
+    priority: i32,
+    #[serde(flatten)]
+    line: Line,
+}
+
+/// A line of a program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Line {
+    /// From 1.
+    line: i32,
+    /// Whether it is a line of the COMMON program.
+    in_common: bool,
+}
+
+impl Line {
+    /// As the controller tells it: lines of COMMON from 10000 (4.6.4).
+    pub fn of(number: i32) -> Self {
+        if number > COMMON_LINES {
+            Self { line: number - COMMON_LINES, in_common: true }
+        } else {
+            Self { line: number, in_common: false }
+        }
+    }
+
+    /// `19`, `5 of COMMON`.
+    pub fn told(self) -> String {
+        format!("{}{}", self.line, if self.in_common { " of COMMON" } else { "" })
+    }
+}
+
+impl Report for Execution {
+    fn view(&self) -> View {
+        View::fields([
+            ("program", self.program.into()),
+            ("name", self.name.as_str().into()),
+            ("task", self.task.into()),
+            ("priority", self.priority.into()),
+            ("line", self.line.told().into()),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::Line;
+    use crate::command::yrcx::testing::{
+        corrected, example, intent, objection, read_example, read_in_turn, risk, words,
+    };
+    use crate::controller::Risk;
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        let select = ["program", "select", "--program", "1", "--task", "1", "--priority", "47"];
+        assert_eq!(words(&select).unwrap(), [example("4.6.1-designate")]);
+        let done = "registered program 1 in task 1 with priority 47";
+        assert_eq!(read_example("4.6.1-designate", &select)["done"], done);
+        let run = ["program", "run", "--program", "1"];
+        assert_eq!(words(&run).unwrap(), [example("4.6.2-execute")]);
+        assert_eq!(read_example("4.6.2-execute", &run)["done"], "started program 1");
+        // Its WI1 is printed as 0x0100, its name without the spaces that the text asks for.
+        let reset = ["program", "reset", "--name", "ABC_DE"];
+        assert_eq!(words(&reset).unwrap(), [corrected("4.6.3-reset")]);
+        assert_eq!(read_in_turn(&["4.6.3-reset"], &reset)["done"], "reset program ABC_DE");
+        let show = read_example("4.6.4-reference", &["program", "show", "--program", "1"]);
+        assert_eq!(
+            show,
+            json!({"program": 1, "name": "ABCDEFGH", "task": 2, "priority": 32, "line": 101, "in_common": false})
+        );
+    }
+
+    #[test]
+    fn programs_are_named_in_one_way() {
+        let head = |line: &str| words(&line.split(' ').collect::<Vec<_>>()).unwrap()[0][..4].join(" ");
+        assert_eq!(head("program run --all"), "0x0402 0x0000 0x0000 0x0000");
+        assert_eq!(head("program step --task 3"), "0x0403 0x0002 0x0000 0x0003");
+        assert_eq!(head("program skip --name A"), "0x0404 0x0004 0x0000 0x0000");
+        assert_eq!(head("program next --program 100"), "0x0405 0x0001 0x0064 0x0000");
+        assert_eq!(head("program reset --all"), "0x0406 0x0000 0x0000 0x0000");
+        assert_eq!(head("program select --name A --priority 1"), "0x0401 0x0004 0x0000 0x0000");
+        for (line, part) in [
+            ("program run", "--all"),
+            ("program step --all", "--all"),
+            ("program run --program 1 --task 1", "cannot be used with"),
+            ("program select --program 1", "--priority"),
+            ("program select --task 1 --priority 1", "--program"),
+            ("program select --program 1 --task 17 --priority 1", "1..=16"),
+        ] {
+            let objection = objection(&line.split(' ').collect::<Vec<_>>());
+            assert!(objection.contains(part), "{line}: {objection}");
+        }
+        for (line, part) in [
+            ("program run --program 101", "allowed: 1 to 100"),
+            ("program run --task 0", "allowed: 1 to 16"),
+            ("program run --name abc", "A-Z, 0-9 and _"),
+            ("program select --program 1 --priority 65", "allowed: 1 to 64"),
+        ] {
+            let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
+            assert!(failure.message.contains(part), "{line}: {failure}");
+        }
+    }
+
+    #[test]
+    fn what_may_move_the_robot_asks_first() {
+        assert_eq!(risk(&["program", "run", "--all"]), Risk::Motion);
+        assert_eq!(risk(&["program", "skip", "--task", "1"]), Risk::Motion);
+        assert_eq!(risk(&["program", "reset", "--all"]), Risk::Write);
+        assert_eq!(intent(&["program", "run", "--all"]), "run all programs");
+        assert_eq!(intent(&["program", "step", "--task", "3"]), "run one line of the program of task 3");
+    }
+
+    #[test]
+    fn lines_of_common_are_told_as_such() {
+        assert_eq!((Line::of(10_005).told(), Line::of(10_000).told()), ("5 of COMMON".into(), "10000".into()));
+    }
+}

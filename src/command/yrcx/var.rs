@@ -1,0 +1,263 @@
+//! `yrcx var` (4.4.1): static variables.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::{Number, Value as Json};
+
+use super::numbers::{Numbers, named, single};
+use super::several::ask_all;
+use super::single::Single;
+use super::{Family, link};
+use crate::command::orders::Done;
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::yrcx::order::{Draft, Order};
+use crate::controller::yrcx::table;
+use crate::controller::yrcx::value::{Key, Value};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
+
+commands! {
+    /// What can be done with static variables.
+    pub enum Var of Family {
+        /// Read variables: SGI1, SGI0..SGI31, SGR5
+        Get(Get),
+        /// Set a variable: SGI1 10000, or SGI1 SGI2
+        Set(Set),
+        /// Add a number or a variable to a variable
+        Add(Add),
+        /// Subtract a number or a variable from a variable
+        Sub(Sub),
+        /// Multiply a variable by a number or a variable
+        Mul(Mul),
+        /// Divide a variable by a number or a variable
+        Div(Div),
+    }
+}
+
+/// Reads static variables, one after the other.
+#[derive(Debug, Args)]
+pub struct Get {
+    /// Variables: SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real ones; SGI0..SGI5 is a range
+    #[arg(required = true, value_name = "VARIABLE", value_delimiter = ',',
+        value_parser = |text: &str| Numbers::parse(table::Command::VarGet, Key::Variable, text))]
+    variables: Vec<Numbers>,
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Variables;
+    const ID: &'static str = "yrcx.var.get";
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Variables, Failure> {
+        let Context { link, screen, .. } = context;
+        let numbers = Numbers::of(&self.variables);
+        let order = |number: &i32| Ok(link.draft(table::Command::VarGet)?.with(Key::Variable, *number).build()?);
+        let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
+        let answers = ask_all(link, screen, "reading variables", &orders).await?;
+        let variables = numbers.iter().zip(&answers);
+        let variables = variables.map(|(number, values)| Row::of(*number, values.value(Key::Value)));
+        Ok(Variables { variables: variables.collect() })
+    }
+}
+
+/// Static variables.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Variables {
+    variables: Vec<Row>,
+}
+
+/// A static variable.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Row {
+    /// `SGI1`, `SGR1`.
+    variable: String,
+    /// A whole or a real number; null where the controller holds what is no number.
+    value: Option<Number>,
+    #[serde(skip)]
+    text: String,
+}
+
+impl Row {
+    fn of(number: i32, value: Option<&Value>) -> Self {
+        let (value, text) = match value {
+            Some(Value::Int(number)) => (Some(Number::from(*number)), number.to_string()),
+            // By its digits: as a double it would get more than it has.
+            Some(Value::Real(number)) => (real(*number), number.to_string()),
+            Some(Value::Text(_)) | None => (None, "-".to_owned()),
+        };
+        Self { variable: name(number), value, text }
+    }
+}
+
+/// A single-precision number with its own digits.
+fn real(number: f32) -> Option<Number> {
+    match serde_json::from_str(&number.to_string()) {
+        Ok(Json::Number(number)) => Some(number),
+        _ => None,
+    }
+}
+
+impl Report for Variables {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["variable", "value"], "no variables");
+        for Row { variable, text, .. } in &self.variables {
+            table.row([variable.as_str().into(), Cell::number(text.as_str())]);
+        }
+        View::table(table)
+    }
+}
+
+/// What stands on the right side.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Operand {
+    /// As typed.
+    Number(String),
+    /// The number of a variable.
+    Variable(i32),
+}
+
+fn variable(text: &str) -> Result<i32, String> {
+    single(table::Command::VarGet, Key::Variable, text)
+}
+
+fn operand(text: &str) -> Result<Operand, String> {
+    if text.starts_with(|first: char| first.is_ascii_alphabetic()) {
+        return variable(text).map(Operand::Variable);
+    }
+    Ok(Operand::Number(text.to_owned()))
+}
+
+fn divisor(text: &str) -> Result<Operand, String> {
+    match operand(text)? {
+        Operand::Number(text) if text.parse() == Ok(0.0) => Err("nothing can be divided by 0".to_owned()),
+        operand => Ok(operand),
+    }
+}
+
+fn name(number: i32) -> String {
+    named(table::Command::VarGet, Key::Variable, number)
+}
+
+impl Operand {
+    fn put(&self, draft: Draft) -> Draft {
+        match self {
+            Self::Number(text) => draft.with(Key::Value, text.as_str()),
+            Self::Variable(number) => draft.with(Key::Variable2, *number),
+        }
+    }
+
+    fn told(&self) -> String {
+        match self {
+            Self::Number(text) => text.clone(),
+            Self::Variable(number) => name(*number),
+        }
+    }
+}
+
+/// Declares the commands that change a variable: by a number, or by a variable.
+macro_rules! changes {
+    ($($(#[$meta:meta])* $name:ident $id:literal $by_number:ident $by_variable:ident $operand:ident $told:literal;)*) => {
+        $(
+            $(#[$meta])*
+            #[derive(Debug, Args)]
+            pub struct $name {
+                /// Variable that changes: SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real ones
+                #[arg(value_name = "VARIABLE", value_parser = variable)]
+                variable: i32,
+                /// A number, or a variable such as SGI2
+                #[arg(value_name = "VALUE", allow_negative_numbers = true, value_parser = $operand)]
+                operand: Operand,
+            }
+
+            impl Single for $name {
+                type Report = Done;
+                const ID: &'static str = $id;
+
+                fn command(&self) -> table::Command {
+                    match self.operand {
+                        Operand::Number(_) => table::Command::$by_number,
+                        Operand::Variable(_) => table::Command::$by_variable,
+                    }
+                }
+
+                fn fill(&self, draft: Draft) -> Draft {
+                    self.operand.put(draft.with(Key::Variable, self.variable))
+                }
+
+                fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+                    let (variable, operand) = (name(self.variable), self.operand.told());
+                    Ok(Done::new(format!($told, variable = variable, operand = operand)))
+                }
+            }
+        )*
+    };
+}
+
+changes! {
+    /// Sets a variable to a number or to a variable.
+    Set "yrcx.var.set" VarSet VarSetVar operand "{variable} = {operand}";
+    /// Adds a number or a variable to a variable.
+    Add "yrcx.var.add" VarAdd VarAddVar operand "{variable} = {variable} + {operand}";
+    /// Subtracts a number or a variable from a variable.
+    Sub "yrcx.var.sub" VarSub VarSubVar operand "{variable} = {variable} - {operand}";
+    /// Multiplies a variable by a number or a variable.
+    Mul "yrcx.var.mul" VarMul VarMulVar operand "{variable} = {variable} * {operand}";
+    /// Divides a variable by a number or a variable.
+    Div "yrcx.var.div" VarDiv VarDivVar divisor "{variable} = {variable} / {operand}";
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::command::yrcx::testing::{Reply, Scripted, example, objection, read_example, risk, run_on, words};
+    use crate::controller::Risk;
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        for (id, line, done) in [
+            ("4.4.1-assign-value", ["var", "set", "SGI1", "10000"], "SGI1 = 10000"),
+            ("4.4.1-assign-variable", ["var", "set", "SGI1", "SGI2"], "SGI1 = SGI2"),
+            ("4.4.1-arith-value", ["var", "add", "SGI1", "10000"], "SGI1 = SGI1 + 10000"),
+            ("4.4.1-arith-variable", ["var", "mul", "SGI1", "SGI2"], "SGI1 = SGI1 * SGI2"),
+        ] {
+            assert_eq!(words(&line).unwrap(), [example(id)], "{id}");
+            assert_eq!(read_example(id, &line)["done"], done);
+        }
+        let read = read_example("4.4.1-reference", &["var", "get", "SGI5"]);
+        assert_eq!(read, json!({"variables": [{"variable": "SGI5", "value": 50}]}));
+    }
+
+    #[test]
+    fn real_variables_have_single_precision() {
+        // 1.1 is 0x3F8CCCCD.
+        let sent = words(&["var", "set", "sgr1", "1.1"]).unwrap();
+        assert_eq!(sent[0][2..6], ["0x0101", "0x0000", "0xCCCD", "0x3F8C"]);
+        let answered = |low, high| {
+            let mut words = [0; 16];
+            (words[0], words[2], words[4], words[5]) = (0x0200, 0x0101, low, high);
+            run_on(Scripted::new([Reply::Ends(1, words)]), &["var", "get", "SGR1"]).0.unwrap()
+        };
+        assert_eq!(answered(0xCCCD, 0x3F8C)["variables"][0]["value"].to_string(), "1.1");
+        assert_eq!(answered(0, 0x7FC0)["variables"][0]["value"], json!(null), "not a number");
+        assert_eq!(words(&["var", "sub", "SGR0", "-0.5"]).unwrap()[0][5], "0xBF00");
+    }
+
+    #[test]
+    fn numbers_must_fit_their_variable() {
+        assert!(words(&["var", "set", "SGI1", "1.5"]).unwrap_err().message.contains("value"));
+        assert!(words(&["var", "set", "SGI1", "2147483648"]).is_err());
+        assert!(words(&["var", "set", "SGR1", "inf"]).is_err());
+        for (line, part) in [
+            (["var", "set", "SGI32", "1"], "SGI32"),
+            (["var", "div", "SGI1", "0"], "divided by 0"),
+            (["var", "div", "SGR1", "-0.0"], "divided by 0"),
+            (["var", "add", "SGI1", "SGX1"], "SGX1"),
+        ] {
+            assert!(objection(&line).contains(part), "{line:?}");
+        }
+        assert_eq!(words(&["var", "get", "SGI30..SGI31,SGR0"]).unwrap().len(), 3);
+        assert_eq!((risk(&["var", "get", "SGI1"]), risk(&["var", "set", "SGI1", "1"])), (Risk::Read, Risk::Write));
+    }
+}
