@@ -234,6 +234,24 @@ fn every_robot_command_has_a_schema_and_help() {
 }
 
 #[test]
+fn no_flag_of_a_command_is_that_of_every_command() {
+    // `--all` of a command would choose all robots as well. `--for` is how long, whatever it is that lasts.
+    fn look(command: &clap::Command, known: &BTreeSet<String>, path: &str, found: &mut Vec<String>) {
+        let own = || command.get_arguments().filter_map(|argument| Some((argument.get_long()?, argument)));
+        let shadowed = own().filter(|(long, _)| known.contains(*long) && *long != "for");
+        found.extend(shadowed.map(|(long, _)| format!("{path} --{long}")));
+        let global = own().filter(|(_, argument)| argument.is_global_set()).map(|(long, _)| long.to_owned());
+        let known: BTreeSet<String> = known.iter().cloned().chain(global).collect();
+        for verb in command.get_subcommands() {
+            look(verb, &known, &format!("{path} {}", verb.get_name()), found);
+        }
+    }
+    let mut found = Vec::new();
+    look(&armctl::cli::Cli::command(), &BTreeSet::new(), "armctl", &mut found);
+    assert_eq!(found, Vec::<String>::new());
+}
+
+#[test]
 fn schemas_describe_reports() {
     for entry in armctl::command::common::schema::all() {
         let schema = (entry.schema)();

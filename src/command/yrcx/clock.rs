@@ -93,10 +93,20 @@ impl Report for Reading {
     fn view(&self) -> View {
         let difference = match self.ahead_s {
             0 => "that of this machine".to_owned(),
-            ahead @ 1.. => format!("{ahead} s ahead of this machine"),
-            behind => format!("{} s behind this machine", behind.unsigned_abs()),
+            ahead @ 1.. => format!("{} ahead of this machine", in_words(ahead.unsigned_abs())),
+            behind => format!("{} behind this machine", in_words(behind.unsigned_abs())),
         };
         View::fields([("clock", self.time.replacen('T', " ", 1).into()), ("compared", difference.into())])
+    }
+}
+
+/// `3 s`, `1:02:03`, `252 days 1:02:03`.
+fn in_words(seconds: u64) -> String {
+    let (days, hours, minutes) = (seconds / 86_400, seconds / 3600 % 24, seconds / 60 % 60);
+    match (days, hours, minutes) {
+        (0, 0, 0) => format!("{seconds} s"),
+        (0, ..) => format!("{hours}:{minutes:02}:{:02}", seconds % 60),
+        _ => format!("{days} days {hours}:{minutes:02}:{:02}", seconds % 60),
     }
 }
 
@@ -277,5 +287,6 @@ mod tests {
         let reading =
             |second| Reading::of(datetime(2026, 3, 1, 8, 45, second, 0), datetime(2026, 3, 1, 8, 45, 30, 500));
         assert_eq!([29, 30, 35].map(|second| reading(second).ahead_s), [-1, 0, 4]);
+        assert_eq!([3, 3723, 90_000].map(in_words), ["3 s", "1:02:03", "1 days 1:00:00"]);
     }
 }

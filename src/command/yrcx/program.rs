@@ -64,7 +64,7 @@ struct WhichOrAll {
     task: Option<String>,
     /// All programs that are registered
     #[arg(long)]
-    all: bool,
+    all_programs: bool,
 }
 
 /// Fills in how a program is named.
@@ -96,7 +96,7 @@ impl Which {
 
 impl WhichOrAll {
     fn put(&self, draft: Draft) -> Draft {
-        let draft = draft.with_some(Key::Selection, self.all.then_some(0));
+        let draft = draft.with_some(Key::Selection, self.all_programs.then_some(0));
         put(draft, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
     }
 
@@ -316,15 +316,15 @@ mod tests {
     #[test]
     fn programs_are_named_in_one_way() {
         let head = |line: &str| words(&line.split(' ').collect::<Vec<_>>()).unwrap()[0][..4].join(" ");
-        assert_eq!(head("program run --all"), "0x0402 0x0000 0x0000 0x0000");
+        assert_eq!(head("program run --all-programs"), "0x0402 0x0000 0x0000 0x0000");
         assert_eq!(head("program step --task 3"), "0x0403 0x0002 0x0000 0x0003");
         assert_eq!(head("program skip --name A"), "0x0404 0x0004 0x0000 0x0000");
         assert_eq!(head("program next --program 100"), "0x0405 0x0001 0x0064 0x0000");
-        assert_eq!(head("program reset --all"), "0x0406 0x0000 0x0000 0x0000");
+        assert_eq!(head("program reset --all-programs"), "0x0406 0x0000 0x0000 0x0000");
         assert_eq!(head("program select --name A --priority 1"), "0x0401 0x0004 0x0000 0x0000");
         for (line, part) in [
-            ("program run", "--all"),
-            ("program step --all", "--all"),
+            ("program run", "--all-programs"),
+            ("program step --all-programs", "--all-programs"),
             ("program run --program 1 --task 1", "cannot be used with"),
             ("program select --program 1", "--priority"),
             ("program select --task 1 --priority 1", "--program"),
@@ -346,10 +346,10 @@ mod tests {
 
     #[test]
     fn what_may_move_the_robot_asks_first() {
-        assert_eq!(risk(&["program", "run", "--all"]), Risk::Motion);
+        assert_eq!(risk(&["program", "run", "--all-programs"]), Risk::Motion);
         assert_eq!(risk(&["program", "skip", "--task", "1"]), Risk::Motion);
-        assert_eq!(risk(&["program", "reset", "--all"]), Risk::Write);
-        assert_eq!(intent(&["program", "run", "--all"]), "run all programs");
+        assert_eq!(risk(&["program", "reset", "--all-programs"]), Risk::Write);
+        assert_eq!(intent(&["program", "run", "--all-programs"]), "run all programs");
         assert_eq!(intent(&["program", "step", "--task", "3"]), "run one line of the program of task 3");
     }
 

@@ -14,6 +14,7 @@ use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, Table, View};
+use crate::settings::duration;
 
 /// Reads the position, once or as it changes.
 #[derive(Debug, Args)]
@@ -28,6 +29,11 @@ pub struct Where {
     /// Tell each new position until Ctrl-C, --count or --for
     #[arg(long)]
     continuous: bool,
+    /// How long to go on
+    #[arg(long = "for", value_name = "TIME", value_parser = duration::parse)]
+    within: Option<Duration>,
+    #[arg(from_global)]
+    until: Option<String>,
 }
 
 impl Command for Where {
@@ -40,6 +46,9 @@ impl Command for Where {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Place, Failure> {
+        if self.within.is_some() && !self.continuous && self.until.is_none() {
+            return Err(Failure::usage("--for goes with --continuous or --until"));
+        }
         let link = context.link;
         let command = match self.report {
             Unit::Mm => table::Command::PositionMm,

@@ -1,6 +1,6 @@
 //! Fields of words: where they stand, what they hold, when they count.
 
-use crate::controller::units::{self, Unit};
+use crate::controller::units::{self, Unit, UnitError};
 use crate::controller::yrcx::value::{Key, Value};
 
 /// A field of a command or an answer.
@@ -375,8 +375,11 @@ impl Field {
     /// Reads what people type: a number in the field's unit, the name of a choice, a list of axes such as `1,3`, SGI5
     /// for a variable. Whether it may be sent is checked later, with the rest of the command.
     pub fn parse(&self, text: &str) -> Result<Value, String> {
-        let number = |unit: Unit| unit.parse(text).map(Value::Int).map_err(|error| error.to_string());
-        let whole = |text: &str| PLAIN.parse(text).map(Value::Int).map_err(|error| error.to_string());
+        let whole = |text: &str| PLAIN.parse(text).map(Value::Int).map_err(|error| plain(&error));
+        let number = |unit: Unit| match unit.symbol {
+            "" => whole(text),
+            _ => unit.parse(text).map(Value::Int).map_err(|error| error.to_string()),
+        };
         match self.form {
             Form::Bits { show, .. } => match show {
                 Show::Choice(choices) => match choices.iter().find(|(_, name)| name.eq_ignore_ascii_case(text)) {
@@ -472,6 +475,14 @@ impl Charset {
         } else {
             Err(format!("'{}' does not fit; {}", text.chars().take(40).collect::<String>(), self.allowed()))
         }
+    }
+}
+
+/// Why a text is no whole number without unit.
+fn plain(error: &UnitError) -> String {
+    match error {
+        UnitError::Malformed { text, .. } | UnitError::TooFine { text, .. } => format!("'{text}' is no whole number"),
+        UnitError::Range { text, lowest, highest, .. } => format!("{text} is out of range; {lowest} to {highest} fit"),
     }
 }
 
