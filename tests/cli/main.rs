@@ -55,6 +55,9 @@ transcripts! {
     yrcx
     yrcx_jog
     yrcx_motion
+    yrcx_data
+    yrcx_info
+    yrcx_programs
 }
 
 #[test]

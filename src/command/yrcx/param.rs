@@ -31,9 +31,9 @@ commands! {
 fn listing() -> String {
     let line = |parameter: &Parameter| {
         let Parameter { number, name, meaning, span: (least, most), .. } = *parameter;
-        let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
+        let unit = if parameter.unit.is_empty() { String::new() } else { format!(" ({})", parameter.unit) };
         let most = if most == i32::MAX { "what the robot carries".to_owned() } else { most.to_string() };
-        format!("  {name:<8} {number:>3}  {meaning}, {least} to {most}{unit}")
+        format!("  {name:<8} {number:>3}  {meaning}{unit}, {least} to {most}")
     };
     let of = |per_axis| PARAMETERS.iter().filter(move |parameter| parameter.per_axis == per_axis).map(line);
     let lines = |per_axis| of(per_axis).collect::<Vec<_>>().join("\n");

@@ -187,14 +187,15 @@ macro_rules! starts {
 
 starts! {
     /// Runs a program, or all that are registered. The controller answers as soon as it has accepted that.
-    #[command(after_help = "`yrcx io get program-running` tells whether a program runs; `yrcx stop` stops it.")]
+    #[command(after_help = "`yrcx io get program-running` tells whether a program runs; `yrcx stop` stops it, and so \
+        does the end of the connection.")]
     Run "yrcx.program.run" ProgramRun WhichOrAll "run {}" "started {}";
     /// Runs one line of a program, also of a subroutine.
-    Step "yrcx.program.step" ProgramStep Which "run one line of {}" "ran one line of {}";
+    Step "yrcx.program.step" ProgramStep Which "run one line of {}" "started one line of {}";
     /// Skips one line of a program.
     Skip "yrcx.program.skip" ProgramSkip Which "skip one line of {}" "skipped one line of {}";
     /// Runs one line of a program, a subroutine as a whole.
-    Next "yrcx.program.next" ProgramNext Which "run one line of {}, a subroutine as a whole" "ran one line of {}";
+    Next "yrcx.program.next" ProgramNext Which "run one line of {}, a subroutine as a whole" "started one line of {}";
     /// Puts a program back to its first line, or all that are registered.
     #[command(after_help = "`yrcx io get program-reset` tells whether all programs are reset, `yrcx info line` where each \
         stands.")]
@@ -250,9 +251,9 @@ pub struct Execution {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Line {
     /// From 1.
-    line: i32,
+    pub line: i32,
     /// Whether it is a line of the COMMON program.
-    in_common: bool,
+    pub in_common: bool,
 }
 
 impl Line {

@@ -101,7 +101,10 @@ impl Single for Set {
     }
 
     fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new(format!("comment of point {}: {}", self.point, self.comment)))
+        Ok(Done::new(match &self.comment[..] {
+            "" => format!("removed the comment of point {}", self.point),
+            comment => format!("comment of point {}: {comment}", self.point),
+        }))
     }
 }
 

@@ -64,7 +64,11 @@ impl AlarmReport {
         }
         let place = |kind, count| {
             let kind = shown(Command::LatestAlarm, values, kind)?;
-            Some(format!("{kind} {}", values.int(count).unwrap_or_default()))
+            match values.int(count) {
+                // No number: all of them, or a task that has none.
+                Some(0) | None => Some(kind),
+                Some(number) => Some(format!("{kind} {number}")),
+            }
         };
         Self {
             code: Some(found.to_string()),

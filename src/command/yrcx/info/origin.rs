@@ -4,41 +4,43 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::Report;
-use crate::command::yrcx::link::Done;
-use crate::command::yrcx::single::{Single, shown};
-use crate::controller::yrcx::order::Draft;
-use crate::controller::yrcx::table::Command;
+use crate::command::yrcx::Family;
+use crate::command::yrcx::single::shown;
+use crate::command::{Command, Context, Report};
+use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
 
 /// Reads whether the origin is known: of all robots together, or of each axis of the robot of --unit.
 #[derive(Debug, Args)]
-#[command(after_help = "--motor needs a robot: --unit 1.")]
 pub struct Origin {
-    /// Only axes with this type of motor
+    /// Only axes of the robot of --unit with this type of motor
     #[arg(long, value_name = "TYPE", value_parser = ["incremental", "absolute"])]
     motor: Option<String>,
 }
 
-impl Single for Origin {
+impl Command for Origin {
+    type Family = Family;
     type Report = Origins;
     const ID: &'static str = "yrcx.info.origin";
 
-    fn command(&self) -> Command {
-        Command::OriginStatus
-    }
-
-    fn fill(&self, draft: Draft) -> Draft {
-        draft.with_some(Key::MotorType, self.motor.clone())
-    }
-
-    fn report(&self, done: &Done) -> Result<Origins, Failure> {
-        let state = |key| shown(Command::OriginStatus, &done.values, key);
+    async fn run(&self, context: Context<'_, Family>) -> Result<Origins, Failure> {
+        let link = context.link;
+        let draft = link.draft(table::Command::OriginStatus)?.with_some(Key::MotorType, self.motor.clone());
+        let order = draft.build().map_err(|error| match error.place.key {
+            Some(Key::MotorType) => {
+                Failure::usage("--motor is for the axes of one robot").hint("name it, as in --unit 1")
+            }
+            _ => error.into(),
+        })?;
+        let values = link.run(&order).await?.values;
+        let state = |key| shown(table::Command::OriginStatus, &values, key);
         let axes = (1..).zip(Key::AXES).filter_map(|(axis, key)| Some(AxisOrigin { axis, state: state(key)? }));
-        let axes = if done.values.int(Key::System).is_some() { Vec::new() } else { axes.collect() };
-        Ok(Origins { system: state(Key::System), axes })
+        Ok(match state(Key::System) {
+            Some(system) => Origins { system: Some(system), axes: Vec::new() },
+            None => Origins { system: None, axes: axes.collect() },
+        })
     }
 }
 
@@ -106,6 +108,6 @@ mod tests {
         assert_eq!(read.unwrap(), json!({"system": "complete", "axes": []}));
         assert_eq!(peer.taken[0][0], 0x050F);
         assert_eq!(words(&["info", "origin", "--unit", "2", "--motor", "absolute"]).unwrap()[0][2], "0x0002");
-        assert!(words(&["info", "origin", "--motor", "absolute"]).unwrap_err().message.contains("robot"));
+        assert!(words(&["info", "origin", "--motor", "absolute"]).unwrap_err().message.contains("one robot"));
     }
 }

@@ -135,8 +135,12 @@ impl Command for Line {
     async fn run(&self, context: Context<'_, Family>) -> Result<Lines, Failure> {
         let tasks = self.chosen.read(context, table::Command::TaskLines).await?;
         let lines = tasks.iter().map(|(task, key, values)| {
-            let line = values.int(*key).filter(|line| *line != 0);
-            TaskLine { task: *task, line: line.map(program::Line::of) }
+            let line = values.int(*key).filter(|line| *line != 0).map(program::Line::of);
+            TaskLine {
+                task: *task,
+                line: line.map(|line| line.line),
+                in_common: line.is_some_and(|line| line.in_common),
+            }
         });
         let is_wanted = |line: &TaskLine| !self.chosen.tasks.is_empty() || line.line.is_some();
         Ok(Lines { tasks: lines.filter(is_wanted).collect() })
@@ -154,15 +158,18 @@ pub struct Lines {
 struct TaskLine {
     /// 1 to 16.
     task: usize,
-    /// Null if there is no such task.
-    line: Option<program::Line>,
+    /// From 1; null if there is no such task.
+    line: Option<i32>,
+    /// Whether it is a line of the COMMON program.
+    in_common: bool,
 }
 
 impl Report for Lines {
     fn view(&self) -> View {
         let mut table = Table::new(&["task", "line"], "no tasks");
-        for TaskLine { task, line } in &self.tasks {
-            table.row([(*task).into(), Cell::number(line.map_or_else(|| "-".to_owned(), program::Line::told))]);
+        for TaskLine { task, line, in_common } in &self.tasks {
+            let told = line.map(|line| program::Line { line, in_common: *in_common }.told());
+            table.row([(*task).into(), Cell::number(told.unwrap_or_else(|| "-".to_owned()))]);
         }
         View::table(table)
     }
@@ -184,11 +191,8 @@ mod tests {
         assert_eq!(states, ["execution", "execution", none, none, "suspend", none, none, none]);
         assert_eq!(words(&["info", "line", "1..8"]).unwrap(), [example("4.7.6-reference")]);
         let read = read_example("4.7.6-reference", &["info", "line", "2-3,5"]);
-        let line = |line| json!({"line": line, "in_common": false});
-        assert_eq!(
-            read["tasks"],
-            json!([{"task": 2, "line": line(19)}, {"task": 3, "line": null}, {"task": 5, "line": line(99)}])
-        );
+        let task = |task, line: Option<i32>| json!({"task": task, "line": line, "in_common": false});
+        assert_eq!(read["tasks"], json!([task(2, Some(19)), task(3, None), task(5, Some(99))]));
     }
 
     #[test]

@@ -401,7 +401,10 @@ impl Field {
                         let index = text.strip_prefix(prefix)?.parse::<u8>().ok().filter(|index| *index < 32)?;
                         Some(Value::Int(first + i32::from(index)))
                     })
-                    .map_or_else(|| whole(text), Ok),
+                    .map_or_else(
+                        || whole(text).map_err(|_| format!("'{text}' is no variable; {}", self.allowed())),
+                        Ok,
+                    ),
                 Show::Fixed(_) | Show::Digits => whole(text),
             },
             Form::Short(unit) | Form::Long(unit) => number(unit),
