@@ -155,6 +155,16 @@ fn signals_are_switched_while_a_command_runs() {
 }
 
 #[test]
+fn the_end_of_a_command_is_not_taken_for_that_of_the_next() {
+    let mut bench = Bench::new(Scripted::new([ends(10, &[0x4000, 2, 334]), ends(0, &[0x0200])]));
+    bench.run(&[MOVE, &["--no-wait"]].concat()).unwrap();
+    // It ends while the pulse is waited for.
+    bench.run(&["io", "pulse", "20"]).unwrap();
+    bench.run(&["alarm", "reset"]).unwrap();
+    assert_eq!(bench.into_peer().taken.len(), 2);
+}
+
+#[test]
 fn a_procedure_switches_waits_and_confirms() {
     let (done, peer) = run_on(Scripted::new([]), &["power-on"]);
     assert!(done.unwrap()["elapsed_ms"].as_u64().unwrap() >= 100);
