@@ -9,7 +9,7 @@ use crate::controller::Now;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::sequence::{self, Sequence};
-use crate::controller::yrcx::session::{Exchange, ImageSession as _, Next, Outcome};
+use crate::controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome};
 use crate::controller::yrcx::signal::{input, resting};
 use crate::controller::yrcx::table::Pace;
 use crate::failure::{Failure, Kind};
@@ -45,29 +45,26 @@ impl Link {
 
     /// Sees to it that a command that was left alone has ended, and tells if it did not end well.
     async fn end_earlier(&mut self) -> Result<(), Failure> {
-        let Some(exchange) = &self.exchange else {
-            // It ended while something else was waited for: nobody may take that for the end of the next one.
-            self.ended = None;
-            return Ok(());
-        };
-        let (row, is_output) = (exchange.order().row(), exchange.order().is_continuous());
-        self.turn_until(Instant::now()).await?;
+        if self.exchange.is_some() {
+            self.turn_until(Instant::now()).await?;
+        }
         let now = self.now();
         while let Some(exchange) = &mut self.exchange {
-            if is_output {
+            if exchange.order().is_continuous() {
                 exchange.interrupt(now);
             } else if exchange.is_running() {
-                return Err(Failure::new(Kind::NoAnswer, format!("{}: {} is still under way", self.label, row.id))
-                    .hint(
-                        "a controller carries out one remote command at a time; `yrcx io set stop=off` stops a motion",
-                    ));
+                let id = exchange.order().row().id;
+                return Err(Failure::new(Kind::NoAnswer, format!("{}: {id} is still under way", self.label)).hint(
+                    "a controller carries out one remote command at a time; `yrcx io set stop=off` stops a motion",
+                ));
             }
             self.turn().await?;
         }
-        if let Some(outcome) = self.ended.take().filter(|_| !is_output)
-            && let Err(failure) = self.given(row, outcome).and_then(|given| given.done(row))
-        {
-            self.screen.note(&format!("warning: {failure}"));
+        if let Some(outcome) = self.ended.take().filter(|outcome| outcome.ended != Ended::Stopped) {
+            let row = outcome.row;
+            if let Err(failure) = self.given(row, outcome).and_then(|given| given.done(row)) {
+                self.screen.note(&format!("warning: {failure}"));
+            }
         }
         Ok(())
     }

@@ -7,13 +7,15 @@ use crate::controller::yrcx::answer::{Answer, Status};
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Output, Words};
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::signal::input;
-use crate::controller::yrcx::table::{Pace, STATUS_RESET};
+use crate::controller::yrcx::table::{Pace, Row, STATUS_RESET};
 use crate::controller::yrcx::value::Values;
 use crate::controller::{Now, Risk};
 
 /// How an exchange ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
+    /// The row of the command.
+    pub row: &'static Row,
     /// The answer, or why there is none.
     pub ended: Ended,
     /// WO0 to WO15 as they came with the end status.
@@ -111,6 +113,7 @@ impl Exchange {
     /// Will carry out `order`.
     pub fn new(order: Order, policy: Policy) -> Self {
         let outcome = Outcome {
+            row: order.row(),
             ended: Ended::NotSent(Hindrance::NoImage),
             words: None,
             elapsed: Duration::ZERO,
