@@ -12,7 +12,7 @@ use crate::command::yrcx::{Family, link};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
-use crate::controller::yrcx::value::Key;
+use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 use crate::output::view::{Table, View};
 
@@ -42,13 +42,12 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Comments, Failure> {
         let found = read_numbers(context, "comments", (table::Command::CommentGet, Key::Point), &self.points).await?;
-        let row = |(point, values): &(i32, _)| Row { point: *point, comment: comment(values) };
+        let row = |(point, values): &(i32, Values)| Row {
+            point: *point,
+            comment: values.text(Key::Comment).unwrap_or_default().to_owned(),
+        };
         Ok(Comments { comments: found.entries.iter().map(row).collect(), refused: found.refused })
     }
-}
-
-fn comment(values: &crate::controller::yrcx::value::Values) -> String {
-    values.text(Key::Comment).unwrap_or_default().to_owned()
 }
 
 /// Comments of points.
