@@ -53,10 +53,10 @@ transcripts! {
     usage
     variables
     yrcx
-    yrcx_jog
-    yrcx_motion
     yrcx_data
     yrcx_info
+    yrcx_jog
+    yrcx_motion
     yrcx_programs
 }
 

@@ -11,7 +11,7 @@
 //!    positions in `position.rs`.
 //! 2. A line in the list below, or in that of its noun.
 //! 3. Tests: `testing::words` gives the words of a command line, `testing::example` those of an example of the manual.
-//!    `coverage.rs` counts which rows of the table no command line reaches yet.
+//!    `coverage.rs` has a line for each row of the table.
 
 mod alarm;
 mod arguments;
@@ -23,7 +23,6 @@ mod info;
 mod io;
 pub mod link;
 mod motion;
-mod moves;
 mod numbers;
 mod overview;
 mod param;
@@ -42,8 +41,8 @@ pub mod simulated;
 mod single;
 mod speed;
 mod status;
-mod teach;
 mod status_reset;
+mod teach;
 #[cfg(test)]
 mod testing;
 mod torque_limit;

@@ -289,9 +289,7 @@ mod tests {
     use serde_json::json;
 
     use super::Line;
-    use crate::command::yrcx::testing::{
-        corrected, example, intent, objection, read_example, read_in_turn, risk, words,
-    };
+    use crate::command::yrcx::testing::{example, intent, objection, read_example, read_in_turn, risk, words};
     use crate::controller::Risk;
 
     #[test]
@@ -305,7 +303,7 @@ mod tests {
         assert_eq!(read_example("4.6.2-execute", &run)["done"], "started program 1");
         // Its WI1 is printed as 0x0100, its name without the spaces that the text asks for.
         let reset = ["program", "reset", "--name", "ABC_DE"];
-        assert_eq!(words(&reset).unwrap(), [corrected("4.6.3-reset")]);
+        assert_eq!(words(&reset).unwrap(), [example("4.6.3-reset")]);
         assert_eq!(read_in_turn(&["4.6.3-reset"], &reset)["done"], "reset program ABC_DE");
         let show = read_example("4.6.4-reference", &["program", "show", "--program", "1"]);
         assert_eq!(

@@ -50,13 +50,6 @@ fn corrected<'a>(entry: &'a Value, words: &str) -> &'a Value {
     entry.get(format!("{words}_corrected")).unwrap_or(&entry[words])
 }
 
-/// The same, with words that the manual misprints as they must be.
-#[track_caller]
-pub(super) fn corrected(id: &str) -> Vec<String> {
-    let entry = entry(id);
-    texts(entry.get("wi_corrected").unwrap_or(&entry["wi"]))
-}
-
 fn texts(words: &Value) -> Vec<String> {
     words.as_array().unwrap().iter().map(|word| word.as_str().unwrap().to_owned()).collect()
 }
@@ -83,8 +76,8 @@ pub(super) fn read_example(id: &str, line: &[&str]) -> Value {
 pub(super) fn read_in_turn(ids: &[&str], line: &[&str]) -> Value {
     let examples: Vec<Value> = ids.iter().map(|id| entry(id)).collect();
     let (outcome, peer) =
-        run_on(Scripted::new(examples.iter().map(|example| Reply::Ends(1, numbers(&example["wo"])))), line);
-    let sent = examples.iter().map(|example| numbers(example.get("wi_corrected").unwrap_or(&example["wi"])));
+        run_on(Scripted::new(examples.iter().map(|example| Reply::Ends(1, numbers(corrected(example, "wo"))))), line);
+    let sent = examples.iter().map(|example| numbers(corrected(example, "wi")));
     assert_eq!(peer.taken, sent.collect::<Vec<_>>());
     outcome.unwrap()
 }
