@@ -218,7 +218,8 @@ mod tests {
     use serde_json::json;
 
     use super::{place, value};
-    use crate::command::yrcx::testing::{example, objection, read_example, words};
+    use crate::command::yrcx::testing::{Reply, Scripted, example, objection, read_example, run_on, words};
+    use crate::failure::Kind;
 
     #[test]
     fn the_examples_of_the_manual() {
@@ -235,6 +236,14 @@ mod tests {
         assert_eq!(read["ports"], json!([{"port": "DI2", "value": 127, "bits": "01111111"}]));
         let read = read_example("4.5.1-reference-di2", &["port", "get", "di2.7"]);
         assert_eq!(read["ports"], json!([{"port": "DI2.7", "value": 0, "bits": null}]));
+    }
+
+    #[test]
+    fn an_answer_for_another_port_is_no_answer() {
+        let mut end = [0; 16];
+        (end[0], end[2]) = (0x0200, 0x1020);
+        let (outcome, _) = run_on(Scripted::new([Reply::Ends(1, end)]), &["port", "get", "DO12"]);
+        assert_eq!(outcome.unwrap_err().kind, Kind::Malformed);
     }
 
     #[test]

@@ -12,7 +12,7 @@ use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use crate::controller::yrcx::answer::Answer;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
@@ -22,7 +22,9 @@ pub async fn ask_all(link: &mut Link, screen: &Screen, what: &str, orders: &[Ord
     let mut progress = (orders.len() > 1).then(|| screen.items_progress(what, orders.len() as u64));
     let mut answers = Vec::with_capacity(orders.len());
     for order in orders {
-        answers.push(link.run(order).await?.values);
+        let values = link.run(order).await?.values;
+        check_echo(order, &values)?;
+        answers.push(values);
         if let Some(progress) = &mut progress {
             progress.advance(1);
         }
@@ -69,7 +71,7 @@ pub async fn read_numbers(
     for (&number, order) in numbers.iter().zip(&orders) {
         match link.try_run(order).await?.answer {
             Answer::Done(values) | Answer::Running(values) => {
-                check_echo(order, key, number, &values)?;
+                check_echo(order, &values)?;
                 found.entries.push((number, values));
             }
             Answer::Refused { alarm, .. } => {
@@ -99,14 +101,15 @@ fn is_about_commands(alarm: Alarm) -> bool {
     alarm.group == STOP_INPUT.group
 }
 
-/// Answers repeat the number that was asked for.
-fn check_echo(order: &Order, key: Key, number: i32, values: &Values) -> Result<(), Failure> {
-    match values.int(key) {
-        Some(told) if told != number => {
-            let message = format!("{}: asked for {key} {number}, the controller answers for {told}", order.row().id);
+/// Answers repeat what was asked for, as far as they have it.
+fn check_echo(order: &Order, values: &Values) -> Result<(), Failure> {
+    let differs = |(key, asked): &(Key, &Value)| values.value(*key).is_some_and(|told| told != *asked);
+    match order.values().iter().find(differs) {
+        Some((key, _)) => {
+            let message = format!("{}: the controller answers for another {key} than was asked for", order.row().id);
             Err(Failure::new(Kind::Malformed, message).hint("`-vvv` shows the words"))
         }
-        _ => Ok(()),
+        None => Ok(()),
     }
 }
 
