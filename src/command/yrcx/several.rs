@@ -21,8 +21,8 @@ pub async fn ask_all(link: &mut Link, screen: &Screen, what: &str, orders: &[Ord
     link.rehearse(orders).await;
     let mut progress = (orders.len() > 1).then(|| screen.items_progress(what, orders.len() as u64));
     let mut answers = Vec::with_capacity(orders.len());
-    for order in orders {
-        let values = link.run(order).await?.values;
+    for (done, order) in orders.iter().enumerate() {
+        let values = link.run(order).await.map_err(|failure| cut_off(failure, done, orders.len()))?.values;
         check_echo(order, &values)?;
         answers.push(values);
         if let Some(progress) = &mut progress {
@@ -68,8 +68,9 @@ pub async fn read_numbers(
         (orders.len() > 1).then(|| screen.items_progress(&format!("reading {noun}"), orders.len() as u64));
     let mut found = Found { entries: Vec::with_capacity(orders.len()), refused: Vec::new() };
     let mut first = None;
-    for (&number, order) in numbers.iter().zip(&orders) {
-        match link.try_run(order).await?.answer {
+    for (done, (&number, order)) in numbers.iter().zip(&orders).enumerate() {
+        let given = link.try_run(order).await.map_err(|failure| cut_off(failure, done, orders.len()))?;
+        match given.answer {
             Answer::Done(values) | Answer::Running(values) => {
                 check_echo(order, &values)?;
                 found.entries.push((number, values));
@@ -77,7 +78,7 @@ pub async fn read_numbers(
             Answer::Refused { alarm, .. } => {
                 let failure = refused(order.row(), alarm);
                 if orders.len() == 1 || is_about_commands(alarm) {
-                    return Err(failure);
+                    return Err(cut_off(failure, done, orders.len()));
                 }
                 first.get_or_insert(failure);
                 found.refused.push(Refused { number, code: alarm.to_string(), meaning: alarm.text() });
@@ -93,6 +94,14 @@ pub async fn read_numbers(
             tell_refused(screen, noun, &found.refused);
             Ok(found)
         }
+    }
+}
+
+/// A failure that ends it in the middle.
+fn cut_off(failure: Failure, done: usize, all: usize) -> Failure {
+    match done {
+        0 => failure,
+        _ => Failure { message: format!("{}; it was number {} of {all}", failure.message, done + 1), ..failure },
     }
 }
 

@@ -215,7 +215,9 @@ mod tests {
     #[test]
     fn a_controller_that_takes_no_commands_is_not_asked_again() {
         let (outcome, peer) = run_on(Scripted::new([answer(3), refusal(12, 76)]), &["point", "get", "3..29999"]);
-        assert_eq!((outcome.unwrap_err().code.as_deref(), peer.taken.len()), (Some("12.76"), 2));
+        let failure = outcome.unwrap_err();
+        assert_eq!((failure.code.as_deref(), peer.taken.len()), (Some("12.76"), 2));
+        assert!(failure.message.ends_with("; it was number 2 of 29997"), "{failure}");
     }
 
     #[test]
