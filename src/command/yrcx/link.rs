@@ -407,6 +407,7 @@ impl Link {
                 return self.run(order).await;
             }
             self.start(order).await?;
+            self.totals.commands += 1;
         }
         let mut held: Option<(Done, Instant)> = None;
         loop {
