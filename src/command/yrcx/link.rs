@@ -6,6 +6,7 @@
 
 mod driver;
 mod jog;
+mod output;
 
 use std::convert::Infallible;
 use std::time::Duration;
@@ -28,7 +29,7 @@ use crate::controller::yrcx::sequence::{self, Sequence};
 use crate::controller::yrcx::session::{Ended, Exchange, Outcome, Policy};
 use crate::controller::yrcx::signal::{input, resting};
 use crate::controller::yrcx::table::{Command, Pace, Row};
-use crate::controller::yrcx::value::{Key, Value, Values};
+use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
@@ -136,8 +137,6 @@ impl Given {
 /// Least patience with what the manual gives no time for.
 const QUICK: Duration = Duration::from_secs(10);
 const POWER: Duration = Duration::from_secs(30);
-/// The run status may come before what is output with it: so long, zeros are taken for that.
-const FILLS_WITHIN: Duration = Duration::from_millis(100);
 /// How long the last change may take to leave before the connection is closed.
 const LEAVE_WITHIN: Duration = Duration::from_secs(1);
 
@@ -394,42 +393,6 @@ impl Link {
                 return Ok(None);
             }
             self.turn().await?;
-        }
-    }
-
-    /// What continuous output shows next (4.7.4). The first call begins it; it goes on until another command, or the end of
-    /// the link, ends it with the status reset.
-    pub async fn next_output(&mut self, order: &Order) -> Result<Done, Failure> {
-        let is_under_way = self.exchange.as_ref().is_some_and(|exchange| exchange.order() == order);
-        if self.is_dry() || !is_under_way {
-            self.admit(order.row().id, order.risk())?;
-            if self.is_dry() {
-                return self.run(order).await;
-            }
-            self.start(order).await?;
-            self.totals.commands += 1;
-        }
-        let mut held: Option<(Done, Instant)> = None;
-        loop {
-            if let Some(outcome) = self.ended.take() {
-                return self.given(order.row(), outcome)?.done(order.row());
-            }
-            let now = self.now();
-            if let Some(exchange) = &mut self.exchange
-                && let Some(Answer::Running(values)) = exchange.running()
-            {
-                let is_empty = values.iter().all(|(_, value)| *value == Value::Int(0));
-                let done = Done { values, elapsed: exchange.elapsed(now) };
-                if is_under_way || !is_empty {
-                    return Ok(done);
-                }
-                held = Some((done, Instant::now() + FILLS_WITHIN));
-            }
-            match held {
-                Some((done, until)) if Instant::now() >= until => return Ok(done),
-                Some((_, until)) => self.turn_until(until).await?,
-                None => self.turn().await?,
-            }
         }
     }
 
