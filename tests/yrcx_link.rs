@@ -85,12 +85,15 @@ fn images_that_are_lost_or_doubled_do_no_harm() {
 #[test]
 fn one_owner_at_a_time_and_others_may_listen() {
     let simulator = Simulator::start(&[]);
-    let mut owner = simulator.command("yrcx io watch alarm -o jsonl").spawn().unwrap();
-    let mut told = BufReader::new(owner.stdout.take().unwrap()).lines();
+    let mut owner = simulator.command("yrcx info servo --watch 1h -o jsonl").spawn().unwrap();
+    BufReader::new(owner.stdout.take().unwrap()).lines().next().unwrap().unwrap();
+    let mut watch = simulator.command("yrcx io watch alarm -o jsonl").spawn().unwrap();
+    let mut told = BufReader::new(watch.stdout.take().unwrap()).lines();
     told.next().unwrap().unwrap();
 
-    let (code, stderr) = failed(&simulator.run("yrcx status"));
-    assert!(code == 3 && stderr.contains("[0x0106]") && stderr.contains("hint: "), "{code} {stderr}");
+    let (code, stderr) = failed(&simulator.run("yrcx status --full"));
+    assert!(code == 3 && stderr.contains("[0x0106]") && stderr.contains("another master"), "{code} {stderr}");
+    assert!(stderr.contains("hint: `yrcx io get` and `yrcx status` see its signals"), "{stderr}");
     let mut listener = armctl();
     listener.args([
         "-t",
@@ -111,8 +114,56 @@ fn one_owner_at_a_time_and_others_may_listen() {
         (&change["data"]["signals"][0]["name"], &change["data"]["signals"][0]["on"]),
         (&"alarm".into(), &true.into())
     );
+    for mut child in [watch, owner] {
+        interrupt(&child);
+        assert_eq!(child.wait().unwrap().code(), Some(130));
+    }
+}
+
+#[test]
+fn looking_leaves_the_owner_alone() {
+    let simulator = Simulator::start(&[]);
+    let mut owner = simulator.command("yrcx info servo --watch 1h -o jsonl").spawn().unwrap();
+    BufReader::new(owner.stdout.take().unwrap()).lines().next().unwrap().unwrap();
+    // None of these opens a connection of an owner, or it would be refused.
+    for line in ["yrcx status", "status", "yrcx io get", "yrcx io watch --count 1", "yrcx auto-mode"] {
+        let output = simulator.run(line);
+        let (code, stderr) = failed(&output);
+        assert!(code == 0 && stderr.is_empty(), "{line}: {code} {stderr}");
+    }
+    let seen = simulator.run("yrcx status --json").stdout;
+    let seen: Value = serde_json::from_slice(&seen).unwrap();
+    assert_eq!((&seen["data"]["servos"], &seen["data"]["position_mm"]), (&Value::Null, &Value::Null));
+    assert!(seen["data"]["not_asked"].as_str().unwrap().contains("--full"));
+    let (code, stderr) = failed(&simulator.run("yrcx io get SI06"));
+    assert!(code == 2 && stderr.contains("known to whoever commands"), "{code} {stderr}");
     interrupt(&owner);
     assert_eq!(owner.wait().unwrap().code(), Some(130));
+}
+
+#[test]
+fn a_board_that_lets_nobody_read_is_listened_to() {
+    let output = Simulator::start(&["--mischief", "unreadable"]).run("yrcx io get cpu-ok --json");
+    let heard: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(heard["data"]["signals"][0]["on"], true);
+}
+
+#[test]
+fn a_simulator_in_this_process_has_faults_too() {
+    let run = |url: &str| armctl().args(["-t", url, "--timeout", "400ms", "yrcx", "info", "servo"]).output().unwrap();
+    for url in ["sim:?fault=drop=5%25,seed=7", "sim:?mischief=double", "sim:?mischief=drop"] {
+        assert!(run(url).status.success(), "{url}: {:?}", failed(&run(url)));
+    }
+    for (url, exit, part) in [
+        ("sim:?mischief=stall", 4, "shows nothing"),
+        ("sim:?mischief=mute", 4, "was not answered within 400 ms"),
+        ("sim:?mischief=garbage", 5, "cannot be read"),
+        ("sim:?mischief=none", 2, "wrong-sequence"),
+        ("sim:?fault=busy=5%25", 2, "busy is not for yrcx"),
+    ] {
+        let (code, stderr) = failed(&run(url));
+        assert!(code == exit && stderr.contains(part), "{url}: {code} {stderr}");
+    }
 }
 
 #[test]

@@ -18,7 +18,7 @@ mod process;
 use anyhow::{Context as _, ensure};
 use armctl::command::yerc::Family as Yerc;
 use armctl::command::yerc::link::Link;
-use armctl::command::{Access, Family as _};
+use armctl::command::{Access, Family as _, Need};
 use armctl::controller::Risk;
 use armctl::controller::yerc::files::FileName;
 use armctl::controller::yerc::query::ReadStatus;
@@ -168,7 +168,7 @@ fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
     let sources = Sources { selection, ..Sources::default() };
     let robots = sources.robots(Some(Family::Yerc))?;
     let robot = robots.first().context("a target is a robot")?;
-    let access = Access { granted: Risk::Read, dry_run: false, trace: None };
+    let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: Need::Command };
     let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
     Ok(runtime.block_on(Yerc::connect(robot, access, &screen))?)
 }

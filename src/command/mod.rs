@@ -64,6 +64,21 @@ pub struct Access {
     pub dry_run: bool,
     /// Where frames are recorded.
     pub trace: Option<std::path::PathBuf>,
+    /// What the command wants of the connection.
+    pub need: Need,
+}
+
+/// What a command wants of the connection. Where a controller takes the end of a connection for a fault, as YRCX does,
+/// nothing is opened that is more than this.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Need {
+    /// To ask and to command.
+    #[default]
+    Command,
+    /// To see what the controller shows by itself.
+    Sight,
+    /// Nothing: it opens by itself what it needs.
+    Nothing,
 }
 
 /// A controller family as the commands see it.
@@ -122,6 +137,11 @@ pub trait Command {
         false
     }
 
+    /// What it wants of the connection.
+    fn need(&self) -> Need {
+        Need::Command
+    }
+
     /// Does it. In a dry run the future stays pending once all that can be foreseen is noted.
     async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
 }
@@ -144,6 +164,10 @@ pub trait AnyCommand<F: Family> {
     /// See [`Command::is_endless`].
     fn is_endless(&self) -> bool {
         false
+    }
+    /// See [`Command::need`].
+    fn need(&self) -> Need {
+        Need::Command
     }
     /// See [`Command::run`].
     fn run<'a>(&'a self, context: Context<'a, F>) -> Pin<Box<dyn Future<Output = Outcome> + 'a>>;
@@ -192,6 +216,10 @@ impl<C: Command> AnyCommand<C::Family> for C {
 
     fn is_endless(&self) -> bool {
         Command::is_endless(self)
+    }
+
+    fn need(&self) -> Need {
+        Command::need(self)
     }
 
     fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {

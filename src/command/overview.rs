@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::{Access, Command, Context, Family, Report, toyo, yerc, yrcx};
+use super::{Access, Command, Context, Family, Need, Report, toyo, yerc, yrcx};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::{Cell, Table, Tone, View};
@@ -72,6 +72,10 @@ impl Command for Overview {
     type Report = OverviewReport;
     const ID: &'static str = "status";
 
+    fn need(&self) -> Need {
+        Need::Sight
+    }
+
     async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport, Failure> {
         let found = match context.link {
             Link::Yerc(link) => yerc::overview(link).await,
@@ -107,6 +111,8 @@ pub struct OverviewReport {
     pub error: Option<bool>,
     /// The first robot in base coordinates.
     pub position: Option<PositionMm>,
+    /// Why the position was not asked (yrcx without a session); null where it was.
+    pub not_asked: Option<&'static str>,
     /// Why it is not reachable.
     #[serde(skip)]
     pub failure: Option<Failure>,
@@ -141,13 +147,14 @@ impl Report for OverviewReport {
             (_, Some(true)) => Cell::from("error").tone(Tone::Bad),
             _ => "none".into(),
         };
+        let position = self.position.as_ref().map(|at| format!("{:.3} {:.3} {:.3}", at.x_mm, at.y_mm, at.z_mm));
         table.row([
             Cell::from("yes").tone(Tone::Good),
             Cell::maybe(self.mode),
             Cell::maybe(self.servo_on.map(Cell::switch)),
             state,
             alarm,
-            Cell::maybe(self.position.as_ref().map(|at| format!("{:.3} {:.3} {:.3}", at.x_mm, at.y_mm, at.z_mm))),
+            Cell::maybe(position.or(self.not_asked.map(|_| "not asked".to_owned()))),
         ]);
         View::table(table)
     }

@@ -372,7 +372,8 @@ impl Run {
     }
 
     async fn connect<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<F::Link, Failure> {
-        let access = Access { granted: command.risk(), dry_run: false, trace: self.trace.clone() };
+        let access =
+            Access { granted: command.risk(), dry_run: false, trace: self.trace.clone(), need: command.need() };
         interruptible(F::connect(robot, access, &self.screen)).await?
     }
 
@@ -412,7 +413,7 @@ impl Run {
         robot: &Robot,
         screen: &Screen,
     ) -> Result<Vec<Value>, Failure> {
-        let access = Access { granted: command.risk(), dry_run: true, trace: self.trace.clone() };
+        let access = Access { granted: command.risk(), dry_run: true, trace: self.trace.clone(), need: command.need() };
         let mut link = F::connect(robot, access, screen).await?;
         let noted = {
             let several = self.sources.selection.is_plural();

@@ -90,7 +90,7 @@ pub enum Place {
     Serial(Serial),
     /// `tcp://HOST:PORT[?baud=9600]`.
     Tcp(Tcp),
-    /// `sim:[?model=…&axes=…&baud=…&state=FILE&fault=…]`: the built-in simulator of the family, in this process.
+    /// `sim:[?model=…&axes=…&baud=…&state=FILE&fault=…&mischief=…]`: the built-in simulator of the family, in this process.
     Sim(Sim),
     /// `eip://HOST[:44818][?in=100&out=150&config=1&rpi=20ms&…]`.
     Eip(Eip),
@@ -156,8 +156,10 @@ pub struct Sim {
     pub baud: Option<u32>,
     /// A file with the start state.
     pub state: Option<PathBuf>,
-    /// Faults on the line, in the form of `armctl sim --fault`; for yerc and toyo.
+    /// Faults on the line, in the form of `armctl sim --fault`.
     pub fault: Option<String>,
+    /// What a yrcx controller does wrong, in the form of `armctl sim yrcx --mischief`.
+    pub mischief: Option<String>,
 }
 
 /// Port of the robot server (spec: frame table; UDP).
@@ -343,6 +345,7 @@ fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
         baud: baud(query)?,
         state: query.take("state").map(PathBuf::from),
         fault: query.take("fault"),
+        mischief: query.take("mischief"),
     })
 }
 
@@ -354,6 +357,7 @@ impl Sim {
             ("move_words", self.traits.move_words.is_some(), Family::Yerc),
             ("axes", self.axes.is_some(), Family::Toyo),
             ("baud", self.baud.is_some(), Family::Toyo),
+            ("mischief", self.mischief.is_some(), Family::Yrcx),
         ];
         match given.iter().find(|(_, is_given, owner)| *is_given && *owner != family) {
             Some((key, _, owner)) => Err(format!("'{key}' in a sim: URL is for {owner}, not for {family}")),
@@ -573,7 +577,8 @@ mod tests {
         for (url, family, why) in [
             ("sim:?axes=2&baud=9600&state=a.toml&fault=echo", Family::Toyo, None),
             ("sim:?model=fs100&move_words=25&state=a.toml", Family::Yerc, None),
-            ("sim:", Family::Yrcx, None),
+            ("sim:?state=a.toml&fault=drop=5%25&mischief=stall", Family::Yrcx, None),
+            ("sim:?mischief=stall", Family::Toyo, Some("'mischief' in a sim: URL is for yrcx, not for toyo")),
             ("sim:?axes=2", Family::Yerc, Some("'axes' in a sim: URL is for toyo, not for yerc")),
             ("sim:?baud=9600", Family::Yerc, Some("'baud' in a sim: URL is for toyo, not for yerc")),
             ("sim:?model=fs100", Family::Toyo, Some("'model' in a sim: URL is for yerc, not for toyo")),

@@ -11,7 +11,9 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
+use super::eip::client::Client;
 use super::eip::originator::{State, Statistics};
+use super::eip::reader::Reader;
 use super::eip::scanner::{Connection, Scanner};
 use super::eip::settings::Settings;
 use super::eip::tap::Tap;
@@ -60,11 +62,14 @@ pub struct ImageLink {
     /// What the peer was last told to show, to tell news from repetition.
     seen: Option<Arc<[u8]>>,
     is_up: bool,
+    /// What must live as long as the link, such as the other end where that is in this process.
+    kept: Option<Box<dyn fmt::Debug>>,
 }
 
 #[derive(Debug)]
 enum Way {
     Eip(Eip),
+    Read(Reader),
     InProcess(InProcess),
 }
 
@@ -95,16 +100,16 @@ pub const CYCLE: Duration = Duration::from_millis(5);
 impl ImageLink {
     /// Opens a connection to the first IPv4 address of the host, and holds it. All of a process share a UDP socket.
     pub async fn open(host: &str, port: u16, settings: Settings, tap: Tap) -> Result<Self, OpenError> {
-        let addresses = tokio::net::lookup_host((host, port)).await.map_err(|_| OpenError::NotFound)?;
-        let target = addresses.filter_map(|address| match address {
-            std::net::SocketAddr::V4(address) => Some(address),
-            std::net::SocketAddr::V6(_) => None,
-        });
-        let target: SocketAddrV4 = target.into_iter().next().ok_or(OpenError::NotIpv4)?;
+        let target = resolve(host, port).await?;
         let scanner = Scanner::shared().map_err(OpenError::Trouble)?;
         let connection = scanner.open(target, settings, tap).await.map_err(OpenError::Trouble)?;
         let generation = connection.view().generation;
         Ok(Self::over(Way::Eip(Eip { connection, generation, pending: None })))
+    }
+
+    /// Sees what the device shows in this assembly, by messages with a pause between them. Nothing can be shown to it.
+    pub async fn reading(client: Client, assembly: u32, pause: Duration) -> Result<Self, OpenError> {
+        Ok(Self::over(Way::Read(Reader::open(client, assembly, pause).await.map_err(OpenError::Trouble)?)))
     }
 
     /// A link to a peer in this process.
@@ -112,8 +117,14 @@ impl ImageLink {
         Self::over(Way::InProcess(InProcess { peer, start: Instant::now(), pending: None, due: Duration::ZERO }))
     }
 
+    /// Keeps something until the link is closed.
+    #[must_use]
+    pub fn keeping(self, kept: Box<dyn fmt::Debug>) -> Self {
+        Self { kept: Some(kept), ..self }
+    }
+
     fn over(way: Way) -> Self {
-        Self { way, seen: None, is_up: true }
+        Self { way, seen: None, is_up: true, kept: None }
     }
 
     /// Shows the peer this image from the next cycle on; [`Event::Sent`] tells when it has left. While the link is down
@@ -124,6 +135,7 @@ impl ImageLink {
     pub fn show(&mut self, image: &[u8]) -> Result<(), Trouble> {
         match &mut self.way {
             Way::Eip(eip) => eip.show(image),
+            Way::Read(_) => Err(Trouble::Impossible("a link that only reads shows nothing".to_owned())),
             Way::InProcess(peer) => {
                 peer.pending = Some(image.to_vec());
                 Ok(())
@@ -135,6 +147,7 @@ impl ImageLink {
     pub async fn next(&mut self, until: Instant) -> Event {
         let event = match &mut self.way {
             Way::Eip(eip) => eip.next(self.is_up, self.seen.as_ref(), until).await,
+            Way::Read(reader) => next_reading(reader, self.is_up, self.seen.as_ref(), until).await,
             Way::InProcess(peer) => peer.next(self.is_up, self.seen.as_ref(), until).await,
         };
         match &event {
@@ -153,18 +166,51 @@ impl ImageLink {
                 let view = eip.connection.view();
                 Some((view.statistics, view.intervals))
             }
-            Way::InProcess(_) => None,
+            Way::Read(_) | Way::InProcess(_) => None,
         }
     }
 
     /// Ends it properly.
     pub async fn close(self) -> Result<(), Trouble> {
-        match self.way {
+        let Self { way, kept, .. } = self;
+        let closed = match way {
             Way::Eip(eip) => eip.connection.close().await,
+            Way::Read(reader) => {
+                reader.close().await;
+                Ok(())
+            }
             Way::InProcess(mut peer) => {
                 peer.peer.input(peer.start.elapsed(), None);
                 Ok(())
             }
+        };
+        // The other end must not go before it is told.
+        drop(kept);
+        closed
+    }
+}
+
+/// The first IPv4 address of a host.
+pub async fn resolve(host: &str, port: u16) -> Result<SocketAddrV4, OpenError> {
+    let addresses = tokio::net::lookup_host((host, port)).await.map_err(|_| OpenError::NotFound)?;
+    let target = addresses.filter_map(|address| match address {
+        std::net::SocketAddr::V4(address) => Some(address),
+        std::net::SocketAddr::V6(_) => None,
+    });
+    target.into_iter().next().ok_or(OpenError::NotIpv4)
+}
+
+async fn next_reading(reader: &mut Reader, is_up: bool, seen: Option<&Arc<[u8]>>, until: Instant) -> Event {
+    loop {
+        match reader.reading() {
+            Ok(_) if !is_up => return Event::Reopened,
+            Ok(image) if seen.is_none_or(|seen| *seen != image) => return Event::Image(image),
+            Err(trouble) if is_up => return Event::Lost(trouble.to_string()),
+            Ok(_) | Err(_) => {}
+        }
+        tokio::select! {
+            () = reader.changed() => {}
+            () = tokio::time::sleep_until(until) => return Event::Timeout,
         }
     }
 }

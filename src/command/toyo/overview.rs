@@ -21,6 +21,7 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
         alarm: None,
         error: Some(status.has_error()),
         position: Some(PositionMm { x_mm: place.x_mm, y_mm: place.y_mm, z_mm: place.z_mm }),
+        not_asked: None,
         failure: None,
     })
 }

@@ -28,6 +28,7 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
         alarm: Some(status.alarm()),
         error: Some(status.error()),
         position,
+        not_asked: None,
         failure: None,
     })
 }

@@ -18,7 +18,7 @@ use super::io::named;
 use super::reach;
 use super::refusal;
 use super::trace::{Recorder, Trace};
-use crate::command::{Access, Family};
+use crate::command::{Access, Family, Need};
 use crate::controller::Risk;
 use crate::controller::yrcx::alarm::STOP_INPUT;
 use crate::controller::yrcx::answer::Answer;
@@ -94,6 +94,8 @@ enum Transport {
     Image(Box<ImageLink>),
     /// A dry run: what would be sent is noted.
     Notes(Vec<Json>),
+    /// Not at all: the command opens by itself what it needs.
+    Nothing,
 }
 
 /// What a link saw, for `-v`.
@@ -148,6 +150,9 @@ impl Family for Yrcx {
         let way = reach::way(robot)?;
         if access.dry_run {
             return Link::new(robot, &access, screen, Transport::Notes(Vec::new()), None);
+        }
+        if access.need == Need::Nothing {
+            return Link::new(robot, &access, screen, Transport::Nothing, None);
         }
         let (image, recorder) = way.open(robot, &access, screen).await?;
         let mut link = Link::new(robot, &access, screen, Transport::Image(Box::new(image)), recorder)?;
@@ -205,7 +210,7 @@ impl Family for Yrcx {
     fn rehearsed(link: &mut Link) -> Vec<Json> {
         match &mut link.transport {
             Transport::Notes(notes) => std::mem::take(notes),
-            Transport::Image(_) => Vec::new(),
+            Transport::Image(_) | Transport::Nothing => Vec::new(),
         }
     }
 
@@ -253,8 +258,8 @@ impl Link {
     ) -> Result<Self, Failure> {
         let timeout = robot.timeout.value;
         let is_owner = match &robot.target.value.place {
-            Place::Eip(eip) => eip.role == EipRole::Owner,
-            _ => true,
+            Place::Eip(eip) => eip.role == EipRole::Owner && access.need == Need::Command,
+            _ => access.need != Need::Nothing,
         };
         let is_simulated = robot.target.value.is_simulated();
         let policy = Policy {
@@ -409,7 +414,9 @@ impl Link {
     /// Carries out a procedure of signals, and says how long it took.
     pub async fn carry_out(&mut self, procedure: Procedure) -> Result<Duration, Failure> {
         self.no_unit("signals are those of the whole controller")?;
-        self.admit(procedure.name, procedure.risk)?;
+        if !procedure.only_awaits() {
+            self.admit(procedure.name, procedure.risk)?;
+        }
         if self.is_dry() {
             self.note_steps(&procedure);
             if procedure.risk == Risk::Read {
@@ -460,9 +467,14 @@ impl Link {
         }
     }
 
-    /// What the controller is shown.
-    pub fn shown(&self) -> &Image {
-        &self.output.next
+    /// What the controller is shown; `None` where that is for somebody else to show.
+    pub fn shown(&self) -> Option<&Image> {
+        self.is_owner.then_some(&self.output.next)
+    }
+
+    /// Whether commands can be given, or signals only be seen.
+    pub fn commands(&self) -> bool {
+        self.is_owner
     }
 
     /// Refuses `--unit` where it means nothing.

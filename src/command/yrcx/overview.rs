@@ -6,19 +6,23 @@ use crate::command::overview::{OverviewReport, PositionMm};
 use crate::controller::yrcx::signal::{input, output};
 use crate::failure::Failure;
 
-/// Looks at the signals, and asks for the position.
+/// Why there is no position.
+const NOT_ASKED: &str = "asking for the position takes command of the controller: `yrcx status --full`, or a session";
+
+/// Looks at the signals, and asks for the position where that does not take command of the controller first.
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     let image = link.look().await?;
-    let position = position_mm(link).await?;
+    let position = if link.commands() { position_mm(link).await? } else { None };
     Ok(OverviewReport {
         reachable: true,
         mode: Some(if output::AUTO_MODE.is_on(&image) { "auto" } else { "manual" }),
         servo_on: Some(output::SERVO_ON.is_on(&image)),
         running: Some(output::PROGRAM_RUNNING.is_on(&image)),
-        held: Some(!input::STOP.is_on(link.shown())),
+        held: link.shown().map(|shown| !input::STOP.is_on(shown)),
         alarm: Some(output::ALARM.is_on(&image)),
         error: None,
         position: position.map(|[x_mm, y_mm, z_mm, _]| PositionMm { x_mm, y_mm, z_mm }),
+        not_asked: (!link.commands()).then_some(NOT_ASKED),
         failure: None,
     })
 }

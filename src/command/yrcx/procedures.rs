@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context, Need, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::procedure::Procedure;
 use crate::failure::Failure;
@@ -30,6 +30,10 @@ macro_rules! procedures {
 
                 fn intent(&self) -> String {
                     Procedure::$procedure().intent
+                }
+
+                fn need(&self) -> Need {
+                    if Procedure::$procedure().only_awaits() { Need::Sight } else { Need::Command }
                 }
 
                 async fn run(&self, context: Context<'_, Family>) -> Result<CarriedOut, Failure> {

@@ -1,18 +1,23 @@
 //! The ways to a controller: EtherNet/IP, the simulator.
 
+use std::net::SocketAddrV4;
+use std::time::Duration;
+
 use super::simulated;
 use super::trace::Recorder;
-use crate::command::Access;
+use crate::command::{Access, Need};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::resting;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
-use crate::settings::target::{self, EipRole, Place};
+use crate::settings::target::{self, EipRole, Place, Target};
+use crate::transport::eip::client::Client;
 use crate::transport::eip::settings::{Multiplier, Role, Settings};
+use crate::transport::eip::tap::Tap;
 use crate::transport::eip::trouble::Trouble;
 use crate::transport::eip::wire::Key;
-use crate::transport::image::{ImageLink, OpenError};
+use crate::transport::image::{self, ImageLink, OpenError};
 
 /// How a robot is reached.
 #[derive(Debug)]
@@ -43,15 +48,31 @@ impl Way<'_> {
         access: &Access,
         screen: &Screen,
     ) -> Result<(ImageLink, Option<Recorder>), Failure> {
-        match self {
-            Self::Eip(eip) => {
-                let settings = settings(robot, eip)?;
-                let (recorder, tap) = Recorder::start(access, screen)?.unzip();
-                let opened = ImageLink::open(&eip.host, eip.port, settings, tap.unwrap_or_default()).await;
-                let link = opened.map_err(|error| not_open(&robot.label(), eip, &error))?;
-                Ok((link, recorder))
+        let (recorder, tap) = match self {
+            Self::Eip(_) => Recorder::start(access, screen)?.unzip(),
+            Self::Sim(_) => (None, None),
+        };
+        match self.connect(robot, access, tap.unwrap_or_default()).await {
+            Ok(link) => Ok((link, recorder)),
+            Err(failure) => {
+                // Why it did not open is worth more than what became of the record of it.
+                let _ = recorder.map_or(Ok(()), Recorder::finish);
+                Err(failure)
             }
-            Self::Sim(sim) => Ok((ImageLink::in_process(simulated::in_process(sim)?), None)),
+        }
+    }
+
+    async fn connect(&self, robot: &Robot, access: &Access, tap: Tap) -> Result<ImageLink, Failure> {
+        match self {
+            Self::Eip(eip) if access.need == Need::Sight && eip.role == EipRole::Owner => see(robot, eip, tap).await,
+            Self::Eip(eip) => open(robot, eip, tap).await,
+            // What goes wrong on a network takes one.
+            Self::Sim(sim) if simulated::has_faults(sim) => {
+                let server = simulated::on_loopback(sim)?;
+                let link = open(robot, &at(server.address())?, tap).await?;
+                Ok(link.keeping(Box::new(server)))
+            }
+            Self::Sim(sim) => Ok(ImageLink::in_process(Box::new(simulated::in_process(sim)?))),
         }
     }
 
@@ -62,6 +83,55 @@ impl Way<'_> {
             Self::Sim(_) => Image::BYTES,
         }
     }
+}
+
+/// A simulator on the loopback.
+fn at(address: SocketAddrV4) -> Result<target::Eip, Failure> {
+    match format!("eip://{address}").parse::<Target>()?.place {
+        Place::Eip(eip) => Ok(eip),
+        _ => Err(Failure::local(format!("{address} is no address of an adapter"))),
+    }
+}
+
+async fn open(robot: &Robot, eip: &target::Eip, tap: Tap) -> Result<ImageLink, Failure> {
+    let opened = ImageLink::open(&eip.host, eip.port, settings(robot, eip)?, tap).await;
+    opened.map_err(|error| not_open(&robot.label(), eip, &error))
+}
+
+/// Instances for the heartbeats of a connection that only listens to inputs, as boards of several makers have them. The
+/// first of them is one whose loss a board does not tell its controller; the last one may be.
+const HEARTBEATS: [u32; 5] = [6, 238, 254, 198, 3];
+/// Least pause between two looks: boards answer messages when they have nothing better to do.
+const PAUSE: Duration = Duration::from_millis(20);
+
+/// Sees what the controller shows without owning it: by messages, which leave nothing behind; where the board does not
+/// answer them, by a connection that only listens.
+async fn see(robot: &Robot, eip: &target::Eip, tap: Tap) -> Result<ImageLink, Failure> {
+    let label = robot.label();
+    let client = client(robot, eip, tap.clone()).await?;
+    let refused = match ImageLink::reading(client, eip.input, eip.rpi.max(PAUSE)).await {
+        Err(OpenError::Trouble(trouble @ Trouble::Refused { .. })) => trouble,
+        opened => return opened.map_err(|error| not_open(&label, eip, &error)),
+    };
+    for output in HEARTBEATS {
+        let listening =
+            Settings { role: Role::InputOnly, output, output_size: 0, resting: Vec::new(), ..settings(robot, eip)? };
+        match ImageLink::open(&eip.host, eip.port, listening, tap.clone()).await {
+            Err(OpenError::Trouble(Trouble::Refused { .. })) => {}
+            opened => return opened.map_err(|error| not_open(&label, eip, &error)),
+        }
+    }
+    let message = format!("{label}: the board shows its inputs to nobody who only looks: {refused}");
+    Err(Failure::new(Kind::Refused, message).hint(
+        "check in of the URL; or add role=input_only and out= with the instance for heartbeats from the EDS file of the board",
+    ))
+}
+
+/// A session for messages with the board.
+pub async fn client(robot: &Robot, eip: &target::Eip, tap: Tap) -> Result<Client, Failure> {
+    let target = image::resolve(&eip.host, eip.port).await;
+    let target = target.map_err(|error| not_open(&robot.label(), eip, &error))?;
+    Ok(Client::new(target, robot.timeout.value, tap))
 }
 
 fn settings(robot: &Robot, eip: &target::Eip) -> Result<Settings, Failure> {
@@ -98,7 +168,10 @@ fn settings(robot: &Robot, eip: &target::Eip) -> Result<Settings, Failure> {
     })
 }
 
-fn not_open(label: &str, eip: &target::Eip, error: &OpenError) -> Failure {
+/// Extended status of a refusal: somebody owns the outputs.
+const OWNED: u32 = 0x0106;
+
+pub fn not_open(label: &str, eip: &target::Eip, error: &OpenError) -> Failure {
     let trouble = match error {
         OpenError::NotFound => {
             return Failure::new(Kind::NoAnswer, format!("{label}: cannot find host '{}'", eip.host))
@@ -125,6 +198,13 @@ fn not_open(label: &str, eip: &target::Eip, error: &OpenError) -> Failure {
             (Kind::Local, "check the network settings of this machine, and its firewall")
         }
     };
+    if trouble.code().is_some_and(|code| code.code == OWNED) {
+        let message = format!("{label}: another master, such as a PLC, commands the controller");
+        return Failure::new(Kind::Refused, message).code(format!("{OWNED:#06x}")).hint(
+            "`yrcx io get` and `yrcx status` see its signals beside the owner; to command from here, stop the owner's \
+             connection first: take the controller out of the PLC's scan list, or close the session",
+        );
+    }
     let failure = Failure::new(kind, format!("{label}: {trouble}"));
     match trouble.code() {
         Some(code) => failure.code(format!("{:#06x}", code.code)).hint(as_hint(code.remedy)),

@@ -8,7 +8,7 @@ use super::Family;
 use super::info::{AxisServo, servos};
 use super::link::Link;
 use super::position::{Position, Unit};
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context, Need, Report};
 use crate::controller::yrcx::answer::{Answer, Status as CommandStatus};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::output;
@@ -16,17 +16,34 @@ use crate::controller::yrcx::table;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, Tone, View};
 
-/// Signals, servos and position.
+/// Signals; in a session, on a simulator, or with --full also servos and position.
 #[derive(Debug, Args)]
-pub struct Status {}
+#[command(
+    after_help = "Signals are seen without a connection that the controller would miss. Servos and position are \
+                        remote commands: --full takes command of the controller for them, which is an alarm for it when \
+                        the command ends (`armctl help safety`); a session has the command already."
+)]
+pub struct Status {
+    /// Take command of the controller, and ask for servos and position as well
+    #[arg(long)]
+    full: bool,
+}
 
 impl Command for Status {
     type Family = Family;
     type Report = StatusReport;
     const ID: &'static str = "yrcx.status";
 
+    fn need(&self) -> Need {
+        if self.full { Need::Command } else { Need::Sight }
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<StatusReport, Failure> {
         let link = context.link;
+        if !self.full && !link.commands() {
+            let not_asked = Some(NOT_ASKED);
+            return Ok(StatusReport { not_asked, ..StatusReport::of(&link.look().await?) });
+        }
         let servo = link.draft(table::Command::ServoStatus)?.build()?;
         let position = link.draft(table::Command::PositionMm)?.build()?;
         link.rehearse(&[servo.clone(), position]).await;
@@ -34,9 +51,12 @@ impl Command for Status {
         let servos = servos(&link.run(&servo).await?.values);
         let position_mm = position_mm(link).await?;
         let position = Position { position_mm, ..Position::default() };
-        Ok(StatusReport { servos, position, ..StatusReport::of(&image) })
+        Ok(StatusReport { servos: Some(servos), position, ..StatusReport::of(&image) })
     }
 }
+
+/// Why a report has no servos and no position.
+const NOT_ASKED: &str = "asking for servos and position takes command of the controller: --full, or a session";
 
 /// How the controller stands (chapter 1, section 2).
 #[derive(Debug, Serialize, JsonSchema, Default)]
@@ -66,8 +86,10 @@ pub struct StatusReport {
     program_reset: bool,
     /// SO(15): a warning.
     warning: bool,
-    /// The servo of each axis.
-    servos: Vec<AxisServo>,
+    /// The servo of each axis; null where that was not asked.
+    servos: Option<Vec<AxisServo>>,
+    /// Why servos and position were not asked; null where they were.
+    not_asked: Option<&'static str>,
     #[serde(flatten)]
     position: Position,
 }
@@ -88,7 +110,8 @@ impl StatusReport {
             program_running: output::PROGRAM_RUNNING.is_on(image),
             program_reset: output::PROGRAM_RESET.is_on(image),
             warning: output::WARNING.is_on(image),
-            servos: Vec::new(),
+            servos: None,
+            not_asked: None,
             position: Position::default(),
         }
     }
@@ -102,7 +125,10 @@ impl Report for StatusReport {
         };
         let good =
             |on: bool| if on { Cell::from("yes").tone(Tone::Good) } else { Cell::from("no").tone(Tone::Warning) };
-        let servos = self.servos.iter().map(|servo| format!("{} {}", servo.axis, servo.state)).collect::<Vec<_>>();
+        let told = |servos: &Vec<AxisServo>| {
+            servos.iter().map(|servo| format!("{} {}", servo.axis, servo.state)).collect::<Vec<_>>().join(", ")
+        };
+        let servos = self.servos.as_ref().map(told).filter(|told| !told.is_empty());
         let view = View::fields([
             ("remote command", self.command_status.as_str().into()),
             ("emergency stop", toned(self.emergency_stop, Tone::Bad)),
@@ -111,7 +137,7 @@ impl Report for StatusReport {
             ("CPU OK", good(self.cpu_ok)),
             ("MP ready", good(self.mp_ready)),
             ("motor power", Cell::switch(self.servo_on)),
-            ("servos", if servos.is_empty() { "-".into() } else { servos.join(", ").into() }),
+            ("servos", Cell::maybe(servos)),
             ("AUTO mode", toned(self.auto_mode, Tone::Plain)),
             (
                 "origin",
@@ -121,9 +147,10 @@ impl Report for StatusReport {
             ("program reset", toned(self.program_reset, Tone::Plain)),
             ("sequence", if self.sequence_running { "running".into() } else { "stopped".into() }),
         ]);
-        match self.position.table() {
-            Some(table) => view.and(Section::Table(table)),
-            None => view,
+        match (self.position.table(), self.not_asked) {
+            (Some(table), _) => view.and(Section::Table(table)),
+            (None, Some(why)) => view.and(Section::Text(why.to_owned())),
+            (None, None) => view,
         }
     }
 }

@@ -5,7 +5,7 @@ use std::pin::Pin;
 use clap::Args;
 
 use super::{Family, Yrcx};
-use crate::command::{AnyCommand, Context, Noun, Outcome, SchemaEntry};
+use crate::command::{AnyCommand, Context, Need, Noun, Outcome, SchemaEntry};
 use crate::controller::Risk;
 use crate::gate::Demand;
 use crate::output::Screen;
@@ -58,6 +58,10 @@ impl AnyCommand<Family> for OfUnit {
 
     fn is_endless(&self) -> bool {
         self.command.is_endless()
+    }
+
+    fn need(&self) -> Need {
+        self.command.need()
     }
 
     fn without_robot(&self, screen: &Screen) -> Option<Outcome> {

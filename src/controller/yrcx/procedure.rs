@@ -135,6 +135,11 @@ impl Procedure {
         Self::new("stop", "stop the robot program", Risk::Write, "3.3", &steps)
     }
 
+    /// Whether it switches nothing.
+    pub fn only_awaits(&self) -> bool {
+        !self.steps.iter().any(|step| matches!(step, Step::Set { .. } | Step::Rise(_)))
+    }
+
     /// Every timing chart.
     pub fn charts() -> [Self; 7] {
         [

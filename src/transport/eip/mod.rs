@@ -12,6 +12,7 @@ mod engine;
 pub mod explicit;
 pub mod originator;
 pub mod probe;
+pub mod reader;
 pub mod scanner;
 pub mod session;
 pub mod settings;

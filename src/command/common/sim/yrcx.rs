@@ -1,9 +1,8 @@
 //! `armctl sim yrcx`: an EtherNet/IP adapter with TCP and UDP ports, like a controller.
 
 use std::io;
-use std::net::{Ipv4Addr, SocketAddrV4};
+use std::net::SocketAddrV4;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -12,18 +11,12 @@ use serde::Serialize;
 use super::{Served, address, cannot_listen, serve};
 use crate::command::Report;
 use crate::command::run::{Run, Stopped};
-use crate::command::yrcx::simulated::{self, Simulated};
-use crate::controller::yrcx::image::Image;
-use crate::controller::yrcx::simulator::Simulator;
-use crate::failure::Failure;
+use crate::command::yrcx::simulated::{self, Controller, faults, mischief};
 use crate::output::view::View;
+use crate::transport::eip::adapter::Mischief;
 use crate::transport::eip::adapter::server::{Listen, Server};
-use crate::transport::eip::adapter::{Application, Event, Mischief, Setup};
-use crate::transport::eip::settings::Role;
-use crate::transport::eip::wire::{Identity, Revision};
 use crate::transport::eip::{IO_PORT, PORT};
-use crate::transport::fault::{FaultSpec, Faults};
-use crate::transport::image::ImagePeer as _;
+use crate::transport::fault::FaultSpec;
 
 /// Arguments of `sim yrcx`.
 #[derive(Debug, Args)]
@@ -44,18 +37,14 @@ pub(super) struct SimYrcx {
     /// Faults of images on their way, such as drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,seed=7
     #[arg(long, value_name = "FAULTS", value_parser = faults)]
     fault: Option<FaultSpec>,
-    /// What the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, reset, mute, garbage
+    /// What the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, unreadable, reset,
+    /// mute, garbage
     #[arg(long, value_name = "WHAT", value_parser = mischief)]
     mischief: Option<Mischief>,
     /// Take lines on stdin; `help` lists them
     #[arg(long)]
     console: bool,
 }
-
-/// What the controller sends and takes, and its configuration: the numbers of an older controller of the maker.
-const INPUT: u32 = 100;
-const OUTPUT: u32 = 150;
-const CONFIGURATION: u32 = 1;
 
 fn listen(text: &str) -> Result<SocketAddrV4, String> {
     match address(text, PORT)? {
@@ -64,28 +53,12 @@ fn listen(text: &str) -> Result<SocketAddrV4, String> {
     }
 }
 
-fn faults(text: &str) -> Result<FaultSpec, String> {
-    let spec: FaultSpec = text.parse().map_err(|error| format!("{error}"))?;
-    if spec.busy.per_10_000() > 0 { Err("busy is not for yrcx".to_owned()) } else { Ok(spec) }
-}
-
-fn mischief(text: &str) -> Result<Mischief, String> {
-    let found = Mischief::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, mischief)| *mischief).ok_or_else(|| {
-        let names = Mischief::ALL.map(|(name, _)| name).join(", ");
-        format!("there are {names}")
-    })
-}
-
 impl SimYrcx {
     pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
         let start = simulated::start(self.state.as_deref())?;
-        let size = u16::try_from(Image::BYTES).map_err(|_| Failure::local("an image is too long for a packet"))?;
-        let setup = Setup::new(identity(), (INPUT, size), (OUTPUT, size), CONFIGURATION);
         let io_port = self.io_port.unwrap_or(if self.bind.port() == 0 { 0 } else { IO_PORT });
         let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port };
-        let controller = Controller(Simulated(Simulator::new(start)));
-        let server = Server::start(setup, controller, listen, self.fault.map(Faults::pair)).map_err(|error| {
+        let server = simulated::serve(start, listen, self.fault).map_err(|error| {
             let on = format!("TCP and UDP {}, and UDP {}", self.bind, io_port);
             cannot_listen(&on, &error).hint("another simulator may run; choose ports with --bind 127.0.0.1:0")
         })?;
@@ -93,48 +66,6 @@ impl SimYrcx {
         let address = server.address();
         run.local("sim.yrcx", &Serving { family: "yrcx", target: format!("eip://{address}") })?;
         serve(run, &mut Yrcx(server), Some(address.into()), self.console).await
-    }
-}
-
-fn identity() -> Identity {
-    Identity {
-        address: SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, PORT),
-        vendor: 636,
-        device_type: 43,
-        product: 5,
-        revision: Revision { major: 1, minor: 1 },
-        status: 0,
-        serial: 1,
-        name: "YRCX simulator of armctl".to_owned(),
-        state: None,
-    }
-}
-
-/// A simulated controller behind its adapter.
-#[derive(Debug)]
-struct Controller(Simulated);
-
-impl Application for Controller {
-    fn image_out(&mut self, now: Duration, _instance: u32, image: &[u8], run: bool) {
-        // What a master shows while it idles is not meant yet, or not any more.
-        if run {
-            self.0.input(now, Some(image));
-        }
-    }
-
-    fn image_in(&mut self, now: Duration, _instance: u32, image: &mut [u8]) {
-        let shown = self.0.output(now).unwrap_or_default();
-        for (byte, shown) in image.iter_mut().zip(shown) {
-            *byte = shown;
-        }
-    }
-
-    fn event(&mut self, now: Duration, event: &Event) {
-        if let Event::Closed(peer) | Event::TimedOut(peer) = event
-            && peer.role == Role::ExclusiveOwner
-        {
-            self.0.input(now, None);
-        }
     }
 }
 

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Family, State, readable, table};
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context, Need, Report};
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
 use crate::output::view::View;
@@ -24,9 +24,22 @@ impl Command for Get {
     type Report = States;
     const ID: &'static str = "yrcx.io.get";
 
+    fn need(&self) -> Need {
+        Need::Sight
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<States, Failure> {
+        let given = context.link.shown().copied();
+        if given.is_none()
+            && let Some(signal) = self.signals.iter().find(|signal| signal.side() == Side::Input)
+        {
+            return Err(Failure::usage(format!(
+                "{signal} is known to whoever commands the controller, and not seen here"
+            ))
+            .hint("ask in a session, which shows the inputs itself: `armctl session open`"));
+        }
+        let given = given.unwrap_or_default();
         let shown = context.link.look().await?;
-        let given = *context.link.shown();
         let of = |signal: Signal| State::of(signal, if signal.side() == Side::Input { &given } else { &shown });
         let signals = if self.signals.is_empty() {
             Signal::all(Side::Output).filter(|signal| !signal.is_general() || signal.is_on(&shown)).map(of).collect()

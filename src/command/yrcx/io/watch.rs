@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Family, State, table};
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context, Need, Report};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
@@ -36,6 +36,10 @@ impl Command for Watch {
 
     fn is_endless(&self) -> bool {
         true
+    }
+
+    fn need(&self) -> Need {
+        Need::Sight
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Changes, Failure> {

@@ -19,6 +19,8 @@ pub enum Mischief {
     WrongId,
     /// Sends images that are a byte short.
     WrongSize,
+    /// Lets nobody read its assemblies by messages.
+    Unreadable,
     /// Ends the TCP connection at every request.
     Reset,
     /// Answers no request.
@@ -29,7 +31,7 @@ pub enum Mischief {
 
 impl Mischief {
     /// All there are, with the names they are asked for by.
-    pub const ALL: [(&'static str, Self); 10] = [
+    pub const ALL: [(&'static str, Self); 11] = [
         ("drop", Self::Drop),
         ("stall", Self::Stall),
         ("stale", Self::Stale),
@@ -37,6 +39,7 @@ impl Mischief {
         ("wrong-sequence", Self::WrongSequence),
         ("wrong-id", Self::WrongId),
         ("wrong-size", Self::WrongSize),
+        ("unreadable", Self::Unreadable),
         ("reset", Self::Reset),
         ("mute", Self::Mute),
         ("garbage", Self::Garbage),
@@ -65,6 +68,6 @@ pub(super) fn images(mischief: Option<Mischief>, number: u64, bytes: Vec<u8>) ->
         Mischief::WrongSize => {
             changed(|datagram| datagram.body = &datagram.body[..datagram.body.len().saturating_sub(1)])
         }
-        Mischief::Drop | Mischief::Reset | Mischief::Mute | Mischief::Garbage => vec![bytes],
+        Mischief::Drop | Mischief::Unreadable | Mischief::Reset | Mischief::Mute | Mischief::Garbage => vec![bytes],
     }
 }

@@ -3,7 +3,7 @@
 use super::super::settings::MOST_IMAGE;
 use super::super::wire::{Request, service};
 use super::super::{ASSEMBLY, Now};
-use super::{Adapter, Application, Purpose, UNKNOWN_DESTINATION, UNKNOWN_SERVICE};
+use super::{Adapter, Application, Mischief, Purpose, UNKNOWN_DESTINATION, UNKNOWN_SERVICE};
 
 const IDENTITY: u32 = 1;
 const NOT_SETTABLE: u8 = 0x0E;
@@ -73,6 +73,9 @@ impl<A: Application> Adapter<A> {
 
     /// Data and size.
     fn assembly_attribute(&mut self, now: Now, instance: u32, attribute: u32) -> Result<Vec<u8>, u8> {
+        if self.mischief == Some(Mischief::Unreadable) {
+            return Err(UNKNOWN_ATTRIBUTE);
+        }
         let is_input = self.setup.assembly(instance, Purpose::Input).is_some();
         let image = self.images.get_mut(&instance).ok_or(UNKNOWN_DESTINATION)?;
         match attribute {

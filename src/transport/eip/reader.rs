@@ -1,0 +1,89 @@
+//! What a device shows, read by messages over and over.
+//!
+//! There is no connection for images, so nothing that the device would miss when it ends; a device with an owner is read
+//! all the same.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::sync::watch;
+use tokio::task::JoinHandle;
+
+use super::ASSEMBLY;
+use super::client::Client;
+use super::explicit::Message;
+use super::trouble::Trouble;
+
+/// The attribute of an assembly that is its image.
+const IMAGE: u32 = 3;
+/// Pause after a failure.
+const PAUSE: Duration = Duration::from_millis(500);
+
+/// The newest image, or why there is none.
+pub type Reading = Result<Arc<[u8]>, Trouble>;
+
+/// Reads an assembly again and again, until it is closed or dropped.
+#[derive(Debug)]
+pub struct Reader {
+    readings: watch::Receiver<Reading>,
+    task: JoinHandle<()>,
+}
+
+impl Reader {
+    /// Reads the assembly once, and then again after each pause.
+    ///
+    /// # Errors
+    /// When it cannot be read. Later failures are readings.
+    pub async fn open(mut client: Client, assembly: u32, pause: Duration) -> Result<Self, Trouble> {
+        let first = read(&mut client, assembly).await?;
+        let (sender, readings) = watch::channel(Ok(first));
+        let task = tokio::spawn(follow(client, assembly, pause, sender));
+        Ok(Self { readings, task })
+    }
+
+    /// The newest reading.
+    pub fn reading(&self) -> Reading {
+        self.readings.borrow().clone()
+    }
+
+    /// Waits for another reading than those that were seen.
+    pub async fn changed(&mut self) {
+        if self.readings.changed().await.is_err() {
+            // Whoever reads is gone, and nothing changes any more.
+            std::future::pending::<()>().await;
+        }
+    }
+
+    /// Ends it, and takes leave of the device.
+    pub async fn close(self) {
+        drop(self.readings);
+        // A task that broke down has ended as well.
+        let _ = self.task.await;
+    }
+}
+
+async fn follow(mut client: Client, assembly: u32, pause: Duration, readings: watch::Sender<Reading>) {
+    let mut wait = pause;
+    loop {
+        let reading = tokio::select! {
+            () = readings.closed() => break,
+            reading = async {
+                tokio::time::sleep(wait).await;
+                read(&mut client, assembly).await
+            } => reading,
+        };
+        wait = if reading.is_ok() { pause } else { PAUSE };
+        readings.send_if_modified(|last| {
+            let is_new = *last != reading;
+            *last = reading;
+            is_new
+        });
+    }
+    client.close().await;
+}
+
+async fn read(client: &mut Client, assembly: u32) -> Reading {
+    let what = "Get_Attribute_Single of the input assembly";
+    let answer = client.ask(what, &Message::get(ASSEMBLY, assembly, IMAGE)).await?;
+    Ok(answer.done(what)?.into())
+}
