@@ -10,6 +10,8 @@ use clap::{CommandFactory as _, FromArgMatches as _};
 use crate::cli::{Cli, Globals, Top};
 use crate::command::Noun as _;
 use crate::command::common::Common;
+use crate::command::common::robots::Robots;
+use crate::command::common::robots::check::Check;
 use crate::command::run::{Repeat, Run, Stopped};
 use crate::failure::{Failure, Kind};
 use crate::gate::Gate;
@@ -64,6 +66,9 @@ fn run(cli: Cli) -> Result<(), Stopped> {
     let mut run = prepare(cli.globals, need)?;
     if let Top::Common(Common::Status(_)) = cli.command {
         run.sources.widen();
+    }
+    if let Top::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) = &cli.command {
+        run.sources.choose(name)?;
     }
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()

@@ -86,7 +86,7 @@ const BORDERS: [(&str, &[&str]); 6] = [
 
 /// Commands that touch a transport: the link of a family with its trace, the simulators' servers, the list of ports, and
 /// the peer of tests.
-const LINKS: [&str; 19] = [
+const LINKS: [&str; 21] = [
     "command/trace.rs",
     "command/yerc/link.rs",
     "command/yerc/simulated.rs",
@@ -97,12 +97,14 @@ const LINKS: [&str; 19] = [
     "command/toyo/simulated.rs",
     "command/toyo/testing.rs",
     "command/toyo/trace.rs",
+    "command/yrcx/eip/board.rs",
     "command/yrcx/link.rs",
     "command/yrcx/link/driver.rs",
     "command/yrcx/reach.rs",
     "command/yrcx/simulated.rs",
     "command/yrcx/testing.rs",
     "command/yrcx/trace.rs",
+    "command/common/robots/discover.rs",
     "command/common/sim/toyo.rs",
     "command/common/sim/yerc.rs",
     "command/common/sim/yrcx.rs",

@@ -4,6 +4,7 @@
 //! [`Noun`]s, and a line in the family's `commands!` list makes them part of the tool: command line, help, man page,
 //! completion and schema follow from it.
 
+pub mod checks;
 pub mod common;
 pub mod interrupt;
 pub mod local;
@@ -77,8 +78,8 @@ pub enum Need {
     Command,
     /// To see what the controller shows by itself.
     Sight,
-    /// Nothing: it opens by itself what it needs.
-    Nothing,
+    /// To ask its network board, which answers without a connection to the controller (yrcx).
+    Messages,
 }
 
 /// A controller family as the commands see it.

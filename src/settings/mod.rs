@@ -175,6 +175,20 @@ impl Sources {
         *all |= !is_said && !self.inventory.robots.is_empty();
     }
 
+    /// Takes a robot by its name, or by its URL.
+    pub fn choose(&mut self, robot: &str) -> Result<(), Failure> {
+        let Selection { sim, target, robots, tags, all, .. } = &mut self.selection;
+        if *sim || *all || target.is_some() || !robots.is_empty() || !tags.is_empty() {
+            return Err(Failure::usage(format!("'{robot}' and a flag name a robot")).hint("name it once"));
+        }
+        if robot.contains(':') {
+            *target = Some(robot.parse()?);
+        } else {
+            robots.push(robot.to_owned());
+        }
+        Ok(())
+    }
+
     /// The entry of the inventory with every setting in force.
     pub fn resolved(&self, entry: &Entry, family: Option<Family>) -> Result<Robot, Failure> {
         if let Some(family) = family

@@ -38,6 +38,7 @@ transcripts! {
     positions
     raw
     robots
+    robots_check
     signals
     simulator
     status
@@ -54,6 +55,7 @@ transcripts! {
     variables
     yrcx
     yrcx_data
+    yrcx_eip
     yrcx_info
     yrcx_jog
     yrcx_motion

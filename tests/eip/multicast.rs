@@ -48,7 +48,7 @@ async fn a_broadcast_finds_who_is_there() {
     let anywhere = Listen::anywhere(Ipv4Addr::UNSPECIFIED);
     let server = Server::start(setup(), Mirror::default(), anywhere, None).unwrap();
     let everybody = SocketAddrV4::new(Ipv4Addr::new(127, 255, 255, 255), server.address().port());
-    match list_identity(&[everybody], Duration::from_millis(500), &Tap::default()).await {
+    match list_identity(Ipv4Addr::UNSPECIFIED, &[everybody], Duration::from_millis(500), &Tap::default()).await {
         Ok(found) if found.is_empty() => println!("skipped: the loopback has no broadcasts here"),
         Ok(found) => assert_eq!((found.len(), found[0].identity.name.as_str()), (1, "RCX")),
         Err(error) => println!("skipped: the loopback has no broadcasts here: {error}"),

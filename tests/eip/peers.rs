@@ -128,7 +128,8 @@ async fn ciplink_says_who_it_is() {
     let Some(address) = address(4) else { return println!("{NO_ADDRESS}") };
     let adapter = ciplink(address);
     let target = v4(adapter.addr());
-    let found = list_identity(&[target], Duration::from_secs(20), &Tap::default()).await.unwrap();
+    let found =
+        list_identity(Ipv4Addr::UNSPECIFIED, &[target], Duration::from_secs(20), &Tap::default()).await.unwrap();
     assert_eq!(found[0].identity.name, "ciplink adapter");
     let mut client = Client::new(target, Duration::from_secs(20), Tap::default());
     assert_eq!(client.identity().await.unwrap().unwrap().name, "ciplink adapter");
@@ -204,7 +205,7 @@ async fn tshark_reads_what_passes() {
     connection.close().await.unwrap();
     let large = Settings { input_size: 600, ..patient() };
     scanner.open(server.address(), large, tap.clone()).await.unwrap_err();
-    list_identity(&[server.address()], Duration::from_secs(20), &tap).await.unwrap();
+    list_identity(Ipv4Addr::UNSPECIFIED, &[server.address()], Duration::from_secs(20), &tap).await.unwrap();
 
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("passed.pcap");

@@ -164,10 +164,13 @@ async fn a_device_says_who_it_is_by_tcp_and_by_udp() {
     assert_eq!(client.identity().await.unwrap(), Some(expected.clone()));
     assert_eq!(client.services().await.unwrap().unwrap().name, "Communications");
     let nobody = SocketAddrV4::new(LOOPBACK, 9);
-    let found = list_identity(&[server.address()], Duration::from_secs(20), &Tap::default()).await.unwrap();
+    let found = list_identity(Ipv4Addr::UNSPECIFIED, &[server.address()], Duration::from_secs(20), &Tap::default())
+        .await
+        .unwrap();
     assert_eq!(found.len(), 1);
     assert_eq!((found[0].address, &found[0].identity), (server.address(), &expected));
-    let found = list_identity(&[nobody], Duration::from_millis(1), &Tap::default()).await.unwrap();
+    let found =
+        list_identity(Ipv4Addr::UNSPECIFIED, &[nobody], Duration::from_millis(1), &Tap::default()).await.unwrap();
     assert_eq!(found, []);
 }
 

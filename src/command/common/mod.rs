@@ -19,7 +19,7 @@ use super::run::{Run, Stopped};
 pub enum Common {
     /// One line a robot: reachable, mode, servo, state, alarm, position
     Status(Overview),
-    /// The inventory: list, show, add, remove
+    /// The inventory: list, show, add, remove; check and discover
     #[command(subcommand)]
     Robots(robots::Robots),
     /// Serve the simulators on real sockets
@@ -51,7 +51,7 @@ impl Common {
         match self {
             Self::Status(overview) => run.robots(&overview).await,
             Self::Sim(sim) => sim.run(run).await,
-            Self::Robots(robots) => robots.run(run),
+            Self::Robots(robots) => robots.run(run).await,
             Self::Decode(decode) => decode.run(run),
             Self::Explain(explain) => explain.run(run),
             Self::Completions(completions) => Ok(completions.run(run)?),

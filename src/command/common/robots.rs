@@ -1,4 +1,7 @@
-//! `armctl robots`: the inventory.
+//! `armctl robots`: the inventory, and robots that are there.
+
+pub mod check;
+pub mod discover;
 
 use std::path::Path;
 
@@ -26,6 +29,10 @@ pub enum Robots {
     Add(Add),
     /// Remove a robot
     Remove(Remove),
+    /// What is wrong between this machine and a robot, and what to set
+    Check(check::Check),
+    /// Which EtherNet/IP boards answer on the network, and which serial ports are there
+    Discover(discover::Discover),
 }
 
 /// Arguments of `robots show`.
@@ -72,13 +79,15 @@ impl Robots {
         matches!(self, Self::Add(_))
     }
 
-    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
         let inventory = &run.sources.inventory;
         match self {
             Self::List => run.local("robots.list", &List::of(inventory)),
             Self::Show(show) => show.run(run),
             Self::Add(add) => add.run(run),
             Self::Remove(remove) => remove.run(run),
+            Self::Check(check) => run.robots(&check).await,
+            Self::Discover(discover) => discover.run(run).await,
         }
     }
 }

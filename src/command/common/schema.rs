@@ -52,6 +52,8 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<super::explain::Codes>("explain.yerc"),
         SchemaEntry::of::<super::explain::YrcxAlarm>("explain.yrcx"),
         SchemaEntry::of::<super::robots::Changed>("robots.add"),
+        SchemaEntry::of::<super::robots::check::CheckReport>("robots.check"),
+        SchemaEntry::of::<super::robots::discover::Discovered>("robots.discover"),
         SchemaEntry::of::<super::robots::List>("robots.list"),
         SchemaEntry::of::<super::robots::Changed>("robots.remove"),
         SchemaEntry::of::<super::robots::Shown>("robots.show"),

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
+use super::link::Link;
 use super::numbers::small;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::field::Value;
@@ -45,6 +46,11 @@ impl Command for Info {
         }
         Ok(about)
     }
+}
+
+/// The version of the controller.
+pub(super) async fn version(link: &mut Link) -> Result<String, Failure> {
+    Ok(meaning(&link.read(&Request::bare(table::Command::Sysp)).await?, "version"))
 }
 
 /// What a controller says of itself.

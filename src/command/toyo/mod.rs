@@ -4,6 +4,7 @@ mod backup;
 mod bus;
 mod card;
 mod cells;
+mod check;
 mod coordinate;
 mod copies;
 mod counter;
@@ -28,7 +29,7 @@ mod overview;
 mod palletizing;
 mod param;
 mod point;
-mod ports;
+pub mod ports;
 mod position;
 mod program;
 mod raw;
@@ -51,6 +52,7 @@ mod values;
 mod waiting;
 mod wear;
 
+pub use check::check;
 pub use link::Toyo as Family;
 pub use overview::overview;
 

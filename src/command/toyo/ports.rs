@@ -23,9 +23,14 @@ impl Desk for Ports {
     const ID: &'static str = "toyo.ports";
 
     fn run(&self, _screen: &Screen) -> Result<List, Failure> {
-        let found = ports::ports().map_err(|error| Failure::io("the list of serial ports", &error))?;
-        Ok(List { ports: found.into_iter().map(Port::from).collect() })
+        Ok(List { ports: all()? })
     }
+}
+
+/// The serial ports of this machine, as they are told.
+pub fn all() -> Result<Vec<Port>, Failure> {
+    let found = ports::ports().map_err(|error| Failure::io("the list of serial ports", &error))?;
+    Ok(found.into_iter().map(Port::from).collect())
 }
 
 /// The serial ports there are.
@@ -36,7 +41,7 @@ pub struct List {
 
 /// A serial port.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Port {
+pub struct Port {
     /// `/dev/ttyUSB0`, `COM3`.
     name: String,
     /// A name that stays the same whatever else is plugged in (Linux).
@@ -85,8 +90,13 @@ impl From<PortInfo> for Port {
 }
 
 impl Port {
+    /// The URL for `-t`.
+    pub fn target(&self) -> &str {
+        &self.target
+    }
+
     /// What it is, in words: `FTDI FT232R USB UART (usb 0403:6001)`.
-    fn device(&self) -> String {
+    pub fn device(&self) -> String {
         let names: Vec<&str> = [&self.maker, &self.product].into_iter().flatten().map(String::as_str).collect();
         let kind = self.usb_id.as_ref().map_or_else(|| self.kind.to_owned(), |id| format!("{} {id}", self.kind));
         if names.is_empty() { kind } else { format!("{} ({kind})", names.join(" ")) }

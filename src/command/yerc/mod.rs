@@ -2,6 +2,7 @@
 
 mod alarm;
 mod axes;
+mod check;
 mod file;
 mod hours;
 mod info;
@@ -24,6 +25,7 @@ mod trace;
 mod var;
 mod writes;
 
+pub use check::check;
 pub use link::Yerc as Family;
 pub use overview::overview;
 

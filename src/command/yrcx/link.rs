@@ -14,6 +14,7 @@ use std::time::Duration;
 use serde_json::{Value as Json, json};
 use tokio::time::Instant;
 
+use super::eip::board::Board;
 use super::io::named;
 use super::reach;
 use super::refusal;
@@ -94,8 +95,8 @@ enum Transport {
     Image(Box<ImageLink>),
     /// A dry run: what would be sent is noted.
     Notes(Vec<Json>),
-    /// Not at all: the command opens by itself what it needs.
-    Nothing,
+    /// Not at all: only the network board is asked.
+    Board(Box<Board>),
 }
 
 /// What a link saw, for `-v`.
@@ -151,8 +152,9 @@ impl Family for Yrcx {
         if access.dry_run {
             return Link::new(robot, &access, screen, Transport::Notes(Vec::new()), None);
         }
-        if access.need == Need::Nothing {
-            return Link::new(robot, &access, screen, Transport::Nothing, None);
+        if access.need == Need::Messages {
+            let (board, recorder) = way.board(robot, &access, screen).await?;
+            return Link::new(robot, &access, screen, Transport::Board(Box::new(board)), recorder);
         }
         let (image, recorder) = way.open(robot, &access, screen).await?;
         let mut link = Link::new(robot, &access, screen, Transport::Image(Box::new(image)), recorder)?;
@@ -210,15 +212,21 @@ impl Family for Yrcx {
     fn rehearsed(link: &mut Link) -> Vec<Json> {
         match &mut link.transport {
             Transport::Notes(notes) => std::mem::take(notes),
-            Transport::Image(_) | Transport::Nothing => Vec::new(),
+            Transport::Image(_) | Transport::Board(_) => Vec::new(),
         }
     }
 
     async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
         let left = link.leave().await;
         link.tell_statistics(screen);
-        let Transport::Image(image) = link.transport else { return Ok(()) };
-        let closed = image.close().await;
+        let closed = match link.transport {
+            Transport::Image(image) => image.close().await,
+            Transport::Board(board) => {
+                board.close().await;
+                Ok(())
+            }
+            Transport::Notes(_) => return Ok(()),
+        };
         if let Err(trouble) = closed {
             screen.detail(1, &format!("{}: the connection was not closed properly: {trouble}", link.label));
         }
@@ -259,7 +267,7 @@ impl Link {
         let timeout = robot.timeout.value;
         let is_owner = match &robot.target.value.place {
             Place::Eip(eip) => eip.role == EipRole::Owner && access.need == Need::Command,
-            _ => access.need != Need::Nothing,
+            _ => access.need != Need::Messages,
         };
         let is_simulated = robot.target.value.is_simulated();
         let policy = Policy {
@@ -496,11 +504,16 @@ impl Link {
     }
 
     /// The last check before something leaves.
-    fn admit(&self, name: &str, risk: Risk) -> Result<(), Failure> {
-        if risk > self.granted {
-            return Err(Failure::local(format!("{name} was stopped before it left: it is a {risk:?}"))
-                .hint("this is a fault of armctl: the command passed the gate as less than it is; please report it"));
+    pub fn permit(&self, name: &str, risk: Risk) -> Result<(), Failure> {
+        if risk <= self.granted {
+            return Ok(());
         }
+        Err(Failure::local(format!("{name} was stopped before it left: it is a {risk:?}"))
+            .hint("this is a fault of armctl: the command passed the gate as less than it is; please report it"))
+    }
+
+    fn admit(&self, name: &str, risk: Risk) -> Result<(), Failure> {
+        self.permit(name, risk)?;
         if !self.is_owner && !self.is_dry() {
             return Err(Failure::usage(format!("{name} needs a connection that commands the controller")).hint(
                 "leave role away from the URL; input_only and listen_only see the signals alone: `yrcx io get`",
@@ -513,6 +526,23 @@ impl Link {
     fn tell_of_stop(&self) {
         let screen = self.screen;
         std::thread::spawn(move || screen.note("stopping the robot: stop input SI(06) off"));
+    }
+
+    /// The network board, of a link that is for it alone.
+    pub async fn board(&mut self) -> Result<&mut Board, Failure> {
+        match &mut self.transport {
+            Transport::Board(board) => Ok(board),
+            Transport::Notes(_) => std::future::pending().await,
+            Transport::Image(_) => Err(Failure::local("this link carries images, not messages")),
+        }
+    }
+
+    /// In a dry run, notes a frame and ends it.
+    pub async fn rehearse_frame(&mut self, frame: Json) {
+        if let Transport::Notes(notes) = &mut self.transport {
+            notes.push(frame);
+            std::future::pending::<Infallible>().await;
+        }
     }
 
     fn note(&mut self, order: &Order) {

@@ -15,10 +15,12 @@
 
 mod alarm;
 mod arguments;
+mod check;
 mod clock;
 #[cfg(test)]
 mod coverage;
 mod data;
+pub mod eip;
 mod info;
 mod io;
 pub mod link;
@@ -50,6 +52,7 @@ mod trace;
 mod unit;
 mod var;
 
+pub use check::check;
 pub use link::Yrcx as Family;
 pub use overview::overview;
 pub use raw::words;
@@ -149,5 +152,7 @@ commands! {
         StatusReset(status_reset::StatusReset),
         /// Send the words of any remote command, and explain the answer
         Raw(raw::Raw),
+        /// The network board itself: who it is, which assemblies it has (diagnosis)
+        Eip(Verbs<eip::Eip>),
     }
 }

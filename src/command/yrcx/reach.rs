@@ -3,6 +3,7 @@
 use std::net::SocketAddrV4;
 use std::time::Duration;
 
+use super::eip::board::Board;
 use super::simulated;
 use super::trace::Recorder;
 use crate::command::{Access, Need};
@@ -58,6 +59,28 @@ impl Way<'_> {
                 // Why it did not open is worth more than what became of the record of it.
                 let _ = recorder.map_or(Ok(()), Recorder::finish);
                 Err(failure)
+            }
+        }
+    }
+
+    /// The network board, for messages alone.
+    pub async fn board(
+        &self,
+        robot: &Robot,
+        access: &Access,
+        screen: &Screen,
+    ) -> Result<(Board, Option<Recorder>), Failure> {
+        match self {
+            Self::Eip(eip) => {
+                let (recorder, tap) = Recorder::start(access, screen)?.unzip();
+                let client = client(robot, eip, tap.unwrap_or_default()).await?;
+                Ok((Board::new(client, (*eip).clone(), robot.label(), None), recorder))
+            }
+            Self::Sim(sim) => {
+                let server = simulated::on_loopback(sim)?;
+                let eip = at(server.address())?;
+                let client = client(robot, &eip, Tap::default()).await?;
+                Ok((Board::new(client, eip, robot.label(), Some(server)), None))
             }
         }
     }
@@ -128,7 +151,7 @@ async fn see(robot: &Robot, eip: &target::Eip, tap: Tap) -> Result<ImageLink, Fa
 }
 
 /// A session for messages with the board.
-pub async fn client(robot: &Robot, eip: &target::Eip, tap: Tap) -> Result<Client, Failure> {
+async fn client(robot: &Robot, eip: &target::Eip, tap: Tap) -> Result<Client, Failure> {
     let target = image::resolve(&eip.host, eip.port).await;
     let target = target.map_err(|error| not_open(&robot.label(), eip, &error))?;
     Ok(Client::new(target, robot.timeout.value, tap))
@@ -213,7 +236,7 @@ pub fn not_open(label: &str, eip: &target::Eip, error: &OpenError) -> Failure {
 }
 
 /// A sentence as hints are written: small, without a full stop.
-fn as_hint(sentence: &str) -> String {
+pub fn as_hint(sentence: &str) -> String {
     let mut chars = sentence.trim_end_matches('.').chars();
     chars.next().map(|first| first.to_lowercase().chain(chars).collect()).unwrap_or_default()
 }

@@ -26,13 +26,18 @@ pub struct Found {
     pub identity: Identity,
 }
 
-/// Asks devices, or whole networks by their broadcast addresses, and gathers answers until `wait` is over, or until
+/// From an address of this machine (0.0.0.0 for any), asks devices, or whole networks by their broadcast addresses, and gathers answers until `wait` is over, or until
 /// every single device has answered. Devices answer a broadcast within half a second; over 2 s is a good wait.
 ///
 /// # Errors
 /// When no socket can be opened, or nothing can be sent to any target.
-pub async fn list_identity(targets: &[SocketAddrV4], wait: Duration, tap: &Tap) -> io::Result<Vec<Found>> {
-    let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).await?;
+pub async fn list_identity(
+    own: Ipv4Addr,
+    targets: &[SocketAddrV4],
+    wait: Duration,
+    tap: &Tap,
+) -> io::Result<Vec<Found>> {
+    let socket = UdpSocket::bind((own, 0)).await?;
     socket.set_broadcast(true)?;
     let SocketAddr::V4(here) = socket.local_addr()? else { return Err(io::ErrorKind::Unsupported.into()) };
     let spread = u16::try_from(SPREAD.as_millis()).unwrap_or(u16::MAX).to_le_bytes();

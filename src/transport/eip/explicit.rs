@@ -42,12 +42,16 @@ impl Message {
     /// # Errors
     /// If it takes more than a message can hold.
     pub fn emit(&self) -> Result<Vec<u8>, Trouble> {
-        let Self { service, path, data } = self;
-        if data.len() > MOST_DATA || path.emit().len() > MOST_PATH {
+        if self.data.len() > MOST_DATA || self.path.emit().len() > MOST_PATH {
             let text = format!("a message has {MOST_DATA} bytes of data and {MOST_PATH} of path at most");
             return Err(Trouble::Impossible(text));
         }
-        Ok(RrData::new(&Request { service: *service, path: path.clone(), data }.emit()).emit())
+        Ok(RrData::new(&self.request()).emit())
+    }
+
+    /// The message itself: service, path, data.
+    pub fn request(&self) -> Vec<u8> {
+        Request { service: self.service, path: self.path.clone(), data: &self.data }.emit()
     }
 }
 

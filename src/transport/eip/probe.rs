@@ -20,7 +20,7 @@ const SIZE: u32 = 4;
 /// Instances that are looked at: those of devices with 8-bit numbers.
 pub const INSTANCES: std::ops::RangeInclusive<u32> = 1..=255;
 /// Configurations that are tried, `None` for none at all.
-const CONFIGURATIONS: [Option<u32>; 4] = [Some(1), Some(151), Some(199), None];
+const CONFIGURATIONS: [Option<u32>; 5] = [Some(1), Some(5), Some(151), Some(199), None];
 /// Refusals.
 const NO_SUCH_OBJECT: [u8; 2] = [0x05, 0x16];
 const SIZES: u16 = 0x0109;
@@ -122,6 +122,20 @@ pub async fn probe(client: &mut Client, thought: Instances) -> Result<Findings, 
         }
     }
     Ok(Findings { identity, assemblies, attempts, connectable: None })
+}
+
+/// Looks only whether a connection of these instances would be opened, and with which sizes.
+///
+/// # Errors
+/// Likewise.
+pub async fn rehearse(client: &mut Client, instances: Instances) -> Result<Findings, Trouble> {
+    let mut assemblies = Vec::new();
+    for instance in [instances.output, instances.input] {
+        assemblies.extend(assembly(client, instance).await?);
+    }
+    let mut attempts = Vec::new();
+    let connectable = attempt(client, instances, &assemblies, &mut attempts).await?;
+    Ok(Findings { identity: None, assemblies, attempts, connectable })
 }
 
 /// An assembly, if there is one of that number.
@@ -371,8 +385,8 @@ mod tests {
         let all = likely(thought, &found);
         assert_eq!(all[0], thought);
         assert_eq!(all[1].configuration, Some(1));
-        assert_eq!(all[5], Instances { output: 100, input: 150, ..thought });
-        assert_eq!(all.len(), 4 * 5);
+        assert_eq!(all[6], Instances { output: 100, input: 150, ..thought });
+        assert_eq!(all.len(), 4 * 6);
         assert!(all.contains(&Instances { output: 30, input: 20, configuration: None }));
         assert_eq!(thought.to_string(), "out 150, in 100, config 7");
     }

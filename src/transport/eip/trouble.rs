@@ -97,11 +97,11 @@ pub enum Trouble {
 
 impl Trouble {
     pub(super) fn unreachable(error: &io::Error) -> Self {
-        Self::Unreachable { kind: error.kind(), text: error.to_string() }
+        Self::Unreachable { kind: error.kind(), text: plain(error) }
     }
 
     pub(super) fn local(what: &'static str, error: &io::Error) -> Self {
-        Self::Local { what, kind: error.kind(), text: error.to_string() }
+        Self::Local { what, kind: error.kind(), text: plain(error) }
     }
 
     /// What the code in it means, and what to do about it.
@@ -112,4 +112,10 @@ impl Trouble {
             _ => None,
         }
     }
+}
+
+/// An error of the system without its number, which tells a technician nothing.
+fn plain(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or_default().to_lowercase()
 }

@@ -1,0 +1,71 @@
+//! The layers of a controller for `armctl robots check`.
+
+use super::Family;
+use super::info;
+use super::link::Link;
+use crate::command::checks::{Layer, Layers};
+use crate::command::{Access, Family as _};
+use crate::controller::toyo::errors;
+use crate::controller::toyo::status::RunMode;
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::settings::Robot;
+
+const LAYERS: &[&str] =
+    &["line", "answer", "version", "teach pendant", "mode", "slaves", "power cycle", "error", "servo", "origin"];
+
+/// Looks at them; reads only.
+pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
+    let mut layers = Layers::new(robot.label(), LAYERS);
+    match Family::connect(robot, access, screen).await {
+        Err(failure) => layers.fail("line", &failure),
+        Ok(mut link) => {
+            layers.ok("line", format!("{} is open", robot.target.value));
+            look(&mut link, &mut layers).await;
+            Family::close(link, screen).await?;
+        }
+    }
+    Ok(layers.finish())
+}
+
+async fn look(link: &mut Link, layers: &mut Layers) {
+    let status = match link.status().await {
+        Ok(status) => status,
+        Err(failure) => return layers.fail("answer", &failure),
+    };
+    layers.ok("answer", "it answers all pages of the status");
+    match info::version(link).await {
+        Ok(version) => layers.ok("version", version),
+        Err(failure) => layers.warn("version", failure.message, "`toyo info` tells more"),
+    }
+    layers.judge(
+        "teach pendant",
+        !status.pendant_on(),
+        ("off", "on"),
+        "nothing is taken that needs the host: switch the teach pendant OFF",
+    );
+    let mode = status.run_mode().map_or("unknown", RunMode::name);
+    layers.ok("mode", mode);
+    if status.slave_not_ready() {
+        layers.wrong("slaves", "a slave does not answer", "check power and cables of the slave stations");
+    } else {
+        layers.ok("slaves", "ready");
+    }
+    if status.needs_power_cycle() {
+        layers.wrong(
+            "power cycle",
+            "parameter 2 was changed, and nothing is executed any more",
+            "switch the controller's power off and on",
+        );
+    } else {
+        layers.ok("power cycle", "not due");
+    }
+    if status.has_error() || status.error != errors::NONE {
+        let error = errors::explain(status.error);
+        layers.wrong("error", format!("{:02X}, {}: {}", error.code, error.name, error.cause), error.remedy);
+    } else {
+        layers.ok("error", "none");
+    }
+    layers.judge("servo", status.servo_on(), ("on", "off"), "motion wants servo power: `toyo servo on`");
+    layers.judge("origin", status.homed(), ("done", "not done"), "motion wants the origin: `toyo home`");
+}

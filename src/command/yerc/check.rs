@@ -1,0 +1,74 @@
+//! The layers of a controller for `armctl robots check`.
+
+use super::Family;
+use super::link::Link;
+use crate::command::checks::{Layer, Layers};
+use crate::command::{Access, Family as _};
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::StatusBit;
+use crate::controller::yerc::query::{ReadStatus, ReadSystemInfo, SystemPart};
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::settings::Robot;
+
+const LAYERS: &[&str] = &["name", "answer", "software", "mode", "command remote", "hold", "alarm", "servo"];
+
+/// Looks at them; reads only.
+pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
+    let mut layers = Layers::new(robot.label(), LAYERS);
+    match Family::connect(robot, access, screen).await {
+        Err(failure) => layers.fail("name", &failure),
+        Ok(mut link) => {
+            layers.ok("name", robot.target.value.to_string());
+            look(&mut link, &mut layers).await;
+            Family::close(link, screen).await?;
+        }
+    }
+    Ok(layers.finish())
+}
+
+async fn look(link: &mut Link, layers: &mut Layers) {
+    let status = match link.ask(&ReadStatus).await {
+        Ok(status) => status,
+        Err(failure) => return layers.fail("answer", &failure),
+    };
+    layers.ok("answer", "it answers a status request");
+    match software(link).await {
+        Ok(version) => layers.ok("software", version),
+        Err(failure) => layers.warn("software", failure.message, "check model in the URL: fs100 or dx200"),
+    }
+    let is_teach = status.has(StatusBit::Teach);
+    layers.judge(
+        "mode",
+        !is_teach,
+        ("play", "teach"),
+        "motion and job start want play mode: turn the mode key of the pendant",
+    );
+    layers.judge(
+        "command remote",
+        status.has(StatusBit::CommandRemote),
+        ("on", "off"),
+        "what changes something is refused: turn the mode key to REMOTE, and CMD REMOTE (#82015) on",
+    );
+    layers.judge(
+        "hold",
+        !status.held(),
+        ("none", "the robot is held"),
+        "`yerc status` tells by what; `yerc hold off` releases a hold by command",
+    );
+    if status.alarm() || status.error() {
+        let what = if status.alarm() { "an alarm is present" } else { "an error is present" };
+        layers.wrong("alarm", what, "`yerc alarm list` names it, `yerc alarm reset` resets it");
+    } else {
+        layers.ok("alarm", "none");
+    }
+    layers.judge("servo", status.servo_on(), ("on", "off"), "motion wants servo power: `yerc servo on`");
+}
+
+async fn software(link: &mut Link) -> Result<String, Failure> {
+    let question = ReadSystemInfo::new(link.model, SystemPart::Group(Group::R1)).map_err(super::orders::usage)?;
+    let encoding = link.encoding;
+    let info = link.ask(&question).await?;
+    let (version, name) = (encoding.decode(info.version.as_bytes()), encoding.decode(info.name.as_bytes()));
+    Ok(format!("{version}, {name}"))
+}

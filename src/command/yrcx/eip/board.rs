@@ -1,0 +1,432 @@
+//! The network board of a controller, as it answers messages. There is no connection for images.
+
+use std::net::SocketAddrV4;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::yrcx::reach::{as_hint, not_open};
+use crate::command::yrcx::simulated::Controller;
+use crate::controller::text;
+use crate::controller::yrcx::image::Image;
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Tone};
+use crate::settings::target::{self, EipRole};
+use crate::transport::eip::ASSEMBLY;
+use crate::transport::eip::adapter::server::Server;
+use crate::transport::eip::client::Client;
+use crate::transport::eip::explicit::{Answer, Message};
+use crate::transport::eip::probe::{self, Findings, Instances};
+use crate::transport::eip::status;
+use crate::transport::eip::trouble::Trouble;
+use crate::transport::eip::wire;
+use crate::transport::image::OpenError;
+
+/// The attribute of an assembly that is its image.
+const IMAGE: u32 = 3;
+
+/// A session for messages with a board.
+#[derive(Debug)]
+pub struct Board {
+    client: Client,
+    eip: target::Eip,
+    label: String,
+    /// Where the board is simulated in this process.
+    _simulated: Option<Server<Controller>>,
+}
+
+impl Board {
+    /// A board that is talked to when something is asked.
+    pub fn new(client: Client, eip: target::Eip, label: String, simulated: Option<Server<Controller>>) -> Self {
+        Self { client, eip, label, _simulated: simulated }
+    }
+
+    /// What its URL says.
+    pub fn settings(&self) -> &target::Eip {
+        &self.eip
+    }
+
+    /// Where it is.
+    pub fn address(&self) -> SocketAddrV4 {
+        self.client.target()
+    }
+
+    /// Who it is; `None` if it does not say.
+    pub async fn identity(&mut self) -> Result<Option<Identity>, Failure> {
+        match self.client.identity().await {
+            Ok(identity) => Ok(identity.map(Identity::from)),
+            Err(Trouble::Encapsulation { .. }) => Ok(None),
+            Err(trouble) => Err(self.failure(trouble)),
+        }
+    }
+
+    /// What it says that it can do; `None` if it does not say.
+    pub async fn services(&mut self) -> Result<Option<Vec<&'static str>>, Failure> {
+        match self.client.services().await {
+            Ok(services) => Ok(services.map(|services| {
+                let known = [(5, "messages over TCP"), (8, "images over UDP")];
+                known.iter().filter(|(bit, _)| services.flags >> bit & 1 == 1).map(|(_, what)| *what).collect()
+            })),
+            Err(Trouble::Encapsulation { .. }) => Ok(None),
+            Err(trouble) => Err(self.failure(trouble)),
+        }
+    }
+
+    /// Reads an attribute, or all of an instance.
+    pub async fn get(&mut self, object: Object) -> Result<Vec<u8>, Failure> {
+        let answer = self.client.ask(object.reading(), &object.get()).await;
+        let answer = answer.map_err(|trouble| self.failure(trouble))?;
+        if answer.status.is_ok() { Ok(answer.data) } else { Err(self.refused(object.reading(), object, &answer)) }
+    }
+
+    /// Changes an attribute, once. If the answer is lost, nobody knows what became of it.
+    pub async fn set(&mut self, object: Object, value: &[u8]) -> Result<(), Failure> {
+        // Whether anybody is there is found out with something harmless.
+        self.services().await?;
+        let answer = match self.client.ask(SETTING, &object.set(value)).await {
+            Ok(answer) => answer,
+            Err(trouble @ (Trouble::Unreachable { .. } | Trouble::Impossible(_) | Trouble::Encapsulation { .. })) => {
+                return Err(self.failure(trouble));
+            }
+            Err(trouble) => {
+                let message = format!("{}: sent once, and whether it was done is unknown: {trouble}", self.label);
+                return Err(Failure::new(Kind::OutcomeUnknown, message)
+                    .hint(format!("`yrcx eip get {}` tells", object.arguments())));
+            }
+        };
+        if answer.status.is_ok() { Ok(()) } else { Err(self.refused(SETTING, object, &answer)) }
+    }
+
+    /// What the controller shows.
+    pub async fn image(&mut self) -> Result<Image, Failure> {
+        let object = Object { class: ASSEMBLY, instance: self.eip.input, attribute: Some(IMAGE) };
+        let bytes = self.get(object).await?;
+        let image = bytes.get(..Image::BYTES).and_then(Image::from_bytes);
+        image.ok_or_else(|| {
+            let message = format!("assembly {} has {} bytes, fewer than an image", self.eip.input, bytes.len());
+            Failure::new(Kind::Malformed, message).hint("check in of the URL: `yrcx eip probe` finds the assemblies")
+        })
+    }
+
+    /// Finds assemblies, their sizes, and what makes a connection.
+    pub async fn probe(&mut self) -> Result<Probed, Failure> {
+        let thought = self.thought();
+        let found = probe::probe(&mut self.client, thought).await.map_err(|trouble| self.failure(trouble))?;
+        Ok(Probed::of(&found, &self.eip))
+    }
+
+    /// Whether a connection as the URL says could be opened, without opening one.
+    pub async fn rehearse(&mut self) -> Result<Probed, Failure> {
+        let thought = self.thought();
+        let found = probe::rehearse(&mut self.client, thought).await.map_err(|trouble| self.failure(trouble))?;
+        Ok(Probed::of(&found, &self.eip))
+    }
+
+    /// Takes leave of it.
+    pub async fn close(self) {
+        self.client.close().await;
+    }
+
+    /// The instances of the URL, which are those of an owner only if it says nothing else.
+    fn thought(&self) -> Instances {
+        let usual = if self.eip.role == EipRole::Owner { self.eip.output } else { 150 };
+        Instances { output: usual, input: self.eip.input, configuration: self.eip.configuration }
+    }
+
+    fn failure(&self, trouble: Trouble) -> Failure {
+        not_open(&self.label, &self.eip, &OpenError::Trouble(trouble))
+    }
+
+    fn refused(&self, what: &str, object: Object, answer: &Answer) -> Failure {
+        let text = status::describe(&answer.status);
+        let failure = Failure::new(Kind::Refused, format!("{}: {what} of {object} was refused: {text}", self.label))
+            .code(format!("{:#04x}", answer.status.general));
+        match status::meaning(&answer.status) {
+            Some(code) => failure.hint(as_hint(code.remedy)),
+            None => failure.hint("the manual of the board may know this status"),
+        }
+    }
+}
+
+const SETTING: &str = "Set_Attribute_Single";
+
+/// An object of a board, or one of its attributes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Object {
+    /// Its class.
+    pub class: u32,
+    /// Which one; 0 is the class itself.
+    pub instance: u32,
+    /// The attribute; all of them if none.
+    pub attribute: Option<u32>,
+}
+
+impl Object {
+    /// The bytes of the message that reads it.
+    pub fn get_bytes(self) -> Vec<u8> {
+        self.get().request()
+    }
+
+    /// The bytes of the message that sets it.
+    pub fn set_bytes(self, value: &[u8]) -> Vec<u8> {
+        self.set(value).request()
+    }
+
+    /// The service that reads it.
+    pub fn reading(self) -> &'static str {
+        if self.attribute.is_some() { "Get_Attribute_Single" } else { "Get_Attributes_All" }
+    }
+
+    /// Whether it is what the controller is shown, or may be.
+    pub fn is_assembly(self) -> bool {
+        self.class == ASSEMBLY
+    }
+
+    fn get(self) -> Message {
+        match self.attribute {
+            Some(attribute) => Message::get(self.class, self.instance, attribute),
+            None => Message::get_all(self.class, self.instance),
+        }
+    }
+
+    fn set(self, value: &[u8]) -> Message {
+        Message::set(self.class, self.instance, self.attribute.unwrap_or_default(), value)
+    }
+
+    fn arguments(self) -> String {
+        let attribute = self.attribute.map(|attribute| format!(" {attribute}")).unwrap_or_default();
+        format!("{:#x} {}{attribute}", self.class, self.instance)
+    }
+}
+
+impl std::fmt::Display for Object {
+    /// "class 0x04 (assembly), instance 100, attribute 3".
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "class {:#04x}", self.class)?;
+        if let Some((_, name)) = CLASSES.iter().find(|(class, _)| *class == self.class) {
+            write!(f, " ({name})")?;
+        }
+        write!(f, ", instance {}", self.instance)?;
+        self.attribute.map_or(Ok(()), |attribute| write!(f, ", attribute {attribute}"))
+    }
+}
+
+/// Classes that boards have (volume 1, chapter 5; volume 2, chapter 5).
+const CLASSES: [(u32, &str); 7] = [
+    (0x01, "identity"),
+    (0x02, "message router"),
+    (0x04, "assembly"),
+    (0x06, "connection manager"),
+    (0xF4, "port"),
+    (0xF5, "TCP/IP interface"),
+    (0xF6, "Ethernet link"),
+];
+
+/// Vendor number of the maker of YRCX.
+pub const MAKER: u16 = 636;
+
+/// Who a board is. Its name is untrusted.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Identity {
+    /// Number of the maker; 636 has the YRCX.
+    pub vendor: u16,
+    /// Number of the kind of device; 43 is a generic one.
+    pub device_type: u16,
+    /// Number of the product.
+    pub product: u16,
+    /// Major and minor.
+    pub revision: String,
+    /// As in `0x0001E240`.
+    pub serial: String,
+    /// As the board tells it.
+    pub name: String,
+    /// Status word, as in `0x0030`.
+    pub status: String,
+    /// What the status says.
+    pub status_text: Vec<&'static str>,
+    /// A master owns the outputs.
+    pub owned: bool,
+    /// `operational`, `standby` and the like; null where the board does not tell.
+    pub state: Option<&'static str>,
+}
+
+impl From<wire::Identity> for Identity {
+    fn from(found: wire::Identity) -> Self {
+        let known = STATUS.iter().filter(|(mask, value, _)| found.status & mask == *value);
+        Self {
+            vendor: found.vendor,
+            device_type: found.device_type,
+            product: found.product,
+            revision: found.revision.to_string(),
+            serial: format!("{:#010x}", found.serial),
+            name: found.name,
+            status: format!("{:#06x}", found.status),
+            status_text: known.map(|(_, _, text)| *text).collect(),
+            owned: found.status & 1 == 1,
+            state: found.state.map(|state| STATES.get(usize::from(state)).copied().unwrap_or("unknown")),
+        }
+    }
+}
+
+/// Bits of the status word: mask, value, what it says (volume 1, 5-2.2.1.5).
+const STATUS: [(u16, u16, &str); 14] = [
+    (0x0001, 0x0001, "owned by a master"),
+    (0x0004, 0x0004, "configured"),
+    (0x00F0, 0x0010, "firmware update"),
+    (0x00F0, 0x0020, "a connection is faulted"),
+    (0x00F0, 0x0030, "no connection for images"),
+    (0x00F0, 0x0040, "bad configuration in memory"),
+    (0x00F0, 0x0050, "major fault"),
+    (0x00F0, 0x0060, "a connection runs"),
+    (0x00F0, 0x0070, "a connection idles"),
+    (0x0100, 0x0100, "minor fault that can be reset"),
+    (0x0200, 0x0200, "minor fault that cannot be reset"),
+    (0x0400, 0x0400, "major fault that can be reset"),
+    (0x0800, 0x0800, "major fault that cannot be reset"),
+    (0x000E, 0x0002, "reserved bit 1"),
+];
+
+/// States of a device (volume 2, 2-4.2.2).
+const STATES: [&str; 6] =
+    ["nonexistent", "self test", "standby", "operational", "major recoverable fault", "major unrecoverable fault"];
+
+impl Identity {
+    /// Names and values.
+    pub fn fields(&self) -> Vec<(&'static str, Cell)> {
+        let status = format!("{}: {}", self.status, self.status_text.join(", "));
+        vec![
+            ("name", self.name.as_str().into()),
+            ("vendor", self.vendor.to_string().into()),
+            ("device type", self.device_type.to_string().into()),
+            ("product", self.product.to_string().into()),
+            ("revision", self.revision.as_str().into()),
+            ("serial number", self.serial.as_str().into()),
+            ("status", status.trim_end_matches(": ").into()),
+            ("state", Cell::maybe(self.state)),
+        ]
+    }
+}
+
+/// What was found about connections.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Probed {
+    /// Assemblies that can be read.
+    pub assemblies: Vec<Assembly>,
+    /// Connections that were asked for with sizes that none has, so that none is opened.
+    pub attempts: Vec<Attempt>,
+    /// What a connection would be made of; null if nothing fits.
+    pub connectable: Option<Connectable>,
+}
+
+/// An assembly.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Assembly {
+    /// Its number.
+    pub instance: u32,
+    /// Null where the board does not tell.
+    pub bytes: Option<u16>,
+}
+
+/// A connection that was asked for.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Attempt {
+    /// Assembly from the controller.
+    #[serde(rename = "in")]
+    pub input: u32,
+    /// Assembly to the controller.
+    #[serde(rename = "out")]
+    pub output: u32,
+    /// Assembly of the configuration; null for none.
+    pub config: Option<u32>,
+    /// Bytes from the controller that were asked for.
+    pub in_size: u16,
+    /// Bytes to it, likewise.
+    pub out_size: u16,
+    /// As in `0x01/0x0109`.
+    pub code: String,
+    /// In words.
+    pub answer: String,
+    /// What to do about it.
+    pub advice: Option<&'static str>,
+}
+
+/// What a connection is made of.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Connectable {
+    /// Assembly from the controller.
+    #[serde(rename = "in")]
+    pub input: u32,
+    /// Assembly to the controller.
+    #[serde(rename = "out")]
+    pub output: u32,
+    /// Assembly of the configuration; null for none.
+    pub config: Option<u32>,
+    /// Bytes from the controller; null where the board does not tell.
+    pub in_size: Option<u16>,
+    /// Bytes to the controller, likewise.
+    pub out_size: Option<u16>,
+    /// Another master owns it now.
+    pub owned: bool,
+    /// The URL that says so.
+    pub target: String,
+}
+
+/// Extended status: somebody owns the outputs.
+const OWNED: u16 = 0x0106;
+
+impl Probed {
+    fn of(found: &Findings, eip: &target::Eip) -> Self {
+        let attempts: Vec<Attempt> = found
+            .attempts
+            .iter()
+            .map(|attempt| Attempt {
+                input: attempt.instances.input,
+                output: attempt.instances.output,
+                config: attempt.instances.configuration,
+                out_size: attempt.sizes.0,
+                in_size: attempt.sizes.1,
+                code: match attempt.status.extended.first() {
+                    Some(extended) => format!("{:#04x}/{extended:#06x}", attempt.status.general),
+                    None => format!("{:#04x}", attempt.status.general),
+                },
+                answer: status::describe(&attempt.status),
+                advice: status::meaning(&attempt.status).map(|code| code.remedy),
+            })
+            .collect();
+        let connectable = found.connectable.map(|connectable| {
+            let Instances { output, input, configuration } = connectable.instances;
+            let config = configuration.map_or_else(|| "none".to_owned(), |instance| instance.to_string());
+            let mut target = format!("eip://{}:{}?in={input}&out={output}&config={config}", eip.host, eip.port);
+            // The usual sizes need not be said.
+            for (name, size) in [("in_size", connectable.input_size), ("out_size", connectable.output_size)] {
+                if let Some(size) = size.filter(|size| usize::from(*size) != Image::BYTES) {
+                    target.push_str(&format!("&{name}={size}"));
+                }
+            }
+            let last = found.attempts.last();
+            Connectable {
+                input,
+                output,
+                config: configuration,
+                in_size: connectable.input_size,
+                out_size: connectable.output_size,
+                owned: last.is_some_and(|last| last.status.extended.first() == Some(&OWNED)),
+                target,
+            }
+        });
+        let assemblies = found.assemblies.iter();
+        let assemblies = assemblies.map(|found| Assembly { instance: found.instance, bytes: found.size }).collect();
+        Self { assemblies, attempts, connectable }
+    }
+}
+
+/// Bytes in pairs of hexadecimal digits, as they are shown.
+pub fn shown(bytes: &[u8]) -> String {
+    let digits: Vec<String> = bytes.iter().map(|byte| text::hex(&[*byte])).collect();
+    digits.join(" ")
+}
+
+/// How a switch that is on for the worse is shown.
+pub fn warned(text: &str) -> Cell {
+    Cell::from(text).tone(Tone::Warning)
+}

@@ -1,0 +1,56 @@
+//! `yrcx eip identity`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::board;
+use crate::command::{Command, Context, Need, Report};
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Section, View};
+
+/// Asks the board who it is and what it can do (ListIdentity, ListServices).
+#[derive(Debug, Args)]
+pub struct Identify {}
+
+impl Command for Identify {
+    type Family = Family;
+    type Report = Identified;
+    const ID: &'static str = "yrcx.eip.identity";
+
+    fn need(&self) -> Need {
+        Need::Messages
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Identified, Failure> {
+        let board = context.link.board().await?;
+        let address = board.address().to_string();
+        let Some(identity) = board.identity().await? else {
+            return Err(Failure::new(Kind::Malformed, format!("{}: it does not say who it is", context.robot.label()))
+                .hint("check that the address is that of an EtherNet/IP board"));
+        };
+        Ok(Identified { address, identity, services: board.services().await? })
+    }
+}
+
+/// Who answers.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Identified {
+    /// Where it answered, with the TCP port.
+    address: String,
+    #[serde(flatten)]
+    identity: board::Identity,
+    /// What it says that it can do; null where it does not say.
+    services: Option<Vec<&'static str>>,
+}
+
+impl Report for Identified {
+    fn view(&self) -> View {
+        let services = self.services.as_ref().map_or_else(|| "-".to_owned(), |services| services.join(", "));
+        let mut fields = vec![("address", self.address.as_str().into())];
+        fields.extend(self.identity.fields());
+        fields.push(("services", services.into()));
+        View::default().and(Section::Fields(fields))
+    }
+}

@@ -1,0 +1,227 @@
+//! `yrcx eip get` and `yrcx eip set`: explicit messages, as they are.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::json;
+
+use super::Family;
+use super::board::{Object, shown};
+use crate::command::orders::Done;
+use crate::command::{Command, Context, Need, Report};
+use crate::controller::Risk;
+use crate::controller::text;
+use crate::failure::Failure;
+use crate::output::view::{Cell, Section, View};
+
+/// Reads an attribute of an object, or all of them (Get_Attribute_Single, Get_Attributes_All).
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Class 1 is the identity, 4 the assemblies (attribute 3 the data, 4 the size), 0xF5 the TCP/IP \
+                        interface, 0xF6 the Ethernet link. Instance 0 is the class itself. Which there are depends on the \
+                        board; no manual of the controller lists them."
+)]
+pub struct Get {
+    /// Number of the class, as in 4 or 0xF5
+    #[arg(value_parser = number)]
+    class: u32,
+    /// Number of the instance
+    #[arg(value_parser = number)]
+    instance: u32,
+    /// Number of the attribute; all attributes unless given
+    #[arg(value_parser = number)]
+    attribute: Option<u32>,
+}
+
+impl Command for Get {
+    type Family = Family;
+    type Report = Value;
+    const ID: &'static str = "yrcx.eip.get";
+
+    fn need(&self) -> Need {
+        Need::Messages
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Value, Failure> {
+        let object = Object { class: self.class, instance: self.instance, attribute: self.attribute };
+        let about = format!("{} of {object}", object.reading());
+        let frame = json!({ "hex": text::hex(&object.get_bytes()), "about": about });
+        context.link.rehearse_frame(frame).await;
+        let bytes = context.link.board().await?.get(object).await?;
+        Ok(Value::of(object, &bytes))
+    }
+}
+
+/// Changes an attribute of an object (Set_Attribute_Single).
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The bytes go out as they are: low byte first, and of a text its length before it. What the output \
+                        assembly is set to is what the controller is shown, and can move the robot; that asks first."
+)]
+pub struct Set {
+    /// Number of the class, as in 4 or 0xF5
+    #[arg(value_parser = number)]
+    class: u32,
+    /// Number of the instance
+    #[arg(value_parser = number)]
+    instance: u32,
+    /// Number of the attribute
+    #[arg(value_parser = number)]
+    attribute: u32,
+    /// Its bytes in hexadecimal, as in 0A00
+    #[arg(value_name = "HEX", value_parser = bytes)]
+    data: Bytes,
+}
+
+impl Set {
+    fn object(&self) -> Object {
+        Object { class: self.class, instance: self.instance, attribute: Some(self.attribute) }
+    }
+}
+
+impl Command for Set {
+    type Family = Family;
+    type Report = Done;
+    const ID: &'static str = "yrcx.eip.set";
+
+    fn risk(&self) -> Risk {
+        if self.object().is_assembly() { Risk::Motion } else { Risk::Write }
+    }
+
+    fn intent(&self) -> String {
+        format!("set {} to {}", self.object(), shown(&self.data.0))
+    }
+
+    fn need(&self) -> Need {
+        Need::Messages
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+        let object = self.object();
+        let frame = json!({
+            "hex": text::hex(&object.set_bytes(&self.data.0)),
+            "about": format!("Set_Attribute_Single of {object}"),
+        });
+        context.link.rehearse_frame(frame).await;
+        context.link.permit("yrcx.eip.set", self.risk())?;
+        context.link.board().await?.set(object, &self.data.0).await?;
+        Ok(Done::new(format!("set {object} to {}", shown(&self.data.0))))
+    }
+}
+
+/// Bytes as typed.
+#[derive(Debug, Clone)]
+struct Bytes(Vec<u8>);
+
+fn bytes(text: &str) -> Result<Bytes, String> {
+    let digits: String = text.trim_start_matches("0x").split([' ', '_', ':']).collect();
+    match text::unhex(&digits) {
+        Some(bytes) if !bytes.is_empty() => Ok(Bytes(bytes)),
+        _ => Err(format!("'{text}' is no row of bytes such as 0A00")),
+    }
+}
+
+/// A number of an object: 16 bits, decimal or hexadecimal with 0x.
+fn number(text: &str) -> Result<u32, String> {
+    let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(digits) if digits.bytes().all(|byte| byte.is_ascii_hexdigit()) => u16::from_str_radix(digits, 16).ok(),
+        Some(_) => None,
+        None if text.bytes().all(|byte| byte.is_ascii_digit()) => text.parse().ok(),
+        None => None,
+    };
+    number.map(u32::from).ok_or_else(|| format!("'{text}' is no number from 0 to 65535, as in 4 or 0xF5"))
+}
+
+/// What an attribute holds.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Value {
+    /// `class 0x04 (assembly), instance 100, attribute 3`.
+    object: String,
+    /// The bytes, as they came.
+    hex: String,
+    /// How many there are.
+    bytes: usize,
+    /// As a number without a sign, low byte first; null unless there are 1, 2, 4 or 8 bytes.
+    number: Option<u64>,
+    /// As a text with its length before it; null where it is none. Untrusted.
+    text: Option<String>,
+}
+
+impl Value {
+    fn of(object: Object, bytes: &[u8]) -> Self {
+        let number = matches!(bytes.len(), 1 | 2 | 4 | 8)
+            .then(|| bytes.iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte)));
+        let text = bytes.split_first().filter(|(length, text)| !text.is_empty() && usize::from(**length) == text.len());
+        let text = text.filter(|(_, text)| text.iter().all(|byte| matches!(byte, b' '..=b'~')));
+        Self {
+            object: object.to_string(),
+            hex: text::hex(bytes),
+            bytes: bytes.len(),
+            number,
+            text: text.map(|(_, text)| String::from_utf8_lossy(text).into_owned()),
+        }
+    }
+}
+
+impl Report for Value {
+    fn view(&self) -> View {
+        let bytes = text::unhex(&self.hex).filter(|bytes| !bytes.is_empty());
+        let bytes = Cell::maybe(bytes.map(|bytes| shown(&bytes)));
+        let mut fields = vec![("object", self.object.as_str().into()), ("bytes", bytes)];
+        fields.extend(self.number.map(|number| ("number", format!("{number} ({number:#x})").into())));
+        fields.extend(self.text.as_deref().map(|text| ("text", text.into())));
+        View::default().and(Section::Fields(fields))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::yrcx::testing::{frames, intent, objection, risk};
+
+    #[test]
+    fn messages_have_the_bytes_of_the_specification() {
+        // Volume 1, appendix C-1: service, words of the path, class, instance and attribute in 8 bits where they fit.
+        let hex = |line: &[&str]| frames(line).unwrap()[0]["hex"].as_str().unwrap().to_owned();
+        assert_eq!(hex(&["eip", "get", "4", "100", "3"]), "0e03200424643003");
+        assert_eq!(hex(&["eip", "get", "0xF5", "1"]), "010220f52401");
+        assert_eq!(hex(&["eip", "get", "4", "300", "3"]), "0e04200425002c013003");
+        assert_eq!(hex(&["eip", "set", "0xF5", "1", "3", "02 00"]), "100320f5240130030200");
+    }
+
+    #[test]
+    fn what_the_controller_is_shown_can_move_it() {
+        assert_eq!(risk(&["eip", "set", "4", "150", "3", "00"]), Risk::Motion);
+        assert_eq!(risk(&["eip", "set", "0xF5", "1", "3", "00"]), Risk::Write);
+        assert_eq!(risk(&["eip", "get", "4", "150", "3"]), Risk::Read);
+        let asked = intent(&["eip", "set", "4", "150", "3", "0xFF01"]);
+        assert_eq!(asked, "set class 0x04 (assembly), instance 150, attribute 3 to ff 01");
+    }
+
+    #[test]
+    fn values_are_numbers_and_texts_where_they_can_be() {
+        let object = Object { class: 1, instance: 1, attribute: Some(7) };
+        let value = Value::of(object, b"\x04YRCX");
+        assert_eq!((value.number, value.text.as_deref(), value.hex.as_str()), (None, Some("YRCX"), "0459524358"));
+        let value = Value::of(object, &[0x7C, 0x02]);
+        assert_eq!((value.number, value.text), (Some(636), None));
+        assert_eq!(Value::of(object, b"\x02\x1b[").text, None, "control characters are no text");
+        assert_eq!(Value::of(object, &[]).number, None);
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        for (line, part) in [
+            (&["eip", "get", "4"][..], "INSTANCE"),
+            (&["eip", "get", "x", "1", "1"], "no number from 0 to 65535"),
+            (&["eip", "get", "4", "65536", "1"], "no number from 0 to 65535"),
+            (&["eip", "get", "+4", "1", "1"], "no number"),
+            (&["eip", "set", "4", "1", "3"], "HEX"),
+            (&["eip", "set", "4", "1", "3", "0"], "no row of bytes"),
+            (&["eip", "set", "4", "1", "3", ""], "no row of bytes"),
+        ] {
+            let objection = objection(line);
+            assert!(objection.contains(part), "{line:?}: {objection}");
+        }
+    }
+}

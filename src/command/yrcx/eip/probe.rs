@@ -1,0 +1,80 @@
+//! `yrcx eip probe`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Family;
+use super::board::{self, Probed, warned};
+use crate::command::{Command, Context, Need, Report};
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Section, Table, View};
+
+/// Finds out what the board has: reads every assembly from 1 to 255, then asks for connections with sizes that no assembly
+/// has, beginning with the instances of the URL.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The board refuses those connections and says why, which tells instances and sizes. The target that \
+                        comes out of it is for -t or `armctl robots add`."
+)]
+pub struct Probe {}
+
+impl Command for Probe {
+    type Family = Family;
+    type Report = Found;
+    const ID: &'static str = "yrcx.eip.probe";
+
+    fn need(&self) -> Need {
+        Need::Messages
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Found, Failure> {
+        let board = context.link.board().await?;
+        let identity = board.identity().await?;
+        Ok(Found { identity, probed: board.probe().await? })
+    }
+}
+
+/// What a board has.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Found {
+    /// Null where it does not say.
+    identity: Option<board::Identity>,
+    #[serde(flatten)]
+    probed: Probed,
+}
+
+impl Report for Found {
+    fn view(&self) -> View {
+        let mut view = match &self.identity {
+            Some(identity) => View::default().and(Section::Fields(identity.fields())),
+            None => View::text("the board does not say who it is"),
+        };
+        let mut assemblies = Table::new(&["assembly", "bytes"], "no assembly can be read");
+        for assembly in &self.probed.assemblies {
+            assemblies.row([assembly.instance.into(), Cell::maybe(assembly.bytes)]);
+        }
+        let mut attempts = Table::new(&["in", "out", "config", "answer"], "no connection was asked for");
+        for attempt in &self.probed.attempts {
+            let config = Cell::maybe(attempt.config);
+            attempts.row([attempt.input.into(), attempt.output.into(), config, attempt.answer.as_str().into()]);
+        }
+        view = view.and(Section::Table(assemblies)).and(Section::Table(attempts));
+        let Some(found) = &self.probed.connectable else { return view };
+        let bytes = |size: Option<u16>| Cell::maybe(size.map(|size| format!("{size} bytes")));
+        let owner = if found.owned { warned("another master, at present") } else { "free".into() };
+        view.and(Section::Fields(vec![
+            ("from the controller", bytes(found.in_size)),
+            ("to the controller", bytes(found.out_size)),
+            ("owner", owner),
+            ("target", found.target.as_str().into()),
+        ]))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.probed.connectable.is_none().then(|| {
+            Failure::new(Kind::ConditionNotMet, "no connection fits that board")
+                .hint("its EDS file names the instances; write them into the URL as in, out and config")
+        })
+    }
+}
