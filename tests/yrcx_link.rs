@@ -22,8 +22,12 @@ struct Simulator {
 
 impl Simulator {
     fn start(arguments: &[&str]) -> Self {
+        Self::start_at("127.0.0.1:0", arguments)
+    }
+
+    fn start_at(address: &str, arguments: &[&str]) -> Self {
         let mut command = armctl();
-        command.args(["sim", "yrcx", "--bind", "127.0.0.1:0", "--console", "--jq", ".data.target"]).args(arguments);
+        command.args(["sim", "yrcx", "--bind", address, "--console", "--jq", ".data.target"]).args(arguments);
         let mut process = command.stdin(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut target = String::new();
         BufReader::new(process.stdout.take().unwrap()).read_line(&mut target).unwrap();
@@ -196,6 +200,46 @@ fn packets_are_recorded_with_their_ports() {
     assert!(holds(&port.to_be_bytes()));
     // RegisterSession, and WI0 of the command in an image.
     assert!(holds(&[0x65, 0, 4, 0]) && holds(&[0x03, 0x05, 0, 0, 0, 0]));
+}
+
+#[test]
+fn tshark_reads_what_was_recorded() {
+    // An address of its own, whose usual ports are free: tshark knows the protocol by them.
+    const ADDRESS: &str = "127.44.18.61";
+    let has_tshark = Command::new("tshark").arg("--version").output().is_ok_and(|output| output.status.success());
+    assert!(has_tshark || std::env::var_os("CI").is_none(), "tshark belongs to the set-up of .ci/run");
+    if !has_tshark {
+        return println!("skipped: there is no tshark");
+    }
+    if std::net::UdpSocket::bind((ADDRESS, 2222)).is_err() {
+        return println!("skipped: {ADDRESS} has no free port 2222 here");
+    }
+    let simulator = Simulator::start_at(ADDRESS, &[]);
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let read = |line: &str, filter: &str, fields: &[&str]| {
+        let output = simulator.run(&format!("{line} --trace {}", file.path().display()));
+        assert!(output.status.success(), "{:?}", failed(&output));
+        let shown = |filter: &str, fields: &[&str]| {
+            let mut tshark = Command::new("tshark");
+            tshark.arg("-r").arg(file.path()).args(["-Y", filter, "-T", "fields", "-E", "separator=|"]);
+            let output = tshark.args(fields.iter().flat_map(|field| ["-e", field])).output().unwrap();
+            assert!(output.status.success(), "{}", failed(&output).1);
+            String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect::<Vec<_>>()
+        };
+        assert_eq!(shown("_ws.malformed || _ws.expert.severity == error", &["frame.number"]), [""; 0], "{line}");
+        shown(filter, fields)
+    };
+    let opened = read("yrcx info servo", "cip.cm.sc == 0x54", &["cip.rr", "cip.cm.fwo.consize", "cip.genstat"]);
+    assert_eq!(opened.len(), 2, "{opened:?}");
+    assert!(opened[0].contains("54,50") && opened[1].ends_with("0x00"), "{opened:?}");
+    // Images to the controller have a run/idle header, those from it none.
+    let images = read("yrcx info servo", "cipio", &["udp.length"]);
+    assert!(images.iter().any(|length| length == "80") && images.iter().any(|length| length == "76"), "{images:?}");
+    assert!(images.iter().all(|length| ["80", "76"].contains(&length.as_str())), "{images:?}");
+    // What only looks opens no connection, and what was refused is in the record as well.
+    assert_eq!(read("yrcx io get", "cip.cm.sc == 0x54 || cipio", &["frame.number"]), [""; 0]);
+    assert_eq!(read("yrcx io get", "cip.sc == 0x0e && cip.rr == 1", &["cip.genstat"]).last().unwrap(), "0x00");
+    assert_eq!(read("yrcx eip identity", "enip.lir.vendor", &["enip.lir.vendor"]).last().unwrap(), "0x027c");
 }
 
 fn interrupt(child: &Child) {

@@ -24,6 +24,8 @@ pub enum Link {
     Yrcx(Box<yrcx::link::Link>),
     /// To a Toyo controller.
     Toyo(Box<toyo::link::Link>),
+    /// To nobody: this is why.
+    Absent(Failure),
 }
 
 impl Family for Fleet {
@@ -31,10 +33,15 @@ impl Family for Fleet {
     type Link = Link;
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
-        match robot.family {
-            target::Family::Yerc => Ok(Link::Yerc(Box::new(yerc::Family::connect(robot, access, screen).await?))),
-            target::Family::Toyo => Ok(Link::Toyo(Box::new(toyo::Family::connect(robot, access, screen).await?))),
-            target::Family::Yrcx => Ok(Link::Yrcx(Box::new(yrcx::Family::connect(robot, access, screen).await?))),
+        let connected = match robot.family {
+            target::Family::Yerc => yerc::Family::connect(robot, access, screen).await.map(Box::new).map(Link::Yerc),
+            target::Family::Toyo => toyo::Family::connect(robot, access, screen).await.map(Box::new).map(Link::Toyo),
+            target::Family::Yrcx => yrcx::Family::connect(robot, access, screen).await.map(Box::new).map(Link::Yrcx),
+        };
+        match connected {
+            // A robot that is not there has a line as well.
+            Err(failure) if failure.kind == Kind::NoAnswer => Ok(Link::Absent(failure)),
+            connected => connected,
         }
     }
 
@@ -43,6 +50,7 @@ impl Family for Fleet {
             Link::Yerc(link) => yerc::Family::halt(link).await,
             Link::Yrcx(link) => yrcx::Family::halt(link).await,
             Link::Toyo(link) => toyo::Family::halt(link).await,
+            Link::Absent(_) => Ok("nothing was sent".to_owned()),
         }
     }
 
@@ -51,6 +59,7 @@ impl Family for Fleet {
             Link::Yerc(link) => yerc::Family::rehearsed(link),
             Link::Yrcx(link) => yrcx::Family::rehearsed(link),
             Link::Toyo(link) => toyo::Family::rehearsed(link),
+            Link::Absent(_) => Vec::new(),
         }
     }
 
@@ -59,6 +68,7 @@ impl Family for Fleet {
             Link::Yerc(link) => yerc::Family::close(*link, screen).await,
             Link::Yrcx(link) => yrcx::Family::close(*link, screen).await,
             Link::Toyo(link) => toyo::Family::close(*link, screen).await,
+            Link::Absent(_) => Ok(()),
         }
     }
 }
@@ -81,6 +91,7 @@ impl Command for Overview {
             Link::Yerc(link) => yerc::overview(link).await,
             Link::Yrcx(link) => yrcx::overview(link).await,
             Link::Toyo(link) => toyo::overview(link).await,
+            Link::Absent(failure) => Err(failure.clone()),
         };
         match found {
             Ok(report) => Ok(report),

@@ -2,14 +2,14 @@
 
 use std::time::Duration;
 
-use armctl::transport::eip::adapter::{Assembly, Event, Mischief, Purpose, Setup};
+use armctl::transport::eip::adapter::{Adapter, Assembly, Event, Mischief, Output, Purpose, Setup};
 use armctl::transport::eip::explicit::{Answer, Message};
 use armctl::transport::eip::originator::State;
 use armctl::transport::eip::settings::{Multiplier, Role, Settings};
 use armctl::transport::eip::trouble::Trouble;
-use armctl::transport::eip::wire::{Cyclic, Frame, Identity, Key, Open, Request, RrData, Status};
+use armctl::transport::eip::wire::{Command, Cyclic, Frame, Identity, Key, Open, Request, RrData, Status};
 
-use crate::world::{HERE, MS, World, identity, resting, settings, setup};
+use crate::world::{HERE, MS, Mirror, World, identity, resting, settings, setup};
 
 /// An image that is easily told from others.
 fn image(mark: u8) -> Vec<u8> {
@@ -436,7 +436,8 @@ fn objects_answer() {
         (Message::get(4, 101, 3), Err(0x05)),
         (Message::get(0x99, 1, 1), Err(0x05)),
         (Message::get(4, 100, 9), Err(0x14)),
-        (Message::set(4, 150, 3, &[0; 48]), Err(0x0E)),
+        (Message::set(4, 150, 3, &[0; 48]), Err(0x0C)),
+        (Message::set(4, 100, 3, &[0; 48]), Err(0x0E)),
         (Message::get_all(4, 100), Err(0x08)),
         (Message { service: 0x4B, ..Message::get_all(1, 1) }, Err(0x08)),
     ];
@@ -457,6 +458,29 @@ fn objects_answer() {
     let answer = Answer::parse("the test", world.answers[0].1.as_ref().unwrap()).unwrap();
     let found = Identity::parse_attributes(&answer.data, identity().address).unwrap();
     assert_eq!(found, Identity { status: 0x71, state: None, ..identity() });
+}
+
+#[test]
+fn an_image_is_taken_by_a_message_while_nobody_owns_it() {
+    let mut adapter = Adapter::new(setup(), Mirror::default());
+    adapter.connected(1, HERE);
+    let mut ask = |frame: Frame<'_>| {
+        adapter.received(Duration::ZERO, 1, &frame.emit());
+        match adapter.poll(Duration::ZERO) {
+            Some(Output::Send(1, bytes)) => bytes,
+            other => panic!("{other:?}"),
+        }
+    };
+    let session = Frame::parse(&ask(Frame::register([0; 8]))).unwrap().session;
+    let mut set = |image: &[u8]| {
+        let data = Message::set(4, 150, 3, image).emit().unwrap();
+        let answer = ask(Frame { session, data: &data, ..Frame::new(Command::SEND_RR_DATA) });
+        Answer::parse("the test", Frame::parse(&answer).unwrap().data).unwrap().status
+    };
+    assert_eq!(set(&[7; 47]), Status::general(0x13));
+    assert_eq!(set(&[7; 49]), Status::general(0x15));
+    assert_eq!(set(&[7; 48]), Status::OK);
+    assert_eq!(adapter.application().history.len(), 1);
 }
 
 #[test]

@@ -65,6 +65,9 @@ pub fn serve(start: Start, listen: Listen, faults: Option<FaultSpec>) -> io::Res
     Server::start(setup, Controller(Simulated(Simulator::new(start))), listen, faults.map(Faults::pair))
 }
 
+/// The state of a device that works (volume 2, 2-4.2.2).
+const OPERATIONAL: u8 = 3;
+
 fn identity() -> Identity {
     Identity {
         address: SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, PORT),
@@ -75,7 +78,7 @@ fn identity() -> Identity {
         status: 0,
         serial: 1,
         name: "YRCX simulator of armctl".to_owned(),
-        state: None,
+        state: Some(OPERATIONAL),
     }
 }
 

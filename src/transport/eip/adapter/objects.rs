@@ -1,14 +1,20 @@
 //! What an adapter can be asked about: itself, and its assemblies.
 
+use std::cmp::Ordering;
+
 use super::super::settings::MOST_IMAGE;
 use super::super::wire::{Request, service};
 use super::super::{ASSEMBLY, Now};
-use super::{Adapter, Application, Mischief, Purpose, UNKNOWN_DESTINATION, UNKNOWN_SERVICE};
+use super::{Adapter, Application, Mischief, NOT_ENOUGH_DATA, Purpose, UNKNOWN_DESTINATION, UNKNOWN_SERVICE};
 
 const IDENTITY: u32 = 1;
+/// The attribute of an assembly that is its image.
+const DATA: u32 = 3;
+const STATE_CONFLICT: u8 = 0x0C;
 const NOT_SETTABLE: u8 = 0x0E;
 const TOO_LARGE: u8 = 0x11;
 const UNKNOWN_ATTRIBUTE: u8 = 0x14;
+const TOO_MUCH_DATA: u8 = 0x15;
 /// Revisions of the classes.
 const IDENTITY_REVISION: u16 = 1;
 const ASSEMBLY_REVISION: u16 = 2;
@@ -36,6 +42,9 @@ impl<A: Application> Adapter<A> {
                 (IDENTITY, _) => self.identity_attribute(attribute),
                 _ => self.assembly_attribute(now, instance, attribute),
             },
+            (service::SET_ATTRIBUTE_SINGLE, Some(DATA)) if class == ASSEMBLY => {
+                self.set_image(now, instance, request.data)
+            }
             (service::SET_ATTRIBUTE_SINGLE, Some(_)) => Err(NOT_SETTABLE),
             _ => Err(UNKNOWN_SERVICE),
         }
@@ -71,6 +80,24 @@ impl<A: Application> Adapter<A> {
         })
     }
 
+    /// Takes an image that comes by a message, as long as nobody owns it.
+    fn set_image(&mut self, now: Now, instance: u32, image: &[u8]) -> Result<Vec<u8>, u8> {
+        if self.setup.assembly(instance, Purpose::Output).is_none() {
+            return Err(NOT_SETTABLE);
+        }
+        if self.held.iter().any(|held| held.peer.output == Some(instance)) {
+            return Err(STATE_CONFLICT);
+        }
+        let kept = self.images.get_mut(&instance).ok_or(UNKNOWN_DESTINATION)?;
+        match image.len().cmp(&kept.len()) {
+            Ordering::Less => return Err(NOT_ENOUGH_DATA),
+            Ordering::Greater => return Err(TOO_MUCH_DATA),
+            Ordering::Equal => kept.copy_from_slice(image),
+        }
+        self.application.image_out(now, instance, image, true);
+        Ok(Vec::new())
+    }
+
     /// Data and size.
     fn assembly_attribute(&mut self, now: Now, instance: u32, attribute: u32) -> Result<Vec<u8>, u8> {
         if self.mischief == Some(Mischief::Unreadable) {
@@ -79,8 +106,8 @@ impl<A: Application> Adapter<A> {
         let is_input = self.setup.assembly(instance, Purpose::Input).is_some();
         let image = self.images.get_mut(&instance).ok_or(UNKNOWN_DESTINATION)?;
         match attribute {
-            3 if image.len() > usize::from(MOST_IMAGE) => Err(TOO_LARGE),
-            3 => {
+            DATA if image.len() > usize::from(MOST_IMAGE) => Err(TOO_LARGE),
+            DATA => {
                 if is_input {
                     self.application.image_in(now, instance, image);
                 }

@@ -90,7 +90,8 @@ pub(super) async fn run(
             },
         }
     }
-    tell(&mut |slot, _| slot.core.hung_up(&Trouble::Ended));
+    // Whoever waits for the session hears what became of it; once it is up, each request tells for itself.
+    tell(&mut |slot, _| slot.core.hung_up(&Trouble::Hangup { what: "RegisterSession" }));
 }
 
 /// From the address that images are heard on: the device sends them to where the request came from.

@@ -1,0 +1,301 @@
+//! The binary against boards that are not as they should be: wrong numbers in the URL, an owner that is there already, a
+//! target that is silent, resets, or talks nonsense. Each has its message, its hint and its exit code.
+#![cfg(unix)]
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::{TcpListener, UdpSocket};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread;
+
+use serde_json::Value;
+
+fn armctl(target: &str, line: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+    command.env_clear().stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.args(["-t", target, "--timeout", "400ms", "--json"]).args(line.split(' '));
+    command
+}
+
+/// Exit code, kind, code, message and hint of a failure, which is the only thing that is said.
+fn told(target: &str, line: &str) -> (i32, String, String, String, String) {
+    let Output { status, stdout, stderr } = armctl(target, line).output().unwrap();
+    let stderr = String::from_utf8(stderr).unwrap();
+    assert!(stdout.is_empty() && stderr.lines().count() == 1, "{line}: {stderr}");
+    let envelope: Value = serde_json::from_str(&stderr).unwrap();
+    let text = |key: &str| envelope["error"][key].as_str().unwrap_or_default().to_owned();
+    let message = text("message").replace(&format!("{target}: "), "");
+    assert_eq!(envelope["error"]["exit"].as_i64(), status.code().map(i64::from));
+    (status.code().unwrap(), text("kind"), text("code"), message, text("hint"))
+}
+
+/// Asserts what is told, without its kind.
+#[track_caller]
+fn tells(target: &str, line: &str, exit: i32, code: &str, message: &str, hint: &str) {
+    let (found_exit, _, found_code, found_message, found_hint) = told(target, line);
+    let found = (found_exit, &*found_code, &*found_message, &*found_hint);
+    assert_eq!(found, (exit, code, message, hint), "{line} on {target}");
+}
+
+/// `armctl sim yrcx` on ports of its own; it ends with the test.
+struct Board {
+    process: Child,
+    target: String,
+}
+
+impl Board {
+    fn start(arguments: &[&str]) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.env_clear().args(["sim", "yrcx", "--bind", "127.0.0.1:0", "--jq", ".data.target"]).args(arguments);
+        let mut process = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let mut target = String::new();
+        BufReader::new(process.stdout.take().unwrap()).read_line(&mut target).unwrap();
+        Self { process, target: target.trim_end().to_owned() }
+    }
+
+    fn with(&self, query: &str) -> String {
+        format!("{}?{query}", self.target)
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        // A process that has ended already is as good.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+const SIZE: &str = "set the sizes that a probe of the target finds";
+
+#[test]
+fn numbers_that_the_board_does_not_have() {
+    let board = Board::start(&[]);
+    let point = "exchange the instances of input and output, or probe the target for those it has";
+    for (query, code, message, hint) in [
+        (
+            "in_size=50",
+            "0x0109",
+            "ForwardOpen was refused: invalid connection size (0x01/0x0109), the right one is 50 bytes",
+            SIZE,
+        ),
+        (
+            "out_size=50",
+            "0x0109",
+            "ForwardOpen was refused: invalid connection size (0x01/0x0109), the right one is 54 bytes",
+            SIZE,
+        ),
+        ("in=101", "0x0117", "ForwardOpen was refused: invalid connection point (0x01/0x0117)", point),
+        ("out=151", "0x0117", "ForwardOpen was refused: invalid connection point (0x01/0x0117)", point),
+        ("in=150&out=100", "0x0117", "ForwardOpen was refused: invalid connection point (0x01/0x0117)", point),
+    ] {
+        tells(&board.with(query), "yrcx info servo", 3, code, message, hint);
+    }
+    for (query, code, part) in [
+        ("config=9", "0x0118", "invalid configuration"),
+        ("rpi=1ms", "0x0111", "RPI"),
+        ("rpi=9s", "0x0111", "RPI"),
+        ("key=1:0:0", "0x0114", "vendor"),
+        ("key=636:12:0", "0x0115", "device type"),
+        ("key=636:43:5:9.1", "0x0116", "revision"),
+        ("role=listen_only&out=237", "0x0119", "no controlling connection"),
+    ] {
+        let (exit, kind, found, message, hint) = told(&board.with(query), "yrcx info servo");
+        assert_eq!((exit, &*kind, &*found), (3, "refused", code), "{query}: {message}");
+        assert!(message.contains(part) && !hint.is_empty(), "{query}: {message}; {hint}");
+    }
+    // After all that it still works as it should.
+    assert!(armctl(&board.target, "yrcx info servo").output().unwrap().status.success());
+}
+
+#[test]
+fn what_only_looks_says_what_is_wrong_too() {
+    let board = Board::start(&[]);
+    let (exit, _, _, message, hint) = told(&board.with("in=101"), "yrcx io get");
+    assert_eq!(exit, 3);
+    assert!(message.contains("to nobody who only looks") && hint.contains("role=input_only"), "{message}; {hint}");
+    let (exit, _, _, message, hint) = told(&board.with("in=1"), "yrcx io get");
+    assert_eq!((exit, &*hint), (5, "check in and in_size of the URL"), "{message}");
+}
+
+#[test]
+fn an_owner_that_is_there_already() {
+    let board = Board::start(&[]);
+    let mut owner = armctl(&board.target, "yrcx info servo --watch 1h").spawn().unwrap();
+    BufReader::new(owner.stdout.take().unwrap()).lines().next().unwrap().unwrap();
+    tells(
+        &board.target,
+        "yrcx info servo",
+        3,
+        "0x0106",
+        "another master, such as a PLC, commands the controller",
+        "`yrcx io get` and `yrcx status` see its signals beside the owner; to command from here, stop the owner's \
+         connection first: take the controller out of the PLC's scan list, or close the session",
+    );
+    let (exit, _, code, message, _) = told(&board.target, &format!("yrcx eip set 4 150 3 {} --yes", "00".repeat(48)));
+    assert_eq!((exit, &*code), (3, "0x0c"), "{message}");
+    let found = armctl(&board.target, "robots check").output().unwrap();
+    let found: Value = serde_json::from_slice(&found.stdout).unwrap();
+    let state = |name: &str| {
+        let layers = found["data"]["layers"].as_array().unwrap();
+        layers.iter().find(|layer| layer["layer"] == name).unwrap()["state"].clone()
+    };
+    assert_eq!((state("owner"), state("inputs"), found["ok"].clone()), ("warning".into(), "ok".into(), true.into()));
+    let sent = Command::new("kill").args(["-s", "INT", &owner.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    assert_eq!(owner.wait().unwrap().code(), Some(130));
+}
+
+const NOBODY: &str = "check the address, that the controller is on, and that its EtherNet/IP board is enabled";
+
+#[test]
+fn a_board_that_misbehaves() {
+    const LINK: &str = "check the link: `-v` counts what came";
+    for (mischief, line, message, hint) in [
+        ("mute", "yrcx info servo", "RegisterSession was not answered within 400 ms", NOBODY),
+        ("mute", "yrcx io get", "RegisterSession was not answered within 400 ms", NOBODY),
+        ("reset", "yrcx info servo", "the TCP connection ended before ForwardOpen was answered", NOBODY),
+        (
+            "reset",
+            "yrcx io get",
+            "the TCP connection ended before Get_Attribute_Single of the input assembly was answered",
+            NOBODY,
+        ),
+        ("stall", "yrcx info servo", "the controller shows nothing", LINK),
+        ("wrong-id", "yrcx info servo", "the controller shows nothing", LINK),
+        ("wrong-size", "yrcx info servo", "the controller shows nothing", LINK),
+    ] {
+        tells(&Board::start(&["--mischief", mischief]).target, line, 4, "", message, hint);
+    }
+    for line in ["yrcx info servo", "yrcx io get", "yrcx eip get 4 100 3"] {
+        let (exit, _, _, message, hint) = told(&Board::start(&["--mischief", "garbage"]).target, line);
+        assert!(exit == 5 && message.contains("cannot be read"), "{line}: {exit} {message}");
+        assert_eq!(hint, "check that an EtherNet/IP adapter has this address");
+    }
+    // Stale, doubled and miscounted images are passed over: a numbering that stands still is a silence.
+    for (mischief, works) in [("double", true), ("drop", true), ("stale", false), ("wrong-sequence", false)] {
+        let board = Board::start(&["--mischief", mischief]);
+        let output = armctl(&board.target, "yrcx info servo").output().unwrap();
+        assert_eq!(output.status.success(), works, "{mischief}: {}", String::from_utf8_lossy(&output.stderr));
+        assert!(works || output.status.code() == Some(4), "{mischief}");
+    }
+}
+
+#[test]
+fn a_change_whose_answer_is_lost_is_not_repeated() {
+    let board = Board::start(&["--mischief", "reset"]);
+    let (exit, kind, _, message, hint) = told(&board.target, "yrcx eip set 0xF5 1 3 0200");
+    assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
+    assert_eq!(
+        message,
+        "sent once, and whether it was done is unknown: the TCP connection ended before Set_Attribute_Single was answered"
+    );
+    assert_eq!(hint, "`yrcx eip get 0xf5 1 3` tells");
+}
+
+/// A TCP server that does with every connection what `serve` says; it ends with the process.
+fn stranger(serve: fn(std::net::TcpStream)) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let target = format!("eip://{}", listener.local_addr().unwrap());
+    thread::spawn(move || {
+        for stream in listener.incoming().map_while(Result::ok) {
+            serve(stream);
+        }
+    });
+    target
+}
+
+#[test]
+fn a_target_that_is_no_board() {
+    let http = stranger(|mut stream| {
+        // Whoever asked may have gone.
+        let _ = stream.write_all(b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n");
+        let _ = stream.read(&mut [0; 64]);
+    });
+    let closes = stranger(drop);
+    let silent = stranger(|stream| std::mem::forget(stream));
+    for line in ["yrcx info servo", "yrcx io get", "yrcx eip identity", "status", "yrcx eip set 0xF5 1 3 00"] {
+        for target in [&http, &closes, &silent] {
+            let (exit, kind, _, message, hint) = match line {
+                // What cannot be reached is a line of the report there.
+                "status" => {
+                    let output = armctl(target, line).output().unwrap();
+                    let envelope: Value = serde_json::from_slice(&output.stdout).unwrap();
+                    let text = |key: &str| envelope["error"][key].as_str().unwrap().to_owned();
+                    assert_eq!(envelope["data"]["reachable"], false);
+                    (output.status.code().unwrap(), text("kind"), String::new(), text("message"), text("hint"))
+                }
+                _ => told(target, line),
+            };
+            assert_eq!((exit, &*kind, &*hint), (4, "no_answer", NOBODY), "{line} on {target}: {message}");
+        }
+    }
+    tells("eip://127.0.0.1:1", "yrcx io get", 4, "", "no TCP connection: connection refused", NOBODY);
+    let hint = "check the name, or use the address of the controller";
+    tells("eip://board.invalid", "yrcx io get", 4, "", "cannot find host 'board.invalid'", hint);
+}
+
+/// An answer to ListIdentity as volume 2, 2-4.2 lays it out, whose name would clear a terminal.
+fn hostile_identity(context: &[u8]) -> Vec<u8> {
+    let name = b"\x1b[2J\x07evil\r\n\"<&\xff";
+    let mut item = [&[1, 0][..], &[0, 2, 0xAF, 0x12, 10, 0, 0, 9], &[0; 8]].concat();
+    item.extend([0x7C, 0x02, 43, 0, 5, 0, 1, 2, 0x30, 0, 0x40, 0xE2, 1, 0]);
+    item.push(u8::try_from(name.len()).unwrap());
+    item.extend(name);
+    item.push(3);
+    let data = [&[1, 0, 0x0C, 0][..], &u16::try_from(item.len()).unwrap().to_le_bytes(), &item].concat();
+    let len = u16::try_from(data.len()).unwrap().to_le_bytes();
+    [&[0x63, 0][..], &len, &[0; 8], context, &[0; 4], &data].concat()
+}
+
+#[test]
+fn what_strangers_say_of_themselves_is_escaped() {
+    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let address = socket.local_addr().unwrap().to_string();
+    thread::spawn(move || {
+        let mut buffer = [0; 64];
+        while let Ok((24.., from)) = socket.recv_from(&mut buffer) {
+            let context = buffer[12..20].to_vec();
+            socket.send_to(b"nonsense", from).unwrap();
+            socket.send_to(&hostile_identity(&context), from).unwrap();
+        }
+    });
+    let discover = |format: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.env_clear().args(["robots", "discover", &address, "--wait", "20s", "-o", format]);
+        let output = command.output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    for format in ["table", "csv", "json"] {
+        let text = discover(format);
+        assert!(text.contains("evil") && !text.chars().any(|c| c.is_control() && c != '\n'), "{text:?}");
+    }
+    let found: Value = serde_json::from_str(&discover("json")).unwrap();
+    let board = &found["data"]["boards"][0];
+    assert_eq!((&board["family"], &board["serial"]), (&"yrcx".into(), &"0x0001e240".into()));
+    assert_eq!((&board["revision"], &board["state"]), (&"1.002".into(), &"operational".into()));
+    assert_eq!(board["target"], format!("eip://{address}"), "where it answers counts, not what it says");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn everybody_of_a_network_is_asked() {
+    // A board that listens on all addresses hears what is sent to everybody of the loopback's network.
+    let Ok(socket) = UdpSocket::bind("0.0.0.0:0") else { return println!("skipped: no port") };
+    let port = socket.local_addr().unwrap().port();
+    thread::spawn(move || {
+        let mut buffer = [0; 64];
+        while let Ok((24.., from)) = socket.recv_from(&mut buffer) {
+            // The longest delay that devices may take stands in the first bytes of the context, in milliseconds.
+            assert_eq!(buffer[12..14], 500u16.to_le_bytes());
+            socket.send_to(&hostile_identity(&buffer[12..20]), from).unwrap();
+        }
+    });
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+    let broadcast = format!("127.255.255.255:{port}");
+    command.env_clear().args(["robots", "discover", "--bind", "127.0.0.1", "--broadcast", &broadcast, "--json"]);
+    let output = command.args(["--wait", "400ms", "--jq", ".data.boards[].target"]).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), format!("eip://127.0.0.1:{port}\n"));
+}
