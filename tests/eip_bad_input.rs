@@ -114,8 +114,9 @@ fn what_only_looks_says_what_is_wrong_too() {
     let (exit, _, _, message, hint) = told(&board.with("in=101"), "yrcx io get");
     assert_eq!(exit, 3);
     assert!(message.contains("to nobody who only looks") && hint.contains("role=input_only"), "{message}; {hint}");
-    let (exit, _, _, message, hint) = told(&board.with("in=1"), "yrcx io get");
-    assert_eq!((exit, &*hint), (5, "check in and in_size of the URL"), "{message}");
+    let hint = "check in and in_size of the URL: `yrcx eip probe` finds both";
+    tells(&board.with("in=1"), "yrcx io get", 5, "", "the input assembly has 0 bytes, not 48", hint);
+    tells(&board.with("in_size=50"), "yrcx status", 5, "", "the input assembly has 48 bytes, not 50", hint);
 }
 
 #[test]

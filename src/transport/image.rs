@@ -13,7 +13,7 @@ use tokio::time::Instant;
 
 use super::eip::client::Client;
 use super::eip::originator::{State, Statistics};
-use super::eip::reader::Reader;
+use super::eip::reader::{Assembly, Reader};
 use super::eip::scanner::{Connection, Scanner};
 use super::eip::settings::Settings;
 use super::eip::tap::Tap;
@@ -108,7 +108,7 @@ impl ImageLink {
     }
 
     /// Sees what the device shows in this assembly, by messages with a pause between them. Nothing can be shown to it.
-    pub async fn reading(client: Client, assembly: u32, pause: Duration) -> Result<Self, OpenError> {
+    pub async fn reading(client: Client, assembly: Assembly, pause: Duration) -> Result<Self, OpenError> {
         Ok(Self::over(Way::Read(Reader::open(client, assembly, pause).await.map_err(OpenError::Trouble)?)))
     }
 

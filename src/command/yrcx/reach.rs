@@ -14,6 +14,7 @@ use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::{self, EipRole, Place, Target};
 use crate::transport::eip::client::Client;
+use crate::transport::eip::reader::Assembly;
 use crate::transport::eip::settings::{Multiplier, Role, Settings};
 use crate::transport::eip::tap::Tap;
 use crate::transport::eip::trouble::Trouble;
@@ -132,7 +133,8 @@ const PAUSE: Duration = Duration::from_millis(20);
 async fn see(robot: &Robot, eip: &target::Eip, tap: Tap) -> Result<ImageLink, Failure> {
     let label = robot.label();
     let client = client(robot, eip, tap.clone()).await?;
-    let refused = match ImageLink::reading(client, eip.input, eip.rpi.max(PAUSE)).await {
+    let assembly = Assembly { instance: eip.input, size: eip.input_size };
+    let refused = match ImageLink::reading(client, assembly, eip.rpi.max(PAUSE)).await {
         Err(OpenError::Trouble(trouble @ Trouble::Refused { .. })) => trouble,
         opened => return opened.map_err(|error| not_open(&label, eip, &error)),
     };
@@ -216,6 +218,7 @@ pub fn not_open(label: &str, eip: &target::Eip, error: &OpenError) -> Failure {
         Trouble::Malformed { .. } | Trouble::Senseless { .. } => {
             (Kind::Malformed, "check that an EtherNet/IP adapter has this address")
         }
+        Trouble::Misfit { .. } => (Kind::Malformed, "check in and in_size of the URL: `yrcx eip probe` finds both"),
         Trouble::Impossible(_) => (Kind::Usage, "`armctl help targets` tells what an eip: URL can say"),
         Trouble::Local { .. } | Trouble::Outdated | Trouble::Ended => {
             (Kind::Local, "check the network settings of this machine, and its firewall")

@@ -19,6 +19,15 @@ const IMAGE: u32 = 3;
 /// Pause after a failure.
 const PAUSE: Duration = Duration::from_millis(500);
 
+/// What is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Assembly {
+    /// Its number.
+    pub instance: u32,
+    /// Its bytes.
+    pub size: u16,
+}
+
 /// The newest image, or why there is none.
 pub type Reading = Result<Arc<[u8]>, Trouble>;
 
@@ -34,7 +43,7 @@ impl Reader {
     ///
     /// # Errors
     /// When it cannot be read. Later failures are readings.
-    pub async fn open(mut client: Client, assembly: u32, pause: Duration) -> Result<Self, Trouble> {
+    pub async fn open(mut client: Client, assembly: Assembly, pause: Duration) -> Result<Self, Trouble> {
         let first = read(&mut client, assembly).await?;
         let (sender, readings) = watch::channel(Ok(first));
         let task = tokio::spawn(follow(client, assembly, pause, sender));
@@ -62,7 +71,7 @@ impl Reader {
     }
 }
 
-async fn follow(mut client: Client, assembly: u32, pause: Duration, readings: watch::Sender<Reading>) {
+async fn follow(mut client: Client, assembly: Assembly, pause: Duration, readings: watch::Sender<Reading>) {
     let mut wait = pause;
     loop {
         let reading = tokio::select! {
@@ -82,8 +91,12 @@ async fn follow(mut client: Client, assembly: u32, pause: Duration, readings: wa
     client.close().await;
 }
 
-async fn read(client: &mut Client, assembly: u32) -> Reading {
+async fn read(client: &mut Client, Assembly { instance, size }: Assembly) -> Reading {
     let what = "Get_Attribute_Single of the input assembly";
-    let answer = client.ask(what, &Message::get(ASSEMBLY, assembly, IMAGE)).await?;
-    Ok(answer.done(what)?.into())
+    let image = client.ask(what, &Message::get(ASSEMBLY, instance, IMAGE)).await?.done(what)?;
+    if image.len() == usize::from(size) {
+        Ok(image.into())
+    } else {
+        Err(Trouble::Misfit { found: image.len(), expected: size })
+    }
 }

@@ -74,6 +74,14 @@ pub enum Trouble {
     /// The image or the wish is for a connection that has ended meanwhile.
     #[error("the connection was lost meanwhile")]
     Outdated,
+    /// An assembly that was read has another size than was expected.
+    #[error("the input assembly has {found} bytes, not {expected}")]
+    Misfit {
+        /// Its bytes.
+        found: usize,
+        /// What was expected.
+        expected: u16,
+    },
     /// The connection was closed here.
     #[error("the connection is closed")]
     Ended,

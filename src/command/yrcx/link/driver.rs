@@ -10,7 +10,7 @@ use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::sequence::{self, Sequence};
 use crate::controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome};
-use crate::controller::yrcx::signal::{input, resting};
+use crate::controller::yrcx::signal::{input, output, resting};
 use crate::controller::yrcx::table::Pace;
 use crate::failure::{Failure, Kind};
 use crate::transport::image::Event;
@@ -27,6 +27,13 @@ impl Link {
                 return Err(self.silent());
             }
             self.turn_until(until).await?;
+        }
+        if !self.is_owner && self.input.is_some_and(|image| !output::CPU_OK.is_on(&image)) {
+            // Whoever only reads is not told by the board that it reads something else.
+            self.screen.note(
+                "warning: CPU OK (SO(01)) is off: the controller does not work, or `in` of the URL is not the assembly \
+                 that it sends (`armctl robots check`)",
+            );
         }
         Ok(())
     }
