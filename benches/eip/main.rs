@@ -1,6 +1,7 @@
-//! How well images keep their time, beside a bare timer loop, and how many connections one process holds.
+//! How well images keep their time, beside a bare timer loop, how long a remote command takes, and how many connections
+//! one process holds. Each line has its goal beside what was seen.
 //!
-//! `cargo bench --bench eip` measures everything, with `-- spread trips many` only that; `-- --quick`, and
+//! `cargo bench --bench eip` measures everything, with `-- spread trips commands many` only that; `-- --quick`, and
 //! `cargo test --benches`, only show that all of it works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
@@ -11,6 +12,13 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, ensure};
+use armctl::command::yrcx::{Family as Yrcx, simulated};
+use armctl::command::{Access, Family as _, Need};
+use armctl::controller::yrcx::simulator::Start;
+use armctl::controller::{Risk, yrcx};
+use armctl::output::{ColorChoice, Format, Screen};
+use armctl::settings::target::Family as Name;
+use armctl::settings::{Selection, Sources};
 use armctl::transport::eip::adapter::server::{Listen, Server};
 use armctl::transport::eip::adapter::{Application, Assembly, Event, Purpose, Setup};
 use armctl::transport::eip::originator::State;
@@ -24,6 +32,8 @@ use tokio::runtime::{Builder, Runtime};
 const RPI: Duration = Duration::from_millis(10);
 const SIZE: u16 = 48;
 const MANY: u32 = 50;
+/// The scan of a controller.
+const SCAN_MS: f64 = 5.0;
 /// Most that the spread of images may be above that of a bare loop.
 const GOAL: f64 = 1.2;
 
@@ -44,7 +54,8 @@ const QUICK: Effort =
 type Measure = fn(&Effort) -> anyhow::Result<()>;
 
 /// What is measured, by the word that chooses it.
-const MEASUREMENTS: [(&str, Measure); 3] = [("spread", spread), ("trips", trips), ("many", many)];
+const MEASUREMENTS: [(&str, Measure); 4] =
+    [("spread", spread), ("trips", trips), ("commands", commands), ("many", many)];
 
 fn main() -> anyhow::Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -96,9 +107,9 @@ fn spread(effort: &Effort) -> anyhow::Result<()> {
         ratios.push(ours.p99 / bare.p99);
     }
     let ratio = middle(&mut ratios);
-    let met = if ratio <= GOAL { "met" } else { "MISSED" };
+    let verdict = verdict(ratio <= GOAL);
     println!(
-        "  p99 of armctl / p99 of the bare thread::sleep loop: {ratio:.2}, median of rounds; goal <= {GOAL} {met}"
+        "  p99 of armctl / p99 of the bare thread::sleep loop: {ratio:.2}, median of rounds; goal <= {GOAL} {verdict}"
     );
     Ok(())
 }
@@ -129,13 +140,52 @@ fn trips(effort: &Effort) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// How long a remote command takes that only reads, on a simulated controller with its scans, from the first time that
+/// it is sent to its report.
+fn commands(effort: &Effort) -> anyhow::Result<()> {
+    println!("servo status, from sending to the report: median");
+    for rpi in [5, 10, 20].map(Duration::from_millis) {
+        let runtime = runtime()?;
+        let server = simulated::serve(Start::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
+        let target = format!("eip://{}?rpi={}ms", server.address(), rpi.as_millis()).parse()?;
+        let sources =
+            Sources { selection: Selection { target: Some(target), ..Selection::default() }, ..Sources::default() };
+        let robot = sources.robots(Some(Name::Yrcx))?.remove(0);
+        let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
+        let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: Need::Command };
+        let order = yrcx::table::Command::ServoStatus.order().build()?;
+        let mut times = Vec::new();
+        let mut whole = Vec::new();
+        runtime.block_on(async {
+            let mut link = Yrcx::connect(&robot, access, &screen).await?;
+            for _ in 0..effort.trips {
+                let start = Instant::now();
+                times.push(link.run(&order).await?.elapsed.as_secs_f64() * 1000.0);
+                whole.push(start.elapsed().as_secs_f64() * 1000.0);
+                // Somewhere else within the interval the next time.
+                tokio::time::sleep(Duration::from_micros(fastrand::u64(..u64::try_from(rpi.as_micros())?))).await;
+            }
+            Yrcx::close(link, &screen).await?;
+            anyhow::Ok(())
+        })?;
+        let goal = rpi.as_secs_f64() * 2000.0 + SCAN_MS + 1.0;
+        let (seen, whole) = (middle(&mut times), middle(&mut whole));
+        println!(
+            "  RPI {:>2} ms: {seen:>6.2} ms; goal <= {goal} ms {}; {whole:.2} ms until the controller is ready again",
+            rpi.as_millis(),
+            verdict(seen <= goal)
+        );
+    }
+    Ok(())
+}
+
 /// Fifty connections at 10 ms, with watchdogs at both ends: our adapter, and one that others wrote.
 fn many(effort: &Effort) -> anyhow::Result<()> {
     println!("{MANY} connections at 10 ms, watchdogs of 160 ms at both ends, {} s", effort.many.as_secs_f64());
     let server = Server::start(setup(MANY), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
     hold("our adapter", server.address(), effort)?;
     let ended = server.with(|adapter, _| adapter.application().timed_out);
-    println!("  our adapter: {ended} connections timed out there");
+    println!("  our adapter: {ended} connections timed out there; goal 0 {}", verdict(ended == 0));
     ensure!(ended == 0, "the adapter missed images");
 
     let there = Ipv4Addr::new(127, 44, 18, 50);
@@ -158,7 +208,7 @@ fn many(effort: &Effort) -> anyhow::Result<()> {
     while let Some(event) = adapter.next_event(Some(Duration::ZERO)) {
         ended += u32::from(matches!(event, ciplink::adapter::Event::TimedOut(_)));
     }
-    println!("  ciplink: {ended} connections timed out there");
+    println!("  ciplink: {ended} connections timed out there; goal 0 {}", verdict(ended == 0));
     ensure!(ended == 0, "the adapter missed images");
     Ok(())
 }
@@ -249,6 +299,10 @@ impl Deviation {
         let Self { p50, p99, max } = self;
         println!("  {name:<60}{p50:>9.0} {p99:>9.0} {max:>9.0} us");
     }
+}
+
+const fn verdict(is_met: bool) -> &'static str {
+    if is_met { "met" } else { "MISSED" }
 }
 
 fn middle(all: &mut [f64]) -> f64 {
