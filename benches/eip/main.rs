@@ -140,10 +140,10 @@ fn trips(effort: &Effort) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// How long a remote command takes that only reads, on a simulated controller with its scans, from the first time that
-/// it is sent to its report.
+/// How long a remote command takes that only reads, on a simulated controller with its scans, from giving it to its
+/// report; the controller is ready for the next one then.
 fn commands(effort: &Effort) -> anyhow::Result<()> {
-    println!("servo status, from sending to the report: median");
+    println!("servo status, from giving it to the report: median");
     for rpi in [5, 10, 20].map(Duration::from_millis) {
         let runtime = runtime()?;
         let server = simulated::serve(Start::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
@@ -155,13 +155,13 @@ fn commands(effort: &Effort) -> anyhow::Result<()> {
         let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: Need::Command };
         let order = yrcx::table::Command::ServoStatus.order().build()?;
         let mut times = Vec::new();
-        let mut whole = Vec::new();
+        let mut answers = Vec::new();
         runtime.block_on(async {
             let mut link = Yrcx::connect(&robot, access, &screen).await?;
             for _ in 0..effort.trips {
                 let start = Instant::now();
-                times.push(link.run(&order).await?.elapsed.as_secs_f64() * 1000.0);
-                whole.push(start.elapsed().as_secs_f64() * 1000.0);
+                answers.push(link.run(&order).await?.elapsed.as_secs_f64() * 1000.0);
+                times.push(start.elapsed().as_secs_f64() * 1000.0);
                 // Somewhere else within the interval the next time.
                 tokio::time::sleep(Duration::from_micros(fastrand::u64(..u64::try_from(rpi.as_micros())?))).await;
             }
@@ -169,9 +169,9 @@ fn commands(effort: &Effort) -> anyhow::Result<()> {
             anyhow::Ok(())
         })?;
         let goal = rpi.as_secs_f64() * 2000.0 + SCAN_MS + 1.0;
-        let (seen, whole) = (middle(&mut times), middle(&mut whole));
+        let (seen, answer) = (middle(&mut times), middle(&mut answers));
         println!(
-            "  RPI {:>2} ms: {seen:>6.2} ms; goal <= {goal} ms {}; {whole:.2} ms until the controller is ready again",
+            "  RPI {:>2} ms: {seen:>6.2} ms; goal <= {goal} ms {}; {answer:.2} ms from the wire to the answer",
             rpi.as_millis(),
             verdict(seen <= goal)
         );
