@@ -2,9 +2,10 @@
 //!
 //! The blocks below one `##` heading are one shell session, in a folder of its own, with a home of its own and no
 //! `ARMCTL_…` variables. `...` on a line of its own stands for any lines, `[..]` for any text within a line. A command
-//! may only fail where the next one is `echo $?`. Sections that speak of `udp://127.0.0.1:10040` or
-//! `tcp://127.0.0.1:4001` get a simulator of their own, on ports that the system chooses. TOML blocks that begin with `# NAME.toml` lie in the folders of that page's sessions
-//! as files of that name. Blocks marked `sh` are not run: installation, real controllers.
+//! may only fail where the next one is `echo $?`. Sections that speak of `udp://127.0.0.1:10040`,
+//! `tcp://127.0.0.1:4001` or `eip://127.0.0.1:44818` get a simulator of their own, on ports that the system chooses.
+//! TOML blocks that begin with `# NAME.toml` lie in the folders of that page's sessions as files of that name. Blocks
+//! marked `sh` are not run: installation, real controllers.
 //!
 //! `ARMCTL_BLESS=1 cargo test --test readme` writes what was printed into the blocks that differ.
 #![cfg(unix)]
@@ -18,11 +19,12 @@ use std::process::{Child, Command, Stdio};
 use snapbox::IntoData as _;
 
 /// Families, and where blocks find the simulator of each, as a reader starts it without arguments.
-const DOCUMENTED: [(&str, &str); 2] = [("yerc", "udp://127.0.0.1:10040"), ("toyo", "tcp://127.0.0.1:4001")];
+const DOCUMENTED: [(&str, &str); 3] =
+    [("yerc", "udp://127.0.0.1:10040"), ("toyo", "tcp://127.0.0.1:4001"), ("yrcx", "eip://127.0.0.1:44818")];
 /// Separates the commands of a block in the output of its shell.
 const MARK: &str = "\u{1}--next--";
 /// Pages with blocks.
-const PAGES: [&str; 4] = ["README.md", "docs/yerc.md", "docs/toyo.md", "docs/scripting.md"];
+const PAGES: [&str; 5] = ["README.md", "docs/yerc.md", "docs/toyo.md", "docs/yrcx.md", "docs/scripting.md"];
 
 #[test]
 fn console_blocks_print_what_they_show() {
@@ -202,7 +204,9 @@ impl Simulator {
     }
 
     fn documented(&self, output: &str) -> String {
-        output.replace(&self.target, self.documented)
+        // Addresses stand in messages without their scheme as well.
+        let address = |url: &str| url.split_once("://").map_or_else(String::new, |(_, address)| address.to_owned());
+        output.replace(&self.target, self.documented).replace(&address(&self.target), &address(self.documented))
     }
 }
 
