@@ -374,7 +374,7 @@ impl Run {
     async fn connect<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<F::Link, Failure> {
         let access =
             Access { granted: command.risk(), dry_run: false, trace: self.trace.clone(), need: command.need() };
-        interruptible(F::connect(robot, access, &self.screen)).await?
+        interruptible(Box::pin(F::connect(robot, access, &self.screen))).await?
     }
 
     /// One run. Ctrl-C during a motion stops the robot first.
@@ -436,7 +436,7 @@ impl Run {
     }
 
     /// Empties the file of `--trace`, to which every connection of this command then appends.
-    fn begin_trace(&self) -> Result<(), Failure> {
+    pub fn begin_trace(&self) -> Result<(), Failure> {
         match self.trace.as_deref() {
             Some(path) if path != Path::new("-") && !self.gate.dry_run => {
                 std::fs::File::create(path).map(|_| ()).map_err(|error| Failure::io(path.display(), &error))

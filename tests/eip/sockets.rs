@@ -11,6 +11,7 @@ use armctl::transport::eip::discovery::list_identity;
 use armctl::transport::eip::explicit::{Answer, Message};
 use armctl::transport::eip::originator::State;
 use armctl::transport::eip::probe::{self, Connectable, Instances, probe};
+use armctl::transport::eip::reader::{Assembly, Reader, Reading};
 use armctl::transport::eip::scanner::Scanner;
 use armctl::transport::eip::settings::{Multiplier, Settings};
 use armctl::transport::eip::tap::Tap;
@@ -51,6 +52,52 @@ async fn images_and_messages_travel() {
     connection.close().await.unwrap();
     assert_eq!(server.with(|adapter, _| adapter.peers().count()), 0);
     assert!(server.with(|adapter, _| !adapter.application().run));
+}
+
+#[tokio::test]
+async fn what_a_device_shows_can_be_read_beside_its_owner() {
+    let server = serve(setup());
+    let client = || Client::new(server.address(), 200 * MS, Tap::default());
+    let assembly = Assembly { instance: 100, size: 48 };
+    let wrong = Reader::open(client(), Assembly { size: 50, ..assembly }, MS).await;
+    assert_eq!(wrong.unwrap_err(), Trouble::Misfit { found: 48, expected: 50 });
+    let absent = Reader::open(client(), Assembly { instance: 99, ..assembly }, MS).await;
+    assert!(matches!(absent, Err(Trouble::Refused { .. })), "{absent:?}");
+
+    let scanner = Scanner::start(LOOPBACK).unwrap();
+    let owner = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
+    let mut reader = Reader::open(client(), assembly, MS).await.unwrap();
+    let shows = async |reader: &mut Reader, is_it: &dyn Fn(&Reading) -> bool| {
+        while !is_it(&reader.reading()) {
+            reader.changed().await;
+        }
+    };
+    owner.set_image(1, &[0x5A; 48]).unwrap();
+    owner.set_run(1, true).unwrap();
+    shows(&mut reader, &|reading| reading.as_deref().is_ok_and(|image| image == [0xA5; 48])).await;
+    // A device that goes silent is told, and so is that it is back.
+    server.with(|adapter, _| adapter.misbehave(Some(Mischief::Mute)));
+    shows(&mut reader, &|reading| matches!(reading, Err(Trouble::NoAnswer { .. }))).await;
+    server.with(|adapter, _| adapter.misbehave(None));
+    shows(&mut reader, &Result::is_ok).await;
+    reader.close().await;
+    assert_eq!(server.with(|adapter, _| adapter.peers().count()), 1, "the owner and nobody else");
+    owner.close().await.unwrap();
+}
+
+#[tokio::test]
+async fn a_connection_is_rehearsed_without_opening_it() {
+    let server = serve(setup());
+    let mut client = Client::new(server.address(), Duration::from_secs(20), Tap::default());
+    let right = Instances { output: 150, input: 100, configuration: Some(1) };
+    let found = probe::rehearse(&mut client, right).await.unwrap();
+    let expected = Connectable { instances: right, output_size: Some(48), input_size: Some(48) };
+    assert_eq!(found.connectable, Some(expected));
+    let exchanged = Instances { output: 100, input: 150, ..right };
+    assert_eq!(probe::rehearse(&mut client, exchanged).await.unwrap().connectable, None);
+    let events = server.with(|adapter, _| adapter.application().events.len());
+    assert_eq!(events, 0, "nothing was opened on the way");
+    client.close().await;
 }
 
 #[tokio::test]

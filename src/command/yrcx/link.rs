@@ -36,6 +36,7 @@ use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::{self, EipRole, Place};
 use crate::transport::image::ImageLink;
+use crate::transport::tap::Direction;
 
 /// The yrcx family.
 #[derive(Debug)]
@@ -535,6 +536,12 @@ impl Link {
             Transport::Notes(_) => std::future::pending().await,
             Transport::Image(_) => Err(Failure::local("this link carries images, not messages")),
         }
+    }
+
+    /// Tells at `-vv` what was asked of the board, and what it answered.
+    pub fn tell_message(&self, sent: &[u8], received: &[u8], about: &str) {
+        self.trace.message(Direction::Sent, sent, about);
+        self.trace.message(Direction::Received, received, "done");
     }
 
     /// In a dry run, notes a frame and ends it.

@@ -48,7 +48,7 @@ mod teach;
 #[cfg(test)]
 mod testing;
 mod torque_limit;
-mod trace;
+pub mod trace;
 mod unit;
 mod var;
 

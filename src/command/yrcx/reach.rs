@@ -54,7 +54,7 @@ impl Way<'_> {
             Self::Eip(_) => Recorder::start(access, screen)?.unzip(),
             Self::Sim(_) => (None, None),
         };
-        match self.connect(robot, access, tap.unwrap_or_default()).await {
+        match Box::pin(self.connect(robot, access, tap.unwrap_or_default())).await {
             Ok(link) => Ok((link, recorder)),
             Err(failure) => {
                 // Why it did not open is worth more than what became of the record of it.

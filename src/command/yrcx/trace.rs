@@ -9,6 +9,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use crate::command::{Access, trace};
+use crate::controller::text::hex;
 use crate::controller::yrcx::describe::{answer_summary, command_summary};
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Words};
 use crate::controller::yrcx::signal::{Side, Signal};
@@ -63,6 +64,14 @@ impl Trace {
                 self.words("<-", "WO", &image.command(), &answer_summary(&image.command()));
             }
             self.bits("<-", Side::Output, before.as_ref(), image);
+        }
+    }
+
+    /// A message went to the network board, or came from it.
+    pub fn message(&self, direction: Direction, bytes: &[u8], about: &str) {
+        if self.text.level() > 0 {
+            let arrow = if direction == Direction::Sent { "->" } else { "<-" };
+            self.text.line(&format!("{arrow} {}  # {about}", hex(bytes)));
         }
     }
 

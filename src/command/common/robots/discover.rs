@@ -7,16 +7,17 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::Report;
 use crate::command::run::{Run, Stopped};
 use crate::command::toyo::ports::{self, Port};
 use crate::command::yrcx::eip::board::{Identity, MAKER};
+use crate::command::yrcx::trace::Recorder;
+use crate::command::{Access, Need, Report};
+use crate::controller::Risk;
 use crate::failure::{Failure, Kind, plain};
 use crate::output::view::{Cell, Table, View};
 use crate::settings::duration;
 use crate::transport::eip::PORT;
 use crate::transport::eip::discovery::{Found, list_identity};
-use crate::transport::eip::tap::Tap;
 
 /// Asks who is there (ListIdentity), and lists serial ports without opening them.
 #[derive(Debug, Args)]
@@ -57,13 +58,21 @@ fn wait(text: &str) -> Result<Duration, String> {
 
 impl Discover {
     pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+        if run.gate.dry_run {
+            return Err(Failure::usage("nothing is found without asking").hint("it only asks who is there").into());
+        }
         let mut targets = self.targets.clone();
         targets.extend(&self.broadcast);
         let is_everybody = targets.is_empty();
         if is_everybody {
             targets.push(SocketAddrV4::new(Ipv4Addr::BROADCAST, PORT));
         }
-        let boards = match list_identity(self.bind, &targets, self.wait, &Tap::default()).await {
+        let access = Access { granted: Risk::Read, dry_run: false, trace: run.trace.clone(), need: Need::Messages };
+        run.begin_trace()?;
+        let (recorder, tap) = Recorder::start(&access, &run.screen)?.unzip();
+        let asked = list_identity(self.bind, &targets, self.wait, &tap.unwrap_or_default()).await;
+        recorder.map_or(Ok(()), Recorder::finish)?;
+        let boards = match asked {
             Ok(found) => found.into_iter().map(Board::from).collect(),
             Err(error) => {
                 let failure = Failure::new(Kind::NoAnswer, format!("the network cannot be asked: {}", plain(&error)))

@@ -45,9 +45,10 @@ impl Command for Get {
     async fn run(&self, context: Context<'_, Family>) -> Result<Value, Failure> {
         let object = Object { class: self.class, instance: self.instance, attribute: self.attribute };
         let about = format!("{} of {object}", object.reading());
-        let frame = json!({ "hex": text::hex(&object.get_bytes()), "about": about });
-        context.link.rehearse_frame(frame).await;
+        let asked = object.get_bytes();
+        context.link.rehearse_frame(json!({ "hex": text::hex(&asked), "about": about })).await;
         let bytes = context.link.board().await?.get(object).await?;
+        context.link.tell_message(&asked, &bytes, &about);
         Ok(Value::of(object, &bytes))
     }
 }
@@ -98,13 +99,11 @@ impl Command for Set {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
         let object = self.object();
-        let frame = json!({
-            "hex": text::hex(&object.set_bytes(&self.data.0)),
-            "about": format!("Set_Attribute_Single of {object}"),
-        });
-        context.link.rehearse_frame(frame).await;
+        let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));
+        context.link.rehearse_frame(json!({ "hex": text::hex(&asked), "about": about })).await;
         context.link.permit("yrcx.eip.set", self.risk())?;
         context.link.board().await?.set(object, &self.data.0).await?;
+        context.link.tell_message(&asked, &[], &about);
         Ok(Done::new(format!("set {object} to {}", shown(&self.data.0))))
     }
 }
@@ -124,10 +123,9 @@ fn bytes(text: &str) -> Result<Bytes, String> {
 /// A number of an object: 16 bits, decimal or hexadecimal with 0x.
 fn number(text: &str) -> Result<u32, String> {
     let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        Some(digits) if digits.bytes().all(|byte| byte.is_ascii_hexdigit()) => u16::from_str_radix(digits, 16).ok(),
-        Some(_) => None,
-        None if text.bytes().all(|byte| byte.is_ascii_digit()) => text.parse().ok(),
-        None => None,
+        Some(digits) if !digits.starts_with('+') => u16::from_str_radix(digits, 16).ok(),
+        None if !text.starts_with('+') => text.parse().ok(),
+        _ => None,
     };
     number.map(u32::from).ok_or_else(|| format!("'{text}' is no number from 0 to 65535, as in 4 or 0xF5"))
 }
