@@ -86,7 +86,7 @@ const BORDERS: [(&str, &[&str]); 6] = [
 
 /// Commands that touch a transport: the link of a family with its trace, the simulators' servers, the list of ports, and
 /// the peer of tests.
-const LINKS: [&str; 21] = [
+const LINKS: [&str; 22] = [
     "command/trace.rs",
     "command/yerc/link.rs",
     "command/yerc/simulated.rs",
@@ -99,6 +99,7 @@ const LINKS: [&str; 21] = [
     "command/toyo/trace.rs",
     "command/yrcx/eip/board.rs",
     "command/yrcx/link.rs",
+    "command/yrcx/link/board.rs",
     "command/yrcx/link/driver.rs",
     "command/yrcx/reach.rs",
     "command/yrcx/simulated.rs",

@@ -4,6 +4,7 @@
 //! controller takes them at the same time. Futures of a link may be dropped at any await; what was under way stays in the
 //! link, so that [`Family::halt`] can end it properly.
 
+mod board;
 mod driver;
 mod jog;
 mod output;
@@ -36,7 +37,6 @@ use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::{self, EipRole, Place};
 use crate::transport::image::ImageLink;
-use crate::transport::tap::Direction;
 
 /// The yrcx family.
 #[derive(Debug)]
@@ -527,29 +527,6 @@ impl Link {
     fn tell_of_stop(&self) {
         let screen = self.screen;
         std::thread::spawn(move || screen.note("stopping the robot: stop input SI(06) off"));
-    }
-
-    /// The network board, of a link that is for it alone.
-    pub async fn board(&mut self) -> Result<&mut Board, Failure> {
-        match &mut self.transport {
-            Transport::Board(board) => Ok(board),
-            Transport::Notes(_) => std::future::pending().await,
-            Transport::Image(_) => Err(Failure::local("this link carries images, not messages")),
-        }
-    }
-
-    /// Tells at `-vv` what was asked of the board, and what it answered.
-    pub fn tell_message(&self, sent: &[u8], received: &[u8], about: &str) {
-        self.trace.message(Direction::Sent, sent, about);
-        self.trace.message(Direction::Received, received, "done");
-    }
-
-    /// In a dry run, notes a frame and ends it.
-    pub async fn rehearse_frame(&mut self, frame: Json) {
-        if let Transport::Notes(notes) = &mut self.transport {
-            notes.push(frame);
-            std::future::pending::<Infallible>().await;
-        }
     }
 
     fn note(&mut self, order: &Order) {

@@ -1,0 +1,34 @@
+//! A link that asks only the network board.
+
+use std::convert::Infallible;
+
+use serde_json::Value as Json;
+
+use super::{Board, Link, Transport};
+use crate::failure::Failure;
+use crate::transport::tap::Direction;
+
+impl Link {
+    /// The network board, of a link that is for it alone.
+    pub async fn board(&mut self) -> Result<&mut Board, Failure> {
+        match &mut self.transport {
+            Transport::Board(board) => Ok(board),
+            Transport::Notes(_) => std::future::pending().await,
+            Transport::Image(_) => Err(Failure::local("this link carries images, not messages")),
+        }
+    }
+
+    /// Tells at `-vv` what was asked of the board, and what it answered.
+    pub fn tell_message(&self, sent: &[u8], received: &[u8], about: &str) {
+        self.trace.message(Direction::Sent, sent, about);
+        self.trace.message(Direction::Received, received, "done");
+    }
+
+    /// In a dry run, notes a frame and ends it.
+    pub async fn rehearse_frame(&mut self, frame: Json) {
+        if let Transport::Notes(notes) = &mut self.transport {
+            notes.push(frame);
+            std::future::pending::<Infallible>().await;
+        }
+    }
+}
