@@ -13,7 +13,7 @@ use serde_json::Value;
 fn armctl(target: &str, line: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
     command.env_clear().stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command.args(["-t", target, "--timeout", "400ms", "--json"]).args(line.split(' '));
+    command.args(["-t", target, "--timeout", "400ms", "--json", "-q"]).args(line.split(' '));
     command
 }
 
@@ -162,6 +162,12 @@ fn a_board_that_misbehaves() {
             "the TCP connection ended before Get_Attribute_Single of the input assembly was answered",
             NOBODY,
         ),
+        (
+            "frozen",
+            "yrcx info servo",
+            "no answer to servo-status: the controller did not take it",
+            "`yrcx status` tells how the controller stands",
+        ),
         ("stall", "yrcx info servo", "the controller shows nothing", LINK),
         ("wrong-id", "yrcx info servo", "the controller shows nothing", LINK),
         ("wrong-size", "yrcx info servo", "the controller shows nothing", LINK),
@@ -184,6 +190,10 @@ fn a_board_that_misbehaves() {
 
 #[test]
 fn a_change_whose_answer_is_lost_is_not_repeated() {
+    let board = Board::start(&["--mischief", "frozen"]);
+    let (exit, kind, _, message, hint) = told(&board.target, "yrcx motor off --yes");
+    assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
+    assert_eq!(hint, "`yrcx status` tells whether servos and motor power are on");
     let board = Board::start(&["--mischief", "reset"]);
     let (exit, kind, _, message, hint) = told(&board.target, "yrcx eip set 0xF5 1 3 0200");
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");

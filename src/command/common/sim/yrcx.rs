@@ -37,8 +37,8 @@ pub(super) struct SimYrcx {
     /// Faults of images on their way, such as drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,seed=7
     #[arg(long, value_name = "FAULTS", value_parser = faults)]
     fault: Option<FaultSpec>,
-    /// What the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, unreadable, reset,
-    /// mute, garbage
+    /// What the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, frozen, unreadable,
+    /// reset, mute, garbage
     #[arg(long, value_name = "WHAT", value_parser = mischief)]
     mischief: Option<Mischief>,
     /// Take lines on stdin; `help` lists them

@@ -19,6 +19,8 @@ pub enum Mischief {
     WrongId,
     /// Sends images that are a byte short.
     WrongSize,
+    /// Sends what it showed at first, whatever it is shown: what is behind it has stopped.
+    Frozen,
     /// Lets nobody read its assemblies by messages.
     Unreadable,
     /// Ends the TCP connection at every request.
@@ -31,7 +33,7 @@ pub enum Mischief {
 
 impl Mischief {
     /// All there are, with the names they are asked for by.
-    pub const ALL: [(&'static str, Self); 11] = [
+    pub const ALL: [(&'static str, Self); 12] = [
         ("drop", Self::Drop),
         ("stall", Self::Stall),
         ("stale", Self::Stale),
@@ -39,6 +41,7 @@ impl Mischief {
         ("wrong-sequence", Self::WrongSequence),
         ("wrong-id", Self::WrongId),
         ("wrong-size", Self::WrongSize),
+        ("frozen", Self::Frozen),
         ("unreadable", Self::Unreadable),
         ("reset", Self::Reset),
         ("mute", Self::Mute),
@@ -68,6 +71,11 @@ pub(super) fn images(mischief: Option<Mischief>, number: u64, bytes: Vec<u8>) ->
         Mischief::WrongSize => {
             changed(|datagram| datagram.body = &datagram.body[..datagram.body.len().saturating_sub(1)])
         }
-        Mischief::Drop | Mischief::Unreadable | Mischief::Reset | Mischief::Mute | Mischief::Garbage => vec![bytes],
+        Mischief::Drop
+        | Mischief::Frozen
+        | Mischief::Unreadable
+        | Mischief::Reset
+        | Mischief::Mute
+        | Mischief::Garbage => vec![bytes],
     }
 }

@@ -297,7 +297,9 @@ impl<A: Application> Adapter<A> {
             let Some(producer) = held.producer.as_mut().filter(|producer| now >= producer.due()) else { continue };
             let instance = held.peer.input;
             let Some(image) = self.images.get_mut(&instance) else { continue };
-            self.application.image_in(now, instance, image);
+            if self.mischief != Some(Mischief::Frozen) || producer.sent == 0 {
+                self.application.image_in(now, instance, image);
+            }
             let datagram = producer.produce(now, None, image);
             for bytes in mischief::images(self.mischief, producer.sent, datagram) {
                 self.outputs.push_back(Output::Datagram(held.destination, bytes));
