@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::board;
+use super::{Family, NO_UNIT};
 use crate::command::{Command, Context, Need, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
@@ -24,6 +24,7 @@ impl Command for Identify {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Identified, Failure> {
+        context.link.no_unit(NO_UNIT)?;
         let board = context.link.board().await?;
         let address = board.address().to_string();
         let Some(identity) = board.identity().await? else {

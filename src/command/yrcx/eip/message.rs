@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::json;
 
-use super::Family;
 use super::board::{Object, shown};
+use super::{Family, NO_UNIT};
 use crate::command::orders::Done;
 use crate::command::{Command, Context, Need, Report};
 use crate::controller::Risk;
@@ -43,6 +43,7 @@ impl Command for Get {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Value, Failure> {
+        context.link.no_unit(NO_UNIT)?;
         let object = Object { class: self.class, instance: self.instance, attribute: self.attribute };
         let about = format!("{} of {object}", object.reading());
         let asked = object.get_bytes();
@@ -98,6 +99,7 @@ impl Command for Set {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+        context.link.no_unit(NO_UNIT)?;
         let object = self.object();
         let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));
         context.link.rehearse_frame(json!({ "hex": text::hex(&asked), "about": about })).await;
@@ -192,6 +194,7 @@ mod tests {
         assert_eq!(risk(&["eip", "set", "4", "150", "3", "00"]), Risk::Motion);
         assert_eq!(risk(&["eip", "set", "0xF5", "1", "3", "00"]), Risk::Write);
         assert_eq!(risk(&["eip", "get", "4", "150", "3"]), Risk::Read);
+        assert!(frames(&["eip", "get", "4", "150", "3", "--unit", "1"]).unwrap_err().message.contains("--unit"));
         let asked = intent(&["eip", "set", "4", "150", "3", "0xFF01"]);
         assert_eq!(asked, "set class 0x04 (assembly), instance 150, attribute 3 to ff 01");
     }

@@ -9,6 +9,9 @@ mod probe;
 use super::Family;
 use crate::command::commands;
 
+/// Why `--unit` means nothing here.
+const NO_UNIT: &str = "the board is that of the whole controller";
+
 commands! {
     /// What the network board can be asked.
     pub enum Eip of Family {

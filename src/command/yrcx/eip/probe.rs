@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::board::{self, Probed, warned};
+use super::{Family, NO_UNIT};
 use crate::command::{Command, Context, Need, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, Table, View};
@@ -29,6 +29,7 @@ impl Command for Probe {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Found, Failure> {
+        context.link.no_unit(NO_UNIT)?;
         let board = context.link.board().await?;
         let identity = board.identity().await?;
         Ok(Found { identity, probed: board.probe().await? })
