@@ -35,7 +35,7 @@ impl Filter {
             Failure::usage(format!("jq filter '{text}': {what}"))
                 .hint("filters see the whole envelope: try '.data', or leave --jq away to see it")
         };
-        let ours = parse(DEFS, |parser| parser.defs()).expect("the definitions are correct");
+        let ours = parse(DEFS, |parser| parser.defs()).ok_or_else(|| wrong("the definitions do not parse"))?;
         let defs = jaq_core::defs().chain(jaq_std::defs()).chain(jaq_json::defs()).chain(ours);
         let funs = jaq_core::funs().chain(jaq_std::funs()).chain(jaq_json::funs());
         let arena = Arena::default();

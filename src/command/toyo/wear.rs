@@ -42,9 +42,9 @@ struct Diary {
 impl Wear {
     /// Counts for a robot; with a diary where the user has a state folder.
     pub fn of(robot: &str) -> Self {
-        let path = etcetera::choose_base_strategy().ok().and_then(|folders| {
+        let path = etcetera::choose_base_strategy().ok().map(|folders| {
             let folder = folders.state_dir().unwrap_or_else(|| folders.cache_dir());
-            Some(folder.join("armctl").join("eeprom-writes"))
+            folder.join("armctl").join("eeprom-writes")
         });
         Self { diary: path.map(|path| Diary { path, robot: robot.to_owned() }), ..Self::default() }
     }

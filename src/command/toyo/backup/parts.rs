@@ -188,7 +188,7 @@ pub fn table(parts: &[PartResult], done: &'static str) -> Table {
 /// Why work on parts is no success: the gravest failure, and how many parts there are of which kind.
 pub fn failure(parts: &[PartResult]) -> Option<Failure> {
     let failed = parts.iter().filter_map(|part| Some((&part.part, part.error.as_ref()?)));
-    let (name, gravest) = failed.clone().last()?;
+    let (name, gravest) = failed.clone().next_back()?;
     let count = |state| parts.iter().filter(|part| part.state == state).count();
     let not_tried = match count(State::NotTried) {
         0 => String::new(),

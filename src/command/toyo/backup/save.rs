@@ -88,7 +88,7 @@ impl Backup {
         };
         manifest.parts = chosen.iter().filter_map(|part| kept(*part)).collect();
         manifest.write(folder)?;
-        let mut results: Vec<PartResult> = chosen.iter().map(|part| PartResult::pending(part)).collect();
+        let mut results: Vec<PartResult> = chosen.iter().map(PartResult::pending).collect();
         let total = chosen.len();
         for (number, (part, result)) in chosen.iter().zip(&mut results).enumerate() {
             if let Some(entry) = manifest.entry(*part) {
