@@ -75,22 +75,34 @@ pub(super) struct Engine {
 /// The thread for sockets before it runs, so that sockets can be opened on it.
 #[derive(Debug)]
 pub(super) struct Prepared {
-    runtime: Runtime,
+    /// `None` once it runs on its thread.
+    runtime: Option<Runtime>,
+    handle: Handle,
+}
+
+/// Where sockets could not be opened it goes unused, maybe on a thread that must not wait for it.
+impl Drop for Prepared {
+    fn drop(&mut self) {
+        if let Some(runtime) = self.runtime.take() {
+            runtime.shutdown_background();
+        }
+    }
 }
 
 impl Prepared {
     pub(super) fn new() -> io::Result<Self> {
-        Ok(Self { runtime: Builder::new_current_thread().enable_all().build()? })
+        let runtime = Builder::new_current_thread().enable_all().build()?;
+        Ok(Self { handle: runtime.handle().clone(), runtime: Some(runtime) })
     }
 
     /// Where tasks run.
     pub(super) fn handle(&self) -> &Handle {
-        self.runtime.handle()
+        &self.handle
     }
 
     /// Starts both threads. `turn` does what is due by the clock and says when to do so again.
     pub(super) fn start(
-        self,
+        mut self,
         name: &str,
         start: Instant,
         alarm: Arc<Alarm>,
@@ -98,11 +110,11 @@ impl Prepared {
     ) -> io::Result<Engine> {
         let (quit, quits) = oneshot::channel::<()>();
         let mut engine = Engine { alarm: Arc::clone(&alarm), quit: Some(quit), threads: Vec::new() };
-        let runtime = self.runtime;
+        let runtime = self.runtime.take();
         let sockets = thread::Builder::new().name(format!("{name}-io"));
         engine.threads.push(sockets.spawn(move || {
             // An error says that the engine is gone, which is what is waited for.
-            let _ = runtime.block_on(quits);
+            let _ = runtime.map(|runtime| runtime.block_on(quits));
         })?);
         let clock = thread::Builder::new().name(format!("{name}-clock"));
         engine.threads.push(clock.spawn(move || alarm.run(start, turn))?);
