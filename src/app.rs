@@ -60,6 +60,7 @@ fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
 fn run(cli: Cli) -> Result<(), Stopped> {
     let need = match &cli.command {
         Top::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
+        Top::Common(Common::Session(session)) if !session.opens() => Need::Names,
         Top::Common(common) if !common.is_about_robots() => Need::Nothing,
         _ => Need::Inventory,
     };
@@ -92,6 +93,8 @@ fn run(cli: Cli) -> Result<(), Stopped> {
 enum Need {
     /// Nothing: what is wrong in them is no matter, and `help` must tell how to set it right.
     Nothing,
+    /// Which robots are named, whatever the inventory says of them.
+    Names,
     /// The inventory; one that is named must be there.
     Inventory,
     /// The inventory, which is made if it is not there.
@@ -119,6 +122,7 @@ fn sources(globals: Globals, need: Need) -> Result<Sources, Failure> {
         tags: globals.tag,
         all: globals.all,
         environment: variable("ARMCTL_TARGET", |url| url.parse::<Target>().map_err(|failure| failure.message))?,
+        by_session: !globals.no_session,
     };
     // A robot that is told by flag needs no file; a broken file is an error for everybody else.
     let mut location = Location::find(match globals.config {
@@ -128,7 +132,7 @@ fn sources(globals: Globals, need: Need) -> Result<Sources, Failure> {
     if let (Location::Named(path), Need::InventoryOrNone) = (&location, need) {
         location = Location::Usual(path.clone());
     }
-    let inventory = if selection.sim || selection.target.is_some() {
+    let inventory = if selection.sim || selection.target.is_some() || need == Need::Names {
         Inventory { path: location.path().map(Path::to_owned), ..Inventory::default() }
     } else {
         Inventory::load(&location)?

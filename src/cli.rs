@@ -144,6 +144,9 @@ pub struct Globals {
     /// Encoding of names and texts on the controller (ARMCTL_ENCODING)
     #[arg(long, global = true, hide_short_help = true, value_name = "NAME", help_heading = "Link")]
     pub encoding: Option<Encoding>,
+    /// Go to the robot directly, although a session holds its link
+    #[arg(long, global = true, hide_short_help = true, help_heading = "Link")]
+    pub no_session: bool,
 
     /// Repeat a read, every second or every INTERVAL
     #[arg(long, global = true, hide_short_help = true, value_name = "INTERVAL", num_args = 0..=1, default_missing_value = "1s", value_parser = duration::parse_some, help_heading = "Repeat")]

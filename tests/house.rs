@@ -84,11 +84,13 @@ const BORDERS: [(&str, &[&str]); 6] = [
     ("command/", &["crate::app", "tokio::net", "std::net::UdpSocket", "std::net::TcpStream", "std::process"]),
 ];
 
-/// Commands that touch a transport: the link of a family with its trace, the simulators' servers, the list of ports, and
-/// the peer of tests.
-const LINKS: [&str; 22] = [
+/// Commands that touch a transport: the link of a family with its trace, sessions, the simulators' servers, the list of
+/// ports, and the peer of tests.
+const LINKS: [&str; 30] = [
+    "command/attach.rs",
     "command/trace.rs",
     "command/yerc/link.rs",
+    "command/yerc/reach.rs",
     "command/yerc/simulated.rs",
     "command/yerc/trace.rs",
     "command/toyo/link.rs",
@@ -98,14 +100,20 @@ const LINKS: [&str; 22] = [
     "command/toyo/testing.rs",
     "command/toyo/trace.rs",
     "command/yrcx/eip/board.rs",
+    "command/yrcx/hold.rs",
     "command/yrcx/link.rs",
     "command/yrcx/link/board.rs",
     "command/yrcx/link/driver.rs",
+    "command/yrcx/link/shared.rs",
     "command/yrcx/reach.rs",
     "command/yrcx/simulated.rs",
     "command/yrcx/testing.rs",
     "command/yrcx/trace.rs",
     "command/common/robots/discover.rs",
+    "command/common/session/close.rs",
+    "command/common/session/list.rs",
+    "command/common/session/mod.rs",
+    "command/common/session/open.rs",
     "command/common/sim/toyo.rs",
     "command/common/sim/yerc.rs",
     "command/common/sim/yrcx.rs",

@@ -4,6 +4,7 @@
 //! [`Noun`]s, and a line in the family's `commands!` list makes them part of the tool: command line, help, man page,
 //! completion and schema follow from it.
 
+pub mod attach;
 pub mod checks;
 pub mod common;
 pub mod interrupt;

@@ -75,6 +75,8 @@ pub struct Robot {
     pub model: Setting<Model>,
     /// Free words to choose by.
     pub tags: Vec<String>,
+    /// Whether a session that holds its link is used.
+    pub by_session: bool,
 }
 
 impl Robot {
@@ -105,6 +107,8 @@ pub struct Selection {
     pub all: bool,
     /// `ARMCTL_TARGET`.
     pub environment: Option<Target>,
+    /// Whether sessions are used: not with `--no-session`.
+    pub by_session: bool,
 }
 
 impl Selection {
@@ -170,7 +174,7 @@ impl Sources {
 
     /// Where nothing is said about robots, takes all of the inventory instead of its default.
     pub fn widen(&mut self) {
-        let Selection { sim, target, robots, tags, all, environment } = &mut self.selection;
+        let Selection { sim, target, robots, tags, all, environment, by_session: _ } = &mut self.selection;
         let is_said = *sim || target.is_some() || environment.is_some() || !robots.is_empty() || !tags.is_empty();
         *all |= !is_said && !self.inventory.robots.is_empty();
     }
@@ -285,6 +289,7 @@ impl Sources {
             read_only: setting!(read_only, false),
             model: url_model.unwrap_or_else(|| setting!(model, Model::Dx200)),
             tags,
+            by_session: self.selection.by_session,
         }
     }
 }

@@ -3,6 +3,8 @@
 //! A fieldbus sends the newest image in its own rhythm; what is replaced before its turn never leaves. So whoever needs
 //! an image to be seen shows it and waits for [`Event::Sent`]. After a loss the peer is shown what the way rests at,
 //! idle, until something is shown again: nothing that was meant for the time before happens a second time.
+//!
+//! A link may be another process's, which lets several have it: see [`session`](super::session).
 
 use std::fmt;
 use std::net::SocketAddrV4;
@@ -18,6 +20,8 @@ use super::eip::scanner::{Connection, Scanner};
 use super::eip::settings::Settings;
 use super::eip::tap::Tap;
 use super::eip::trouble::Trouble;
+use super::session::client::{self, Attached, Hindrance};
+use super::session::wire::Change;
 
 /// What happens on a link.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,6 +34,8 @@ pub enum Event {
     Lost(String),
     /// The link is up again.
     Reopened,
+    /// Somebody else who uses the link has changed what the peer is shown.
+    Shown(Change),
     /// Nothing until then.
     Timeout,
 }
@@ -71,6 +77,7 @@ enum Way {
     Eip(Eip),
     Read(Reader),
     InProcess(InProcess),
+    Session(Box<Attached>),
 }
 
 /// A class 1 connection of EtherNet/IP.
@@ -117,6 +124,12 @@ impl ImageLink {
         Self::over(Way::InProcess(InProcess { peer, start: Instant::now(), pending: None, due: Duration::ZERO }))
     }
 
+    /// A link that another process holds.
+    pub fn in_session(attached: Box<Attached>) -> Self {
+        let is_up = attached.welcome.down.is_none();
+        Self { is_up, ..Self::over(Way::Session(attached)) }
+    }
+
     /// Keeps something until the link is closed.
     #[must_use]
     pub fn keeping(self, kept: Box<dyn fmt::Debug>) -> Self {
@@ -125,6 +138,50 @@ impl ImageLink {
 
     fn over(way: Way) -> Self {
         Self { way, seen: None, is_up: true, kept: None }
+    }
+
+    /// Whether the link is up.
+    pub fn is_up(&self) -> bool {
+        self.is_up
+    }
+
+    /// What the peer is shown already where another process holds the link.
+    pub fn shown(&self) -> Option<&[u8]> {
+        match &self.way {
+            Way::Session(attached) => attached.shown(),
+            Way::Eip(_) | Way::Read(_) | Way::InProcess(_) => None,
+        }
+    }
+
+    /// Waits until the exclusive part of what is shown is this process's to change, but not longer than `until`.
+    pub async fn take(&mut self, until: Instant) -> Result<(), Hindrance> {
+        match &mut self.way {
+            Way::Session(attached) => attached.take(until).await,
+            Way::Eip(_) | Way::Read(_) | Way::InProcess(_) => Ok(()),
+        }
+    }
+
+    /// Lets others change the exclusive part.
+    pub fn give(&mut self) {
+        if let Way::Session(attached) = &mut self.way {
+            attached.over();
+        }
+    }
+
+    /// Becomes the only one who moves the robot.
+    pub async fn claim_motion(&mut self) -> Result<(), Hindrance> {
+        match &mut self.way {
+            Way::Session(attached) => attached.claim_motion().await,
+            Way::Eip(_) | Way::Read(_) | Way::InProcess(_) => Ok(()),
+        }
+    }
+
+    /// Why the process that held the link holds it no longer.
+    pub fn ended(&self) -> Option<&str> {
+        match &self.way {
+            Way::Session(attached) => attached.ended(),
+            Way::Eip(_) | Way::Read(_) | Way::InProcess(_) => None,
+        }
     }
 
     /// Shows the peer this image from the next cycle on; [`Event::Sent`] tells when it has left. While the link is down
@@ -140,6 +197,10 @@ impl ImageLink {
                 peer.pending = Some(image.to_vec());
                 Ok(())
             }
+            Way::Session(attached) => {
+                attached.show(image);
+                Ok(())
+            }
         }
     }
 
@@ -149,12 +210,13 @@ impl ImageLink {
             Way::Eip(eip) => eip.next(self.is_up, self.seen.as_ref(), until).await,
             Way::Read(reader) => next_reading(reader, self.is_up, self.seen.as_ref(), until).await,
             Way::InProcess(peer) => peer.next(self.is_up, self.seen.as_ref(), until).await,
+            Way::Session(attached) => attached.event(until).await.into(),
         };
         match &event {
             Event::Image(image) => self.seen = Some(Arc::clone(image)),
             Event::Lost(_) => (self.is_up, self.seen) = (false, None),
             Event::Reopened => self.is_up = true,
-            Event::Sent | Event::Timeout => {}
+            Event::Sent | Event::Shown(_) | Event::Timeout => {}
         }
         event
     }
@@ -166,11 +228,11 @@ impl ImageLink {
                 let view = eip.connection.view();
                 Some((view.statistics, view.intervals))
             }
-            Way::Read(_) | Way::InProcess(_) => None,
+            Way::Read(_) | Way::InProcess(_) | Way::Session(_) => None,
         }
     }
 
-    /// Ends it properly.
+    /// Ends it properly; one that another process holds goes on.
     pub async fn close(self) -> Result<(), Trouble> {
         let Self { way, kept, .. } = self;
         let closed = match way {
@@ -183,10 +245,27 @@ impl ImageLink {
                 peer.peer.input(peer.start.elapsed(), None);
                 Ok(())
             }
+            Way::Session(attached) => {
+                attached.leave().await;
+                Ok(())
+            }
         };
         // The other end must not go before it is told.
         drop(kept);
         closed
+    }
+}
+
+impl From<client::Event> for Event {
+    fn from(event: client::Event) -> Self {
+        match event {
+            client::Event::Sent => Self::Sent,
+            client::Event::Image(image) => Self::Image(image.into()),
+            client::Event::Shown(change) => Self::Shown(change),
+            client::Event::Lost(why) => Self::Lost(why),
+            client::Event::Reopened => Self::Reopened,
+            client::Event::Timeout => Self::Timeout,
+        }
     }
 }
 

@@ -11,6 +11,7 @@ pub mod ports;
 mod pty;
 pub mod serial;
 pub mod server;
+pub mod session;
 pub mod sim;
 pub mod stream;
 pub mod stream_server;

@@ -6,6 +6,7 @@ use tokio::time::Instant;
 
 use super::line::InProcessLine;
 use super::serial::Serial;
+use super::session::client::{Attached, Hindrance};
 use super::sim::Peer;
 use super::tcp::Tcp;
 
@@ -18,9 +19,47 @@ pub enum Stream<P> {
     Tcp(Tcp),
     /// A peer in this process.
     InProcess(Box<InProcessLine<P>>),
+    /// A stream that another process holds, and lets several have one after the other.
+    Session(Box<Attached>),
 }
 
 impl<P: Peer> Stream<P> {
+    /// Waits until the stream is this process's, but not longer than `until`. The future may be dropped.
+    ///
+    /// # Errors
+    /// [`Hindrance`], where another process holds the stream.
+    pub async fn take(&mut self, until: Instant) -> Result<(), Hindrance> {
+        match self {
+            Self::Session(attached) => attached.take(until).await,
+            Self::Serial(_) | Self::Tcp(_) | Self::InProcess(_) => Ok(()),
+        }
+    }
+
+    /// Lets others have it.
+    pub fn give(&mut self) {
+        if let Self::Session(attached) = self {
+            attached.over();
+        }
+    }
+
+    /// Becomes the only one who moves the robot.
+    ///
+    /// # Errors
+    /// [`Hindrance`], where another process holds the stream.
+    pub async fn claim_motion(&mut self) -> Result<(), Hindrance> {
+        match self {
+            Self::Session(attached) => attached.claim_motion().await,
+            Self::Serial(_) | Self::Tcp(_) | Self::InProcess(_) => Ok(()),
+        }
+    }
+
+    /// Leaves it. One that another process holds goes on.
+    pub async fn leave(self) {
+        if let Self::Session(attached) = self {
+            attached.leave().await;
+        }
+    }
+
     /// Sends bytes; they may still be on their way when this returns.
     ///
     /// # Errors
@@ -29,6 +68,7 @@ impl<P: Peer> Stream<P> {
         match self {
             Self::Serial(serial) => serial.send(bytes).await,
             Self::Tcp(tcp) => tcp.send(bytes).await,
+            Self::Session(attached) => attached.send(0, bytes).await,
             Self::InProcess(line) => {
                 line.send(bytes);
                 Ok(())
@@ -44,6 +84,7 @@ impl<P: Peer> Stream<P> {
         match self {
             Self::Serial(serial) => serial.receive(buffer, until).await,
             Self::Tcp(tcp) => tcp.receive(buffer, until).await,
+            Self::Session(attached) => attached.read(buffer, until).await,
             Self::InProcess(line) => Ok(line.receive(buffer, until).await),
         }
     }
@@ -54,6 +95,8 @@ impl<P: Peer> Stream<P> {
             Self::Serial(serial) => serial.discard(),
             Self::Tcp(tcp) => tcp.discard(),
             Self::InProcess(line) => line.discard(),
+            // Its holder has discarded what came before.
+            Self::Session(_) => {}
         }
     }
 }

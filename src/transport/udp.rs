@@ -43,6 +43,12 @@ impl Udp {
         Ok(Self { channels: channels.collect() })
     }
 
+    /// The same ports, by sockets of their own.
+    #[must_use]
+    pub fn another(&self) -> Self {
+        Self { channels: self.channels.iter().map(|channel| Channel { peer: channel.peer, open: None }).collect() }
+    }
+
     /// The address of a channel's peer.
     pub fn peer(&self, channel: usize) -> SocketAddr {
         self.channels[channel].peer

@@ -7,6 +7,7 @@ pub mod help;
 pub mod man;
 pub mod robots;
 pub mod schema;
+pub mod session;
 pub mod sim;
 
 use clap::Subcommand;
@@ -22,6 +23,9 @@ pub enum Common {
     /// The inventory: list, show, add, remove; check and discover
     #[command(subcommand)]
     Robots(robots::Robots),
+    /// Hold a link for all commands that follow: open, list, close
+    #[command(subcommand)]
+    Session(session::Session),
     /// Serve the simulators on real sockets
     Sim(sim::Sim),
     /// Explain bytes of the line
@@ -43,7 +47,7 @@ pub enum Common {
 impl Common {
     /// Whether it asks or lists robots, and so needs the inventory.
     pub fn is_about_robots(&self) -> bool {
-        matches!(self, Self::Status(_) | Self::Robots(_))
+        matches!(self, Self::Status(_) | Self::Robots(_) | Self::Session(_))
     }
 
     /// Does it.
@@ -51,6 +55,7 @@ impl Common {
         match self {
             Self::Status(overview) => run.robots(&overview).await,
             Self::Sim(sim) => sim.run(run).await,
+            Self::Session(session) => Box::pin(session.run(run)).await,
             Self::Robots(robots) => robots.run(run).await,
             Self::Decode(decode) => decode.run(run),
             Self::Explain(explain) => explain.run(run),

@@ -16,6 +16,7 @@ use super::reach;
 use super::refusal;
 use super::trace::Trace;
 use super::wear::Wear;
+use crate::command::attach::{attach, hindered};
 use crate::command::{Access, Family};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::{Misfit, Record};
@@ -78,7 +79,7 @@ impl Transport {
         match self {
             Self::Stream(stream) => match &**stream {
                 Stream::Tcp(tcp) => tcp.ends().ok(),
-                Stream::Serial(_) | Stream::InProcess(_) => None,
+                Stream::Serial(_) | Stream::InProcess(_) | Stream::Session(_) => None,
             },
             Self::Notes(_) => None,
         }
@@ -114,7 +115,11 @@ impl Family for Toyo {
         let transport = if access.dry_run {
             Transport::Notes(Vec::new())
         } else {
-            Transport::Stream(Box::new(way.open(robot).await?))
+            let stream = match Box::pin(attach(robot, &access, screen)).await? {
+                Some(attached) => Stream::Session(attached),
+                None => way.open(robot).await?,
+            };
+            Transport::Stream(Box::new(stream))
         };
         Link::new(robot, &access, screen, transport, way.character())
     }
@@ -153,6 +158,9 @@ impl Family for Toyo {
         if !odd.is_empty() {
             screen.detail(1, &format!("on the line: {}", odd.join(", ")));
         }
+        if let Transport::Stream(stream) = link.transport {
+            stream.leave().await;
+        }
         if let Err(error) = link.wear.keep() {
             screen.detail(1, &format!("what was written to the EEPROM was not noted: {error}"));
         }
@@ -189,6 +197,14 @@ impl Link {
             is_gone: false,
             wear,
         })
+    }
+
+    /// The stream, for somebody else to use; `None` in a dry run.
+    pub(super) fn into_stream(self) -> Option<Stream<Box<dyn Peer>>> {
+        match self.transport {
+            Transport::Stream(stream) => Some(*stream),
+            Transport::Notes(_) => None,
+        }
     }
 
     /// A link to a peer of a test's own.
@@ -317,6 +333,7 @@ impl Link {
             notes.push(json!({ "text": block }));
             std::future::pending::<Infallible>().await;
         }
+        self.take_turn(Risk::Motion).await?;
         self.moving = Some(Moving::Program);
         self.line.begin_raw(block);
         match self.drive(Risk::Motion).await? {
@@ -337,6 +354,7 @@ impl Link {
                 .hint("this is a fault of armctl: the command passed the gate as less than it is; please report it"));
         }
         request.check().map_err(|error| misuse(&error))?;
+        self.take_turn(risk).await?;
         if risk == Risk::Motion {
             self.moving = Some(if request.command() == Command::Jgst { Moving::Jog } else { Moving::Program });
         }
@@ -352,6 +370,28 @@ impl Link {
     /// Moves characters and time until the exchange has ended. The future may be dropped: the next exchange lets what
     /// is still owed pass.
     async fn drive(&mut self, risk: Risk) -> Result<Ended, Failure> {
+        let ended = self.drive_alone(risk).await;
+        if let Transport::Stream(stream) = &mut self.transport {
+            stream.give();
+        }
+        ended
+    }
+
+    /// Where a session shares the line out: waits until it is this link's, until the end of the next [`Link::drive`]. As
+    /// long as this link moves the robot, no other does.
+    async fn take_turn(&mut self, risk: Risk) -> Result<(), Failure> {
+        let Transport::Stream(stream) = &mut self.transport else { return Ok(()) };
+        let until = Instant::now() + self.policy.timeout.max(self.usual.timeout);
+        let turn = async {
+            if risk == Risk::Motion {
+                stream.claim_motion().await?;
+            }
+            stream.take(until).await
+        };
+        turn.await.map_err(|hindrance| hindered(&self.label, &hindrance))
+    }
+
+    async fn drive_alone(&mut self, risk: Risk) -> Result<Ended, Failure> {
         let began = self.started.elapsed();
         let mut now = began;
         let mut has_left = false;
@@ -405,6 +445,11 @@ impl Link {
     /// Nothing that this link set in motion moves any more.
     pub fn has_ended(&mut self) {
         self.moving = None;
+    }
+
+    /// Whether a session holds the line, and others may use it at the same time.
+    fn is_shared(&self) -> bool {
+        matches!(&self.transport, Transport::Stream(stream) if matches!(**stream, Stream::Session(_)))
     }
 
     /// Whether nothing is sent, only noted.
@@ -462,6 +507,7 @@ impl Link {
     fn broken(&mut self, error: &io::Error, is_open: bool) -> Failure {
         self.is_gone = true;
         let what = match error.kind() {
+            io::ErrorKind::NotConnected if self.is_shared() => format!("the line is gone: {error}"),
             io::ErrorKind::NotConnected => "the line is gone: unplugged, or closed by the other side".to_owned(),
             _ => format!("the line is broken: {}", plain(error)),
         };
@@ -470,7 +516,11 @@ impl Link {
             return Failure::new(Kind::OutcomeUnknown, message)
                 .hint("look at the robot; once the line is back, `toyo status` tells");
         }
-        Failure::new(Kind::NoAnswer, format!("{}: {what}", self.label)).hint("`toyo ports` lists the ports there are")
+        Failure::new(Kind::NoAnswer, format!("{}: {what}", self.label)).hint(if self.is_shared() {
+            "`armctl session list` tells how it stands"
+        } else {
+            "`toyo ports` lists the ports there are"
+        })
     }
 }
 

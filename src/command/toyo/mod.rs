@@ -55,6 +55,7 @@ mod wear;
 pub use check::check;
 pub use link::Toyo as Family;
 pub use overview::overview;
+pub use reach::hold;
 
 use crate::command::{AtDesk, Verbs, commands};
 

@@ -4,13 +4,18 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
+use super::link::Toyo;
+use super::overview::overview;
 use super::simulated::{self, Simulated};
+use crate::command::{Access, Family as _};
 use crate::failure::{Failure, Kind, plain};
+use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::{self, Place};
 use crate::transport::fault::LineFaultSpec;
 use crate::transport::line::{InProcessLine, Pace};
 use crate::transport::serial::{Line, OpenError, Serial};
+use crate::transport::session::host::held;
 use crate::transport::sim::Peer;
 use crate::transport::stream::Stream;
 use crate::transport::tcp::{ConnectError, Tcp};
@@ -83,6 +88,26 @@ impl Way<'_> {
             }
         }
     }
+}
+
+/// Opens it for a session to hold, which opens it again when it is gone. The controller is asked something first: a line
+/// says nothing by itself.
+pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<held::Line, Failure> {
+    let robot = Robot { by_session: false, ..robot.clone() };
+    let mut link = Toyo::connect(&robot, access.clone(), screen).await?;
+    overview(&mut link).await?;
+    // Over the same connection: a device server may take another one only after a while.
+    let stream = link.into_stream().ok_or_else(|| Failure::local("a dry run holds no line"))?;
+    Ok(held::Line::new(stream, move || {
+        let robot = robot.clone();
+        Box::pin(async move {
+            let opened = match way(&robot) {
+                Ok(way) => way.open(&robot).await,
+                Err(failure) => Err(failure),
+            };
+            opened.map_err(|failure| failure.message)
+        })
+    }))
 }
 
 /// A device server may take longer to accept than a controller to answer.

@@ -2,15 +2,16 @@
 
 use std::convert::Infallible;
 use std::io;
-use std::net::SocketAddr;
 use std::time::Duration;
 
 use serde_json::{Value, json};
-use tokio::time::{Instant, timeout_at};
+use tokio::time::Instant;
 
+use super::reach::{self, Transport};
 pub use super::refusal::Refusal;
-use super::simulated::{self, Simulated, channel};
+use super::simulated::channel;
 use super::trace::Trace;
+use crate::command::attach::hindered;
 use crate::command::{Access, Family};
 use crate::controller::text::{Encoding, hex};
 use crate::controller::yerc::Model;
@@ -20,17 +21,14 @@ use crate::controller::yerc::request::Request;
 use crate::controller::yerc::session::{
     Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd,
 };
-use crate::controller::yerc::simulator::Simulator;
 use crate::controller::yerc::wire::{Division, LAST_BLOCK, MAX_DATA, RequestFrame};
 use crate::controller::{Risk, Session, Step};
 use crate::failure::{Failure, Kind, plain};
 use crate::output::Screen;
 use crate::settings::Robot;
-use crate::settings::target::{self, Place};
-use crate::transport::fault::{FaultSpec, Faults};
-use crate::transport::sim::InProcess;
+use crate::settings::target;
+use crate::transport::session::client::Hindrance;
 use crate::transport::tap::Direction;
-use crate::transport::udp::Udp;
 
 /// The yerc family.
 #[derive(Debug)]
@@ -61,26 +59,6 @@ pub struct Link {
     finished: Option<Download>,
 }
 
-/// How the bytes travel.
-#[derive(Debug)]
-enum Transport {
-    Udp(Udp),
-    Sim(Box<InProcess<Simulated>>),
-    /// A dry run: what would be sent is noted.
-    Notes(Vec<Value>),
-}
-
-impl Transport {
-    /// Own and other address of a channel; a simulator in this process has those of the loopback.
-    fn ends(&self, channel: usize) -> (SocketAddr, SocketAddr) {
-        let loopback = |port| SocketAddr::from(([127, 0, 0, 1], port));
-        match self {
-            Self::Udp(udp) => (udp.local(channel).unwrap_or(loopback(0)), udp.peer(channel)),
-            Self::Sim(_) | Self::Notes(_) => (loopback(40000), loopback(if channel == 0 { 10040 } else { 10041 })),
-        }
-    }
-}
-
 /// How long a stop is tried at least, the silence after which it is sent again (it doubles), and how often.
 const STOP_WITHIN: Duration = Duration::from_secs(3);
 const REPEAT_STOP: Duration = Duration::from_millis(100);
@@ -103,29 +81,7 @@ impl Family for Yerc {
     type Link = Link;
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
-        let mut model = robot.model.value;
-        let transport = match &robot.target.value.place {
-            _ if access.dry_run => Transport::Notes(Vec::new()),
-            Place::Udp(udp) => {
-                Transport::Udp(Udp::open(&udp.host, &[udp.port, udp.file_port]).await.map_err(|_| {
-                    Failure::new(Kind::NoAnswer, format!("{}: cannot find host '{}'", robot.label(), udp.host))
-                        .hint("check the name, or use the address of the controller")
-                })?)
-            }
-            Place::Sim(sim) => {
-                let faults = sim.fault.as_deref().map(str::parse::<FaultSpec>).transpose().map_err(|error| {
-                    Failure::usage(format!("{}: {error}", robot.target.value)).hint("write % as %25 in a URL")
-                })?;
-                let start = simulated::start(sim.state.as_deref(), robot.model.value, faults.as_ref())?;
-                model = start.model();
-                let controller = Simulated(Simulator::new(start));
-                Transport::Sim(Box::new(InProcess::new(controller, faults.map(Faults::pair))))
-            }
-            Place::Serial(_) | Place::Tcp(_) | Place::Eip(_) => {
-                let message = format!("yerc is not reached over {}:", robot.target.value.scheme());
-                return Err(Failure::usage(message).hint("use udp:// or sim:"));
-            }
-        };
+        let (transport, model) = reach::open(robot, &access, screen).await?;
         let timeout = robot.timeout.value;
         let attempt = Policy::default().attempt.min(timeout);
         Ok(Link {
@@ -168,7 +124,7 @@ impl Family for Yerc {
     fn rehearsed(link: &mut Link) -> Vec<Value> {
         match &mut link.transport {
             Transport::Notes(frames) => std::mem::take(frames),
-            Transport::Udp(_) | Transport::Sim(_) => Vec::new(),
+            Transport::Udp(_) | Transport::Sim(_) | Transport::Session(_) => Vec::new(),
         }
     }
 
@@ -176,6 +132,9 @@ impl Family for Yerc {
         link.linger().await?;
         let Totals { sent, received, waited, exchanges } = link.totals;
         screen.detail(1, &format!("{exchanges} exchanges in {waited:.1?}: {sent} frames sent, {received} received"));
+        if let Transport::Session(attached) = link.transport {
+            attached.leave().await;
+        }
         link.trace.finish()
     }
 }
@@ -254,7 +213,9 @@ impl Link {
         let frame = request.frame(0);
         let frame = RequestFrame::parse(&frame).map_err(|error| Failure::local(error.to_string()))?;
         let mut session = Exchange::new(&frame, is_repeatable, self.policy, &self.ids);
-        let ended = self.drive(request.division(), &mut session, |_| Ok(())).await?;
+        let before = self.totals.sent;
+        let driven = self.drive(request.division(), &mut session, |_| Ok(())).await;
+        let ended = driven.map_err(|failure| self.cut_short(failure, request, self.totals.sent > before))?;
         self.totals.exchanges += 1;
         self.heard(session.counters());
         match ended {
@@ -315,9 +276,7 @@ impl Link {
         }
         self.admit(request).await?;
         // A controller that checks no ids could take a late block of the last upload into this one; a new port ends that.
-        if let Transport::Udp(udp) = &mut self.transport {
-            udp.renew(channel(Division::File));
-        }
+        self.transport.renew(channel(Division::File));
         self.finished = None;
         let frame = request.frame(0);
         let frame = RequestFrame::parse(&frame).map_err(|error| Failure::local(error.to_string()))?;
@@ -359,6 +318,7 @@ impl Link {
         let Some(mut last) = self.finished.take().filter(|last| last.counters() != Counters::default()) else {
             return Ok(());
         };
+        self.take_turn(Division::File).await?;
         let channel = channel(Division::File);
         let until = Instant::now() + self.policy.attempt;
         while Instant::now() < until
@@ -416,7 +376,12 @@ impl Link {
             return Err(Failure::local(format!("a {:?} request was stopped before it left", request.risk()))
                 .hint("this is a fault of armctl: the command passed the gate as less than it is; please report it"));
         }
-        self.has_moved |= request.risk() == Risk::Motion;
+        if request.risk() == Risk::Motion {
+            if let Transport::Session(attached) = &mut self.transport {
+                attached.claim_motion().await.map_err(|hindrance| hindered(&self.label, &hindrance))?;
+            }
+            self.has_moved = true;
+        }
         Ok(())
     }
 
@@ -447,8 +412,35 @@ impl Link {
         Ok(())
     }
 
-    /// Moves datagrams and time until the session has ended.
+    /// Moves datagrams and time until the session has ended. Who shares the link has it for so long.
     async fn drive<S: Session>(
+        &mut self,
+        division: Division,
+        session: &mut S,
+        serve: impl FnMut(Want<'_, S>) -> Result<(), Failure>,
+    ) -> Result<S::Outcome, Failure> {
+        self.take_turn(division).await?;
+        let driven = self.drive_alone(division, session, serve).await;
+        self.give_turn();
+        driven
+    }
+
+    async fn take_turn(&mut self, division: Division) -> Result<(), Failure> {
+        let Transport::Session(attached) = &mut self.transport else { return Ok(()) };
+        let until = Instant::now() + self.policy.deadline;
+        attached
+            .take_for(reach::number(channel(division)), until)
+            .await
+            .map_err(|hindrance| hindered(&self.label, &hindrance))
+    }
+
+    fn give_turn(&mut self) {
+        if let Transport::Session(attached) = &mut self.transport {
+            attached.over();
+        }
+    }
+
+    async fn drive_alone<S: Session>(
         &mut self,
         division: Division,
         session: &mut S,
@@ -490,27 +482,14 @@ impl Link {
 
     async fn send(&mut self, channel: usize, bytes: &[u8]) -> Result<(), Failure> {
         self.totals.sent += 1;
-        let sent = match &mut self.transport {
-            Transport::Udp(udp) => udp.send(channel, bytes).await,
-            Transport::Sim(sim) => {
-                sim.send(channel, bytes);
-                Ok(())
-            }
-            Transport::Notes(_) => Ok(()),
-        };
-        sent.map_err(|error| self.broken(channel, &error))?;
+        self.transport.send(channel, bytes).await.map_err(|error| self.broken(channel, &error))?;
         self.trace.record(Direction::Sent, self.transport.ends(channel), bytes);
         Ok(())
     }
 
     /// Waits for a datagram and puts it into the buffer; `None` if none came until then.
     async fn receive(&mut self, channel: usize, until: Instant) -> Result<Option<usize>, Failure> {
-        let buffer = &mut self.buffer[..];
-        let received = match &mut self.transport {
-            Transport::Udp(udp) => udp.receive(channel, buffer, until).await,
-            Transport::Sim(sim) => Ok(timeout_at(until, sim.receive(channel, buffer)).await.ok()),
-            Transport::Notes(_) => std::future::pending().await,
-        };
+        let received = self.transport.receive(channel, &mut self.buffer[..], until).await;
         let Some(len) = received.map_err(|error| self.broken(channel, &error))? else { return Ok(None) };
         self.totals.received += 1;
         self.trace.record(Direction::Received, self.transport.ends(channel), &self.buffer[..len]);
@@ -540,6 +519,16 @@ impl Link {
         )
     }
 
+    /// A session that ends in the middle takes the answer with it.
+    fn cut_short(&self, failure: Failure, request: &Request, has_left: bool) -> Failure {
+        let is_gone = matches!(&self.transport, Transport::Session(attached) if attached.ended().is_some());
+        if !is_gone || !has_left || request.risk() == Risk::Read {
+            return failure;
+        }
+        let message = format!("{}; it was sent, and may or may not have been done", failure.message);
+        Failure::new(Kind::OutcomeUnknown, message).hint(format!("ask before you repeat it: {}", telltale(request)))
+    }
+
     /// Nobody confirmed something that may have been done.
     fn unknown(&self, request: &Request, waited: Duration, counters: Counters) -> Failure {
         let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
@@ -554,8 +543,14 @@ impl Link {
     fn broken(&self, channel: usize, error: &io::Error) -> Failure {
         use io::ErrorKind::{ConnectionRefused, HostUnreachable, NetworkUnreachable};
 
-        let Transport::Udp(udp) = &self.transport else { return Failure::io(&self.label, error) };
-        let port = udp.peer(channel).port();
+        let port = match &self.transport {
+            Transport::Udp(udp) => udp.peer(channel).port().to_string(),
+            Transport::Session(attached) => match attached.ended() {
+                Some(why) => return hindered(&self.label, &Hindrance::Ended(why.to_owned())),
+                None => "of the session".to_owned(),
+            },
+            Transport::Sim(_) | Transport::Notes(_) => return Failure::io(&self.label, error),
+        };
         match error.kind() {
             ConnectionRefused => {
                 Failure::new(Kind::NoAnswer, format!("{}: nothing listens on UDP port {port}", self.label)).hint(

@@ -15,6 +15,7 @@ mod orders;
 mod overview;
 mod position;
 mod raw;
+mod reach;
 mod refusal;
 mod register;
 pub mod simulated;
@@ -28,6 +29,7 @@ mod writes;
 pub use check::check;
 pub use link::Yerc as Family;
 pub use overview::overview;
+pub use reach::hold;
 
 use crate::command::{Verbs, commands};
 

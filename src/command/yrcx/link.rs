@@ -8,6 +8,7 @@ mod board;
 mod driver;
 mod jog;
 mod output;
+mod shared;
 
 use std::convert::Infallible;
 use std::time::Duration;
@@ -16,10 +17,12 @@ use serde_json::{Value as Json, json};
 use tokio::time::Instant;
 
 use super::eip::board::Board;
+use super::hold;
 use super::io::named;
 use super::reach;
 use super::refusal;
 use super::trace::{Recorder, Trace};
+use crate::command::attach::attach;
 use crate::command::{Access, Family, Need};
 use crate::controller::Risk;
 use crate::controller::yrcx::alarm::STOP_INPUT;
@@ -32,7 +35,7 @@ use crate::controller::yrcx::session::{Ended, Exchange, Outcome, Policy};
 use crate::controller::yrcx::signal::{input, resting};
 use crate::controller::yrcx::table::{Command, Pace, Row};
 use crate::controller::yrcx::value::{Key, Values};
-use crate::failure::{Failure, Kind};
+use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::{self, EipRole, Place};
@@ -81,6 +84,10 @@ pub struct Link {
     has_started: bool,
     /// Whether the link outlives the command, so that what it began may go on.
     is_held: bool,
+    /// Whether a session holds it, and others may use it at the same time.
+    is_shared: bool,
+    /// Whether a remote command has ended, so that somebody else may give the next one.
+    is_over: bool,
     /// What a watch told last.
     pub told: Option<Image>,
     started: Instant,
@@ -157,9 +164,13 @@ impl Family for Yrcx {
             let (board, recorder) = way.board(robot, &access, screen).await?;
             return Link::new(robot, &access, screen, Transport::Board(Box::new(board)), recorder);
         }
-        let (image, recorder) = way.open(robot, &access, screen).await?;
+        let (image, recorder) = match Box::pin(attach(robot, &access, screen)).await? {
+            Some(attached) => (ImageLink::in_session(attached), None),
+            None => Box::pin(way.open(robot, &access, screen)).await?,
+        };
         let mut link = Link::new(robot, &access, screen, Transport::Image(Box::new(image)), recorder)?;
         link.size = way.output_size();
+        link.join(robot);
         match link.begin().await {
             Ok(()) => Ok(link),
             Err(failure) => {
@@ -231,7 +242,7 @@ impl Family for Yrcx {
         if let Err(trouble) = closed {
             screen.detail(1, &format!("{}: the connection was not closed properly: {trouble}", link.label));
         }
-        if link.is_owner && !link.is_simulated {
+        if link.is_owner && !link.is_simulated && !link.is_shared {
             screen.note(&format!("{}: {CLOSED}", link.label));
         }
         let recorded = link.trace.finish().and(link.recorder.map_or(Ok(()), Recorder::finish));
@@ -241,7 +252,7 @@ impl Family for Yrcx {
 
 /// Said when the connection to a real controller ends.
 const CLOSED: &str = "the connection is closed, which a controller takes for a fault of the link: it stops, and raises \
-                      alarm 12.551 or 12.552 (`armctl help safety`)";
+                      alarm 12.551 or 12.552 (`armctl help safety`); `armctl session open -r NAME` keeps one open";
 
 impl Link {
     /// A link to a peer in this process.
@@ -271,6 +282,11 @@ impl Link {
             _ => access.need != Need::Messages,
         };
         let is_simulated = robot.target.value.is_simulated();
+        let is_network = !is_simulated
+            && match &transport {
+                Transport::Image(image) => image.shown().is_none(),
+                Transport::Notes(_) | Transport::Board(_) => true,
+            };
         let policy = Policy {
             ready: timeout,
             accept: timeout,
@@ -280,7 +296,7 @@ impl Link {
             ..Policy::default()
         };
         Ok(Self {
-            trace: Trace::open(access, screen, !is_simulated)?,
+            trace: Trace::open(access, screen, is_network)?,
             recorder,
             transport,
             is_simulated,
@@ -305,6 +321,8 @@ impl Link {
             unit: 0,
             has_started: false,
             is_held: is_simulated,
+            is_shared: false,
+            is_over: false,
             told: None,
             started: Instant::now(),
             totals: Totals::default(),
@@ -434,6 +452,7 @@ impl Link {
             return Ok(Duration::ZERO);
         }
         self.catch_up().await?;
+        self.claim_motion(procedure.risk).await?;
         let name = procedure.name;
         self.has_started |= procedure.risk == Risk::Motion;
         let began = Instant::now();
@@ -478,7 +497,12 @@ impl Link {
 
     /// What the controller is shown; `None` where that is for somebody else to show.
     pub fn shown(&self) -> Option<&Image> {
-        self.is_owner.then_some(&self.output.next)
+        (self.is_owner || self.is_shared).then_some(&self.output.next)
+    }
+
+    /// Whether a session holds it, and others may use it at the same time.
+    pub fn is_shared(&self) -> bool {
+        self.is_shared
     }
 
     /// Whether commands can be given, or signals only be seen.
@@ -554,8 +578,7 @@ impl Link {
     }
 
     fn silent(&self) -> Failure {
-        Failure::new(Kind::NoAnswer, format!("{}: the controller shows nothing", self.label))
-            .hint("check the link: `-v` counts what came")
+        hold::silent(&self.label)
     }
 
     fn tell_statistics(&self, screen: &Screen) {

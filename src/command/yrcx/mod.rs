@@ -21,6 +21,7 @@ mod clock;
 mod coverage;
 mod data;
 pub mod eip;
+mod hold;
 mod info;
 mod io;
 pub mod link;
@@ -53,9 +54,11 @@ mod unit;
 mod var;
 
 pub use check::check;
+pub use hold::hold;
 pub use link::Yrcx as Family;
 pub use overview::overview;
 pub use raw::words;
+pub use trace::Recorder;
 pub use unit::Line;
 
 use self::motion::Moving;

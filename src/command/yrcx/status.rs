@@ -16,12 +16,12 @@ use crate::controller::yrcx::table;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, Tone, View};
 
-/// Signals; in a session, on a simulator, or with --full also servos and position.
+/// Signals; on a simulator in this process, or with --full, also servos and position.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Signals are seen without a connection that the controller would miss. Servos and position are \
                         remote commands: --full takes command of the controller for them, which is an alarm for it when \
-                        the command ends (`armctl help safety`); a session has the command already."
+                        the command ends (`armctl help safety`), unless a session has the command already."
 )]
 pub struct Status {
     /// Take command of the controller, and ask for servos and position as well
@@ -40,8 +40,9 @@ impl Command for Status {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<StatusReport, Failure> {
         let link = context.link;
-        if !self.full && !link.commands() {
-            let not_asked = Some(NOT_ASKED);
+        // Through a session, too: what is seen at once does not wait for somebody else's motion to end.
+        if !self.full && (link.is_shared() || !link.commands()) {
+            let not_asked = Some(if link.is_shared() { NOT_ASKED_YET } else { NOT_ASKED });
             return Ok(StatusReport { not_asked, ..StatusReport::of(&link.look().await?) });
         }
         let servo = link.draft(table::Command::ServoStatus)?.build()?;
@@ -57,6 +58,9 @@ impl Command for Status {
 
 /// Why a report has no servos and no position.
 const NOT_ASKED: &str = "asking for servos and position takes command of the controller: --full, or a session";
+
+/// The same where a session has the command.
+const NOT_ASKED_YET: &str = "servos and position are remote commands: --full asks for them";
 
 /// How the controller stands (chapter 1, section 2).
 #[derive(Debug, Serialize, JsonSchema, Default)]

@@ -84,6 +84,23 @@ impl Output {
         self.sent = Some(self.next);
     }
 
+    /// Tells that somebody else, who shows the same image, has changed the bits under the mask at `now`.
+    pub fn changed(&mut self, now: Now, mask: &Image, value: &Image) {
+        for (at, mask) in mask.0.iter().enumerate() {
+            let bits = |word: u16| (word & !mask) | (value.0[at] & mask);
+            self.next.0[at] = bits(self.next.0[at]);
+            if let Some(sent) = &mut self.sent {
+                let before = sent.0[at];
+                sent.0[at] = bits(before);
+                if sent.0[at] != before
+                    && let Some(edge) = at.checked_sub(COMMAND_WORDS).and_then(|at| self.edges.get_mut(at))
+                {
+                    *edge = Some(now);
+                }
+            }
+        }
+    }
+
     /// Tells that the link is down: whatever comes next is seen afresh by the controller.
     pub fn unlinked(&mut self) {
         self.sent = None;
@@ -115,6 +132,20 @@ mod tests {
         assert_eq!(Image::from_bytes(&bytes), Some(image));
         assert_eq!(Image::from_bytes(&bytes[..47]), None);
         assert_eq!(Image::from_bytes(&[0; 50]), None);
+    }
+
+    #[test]
+    fn what_another_one_changes_is_not_undone() {
+        let at = Duration::from_millis;
+        let mut output = Output::default();
+        output.sent(at(1));
+        output.next.0[DEDICATED_WORD] = 0b100;
+        let (mut mask, mut value) = (Image::default(), Image::default());
+        (mask.0[DEDICATED_WORD], value.0[DEDICATED_WORD]) = (0b011, 0b101);
+        output.changed(at(2), &mask, &value);
+        assert_eq!(output.next.0[DEDICATED_WORD], 0b101, "what waits to leave stays");
+        assert_eq!(output.last_sent().unwrap().0[DEDICATED_WORD], 0b001);
+        assert_eq!((output.last_edge(DEDICATED_WORD), output.last_edge(17)), (Some(at(2)), Some(at(1))));
     }
 
     #[test]

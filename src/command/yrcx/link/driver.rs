@@ -5,12 +5,13 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 use super::{LEAVE_WITHIN, Link, Transport};
+use crate::command::yrcx::hold;
 use crate::controller::Now;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::sequence::{self, Sequence};
 use crate::controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome};
-use crate::controller::yrcx::signal::{input, output, resting};
+use crate::controller::yrcx::signal::output;
 use crate::controller::yrcx::table::Pace;
 use crate::failure::{Failure, Kind};
 use crate::transport::image::Event;
@@ -41,7 +42,10 @@ impl Link {
     /// Begins a remote command.
     pub(super) async fn start(&mut self, order: &Order) -> Result<(), Failure> {
         self.catch_up().await?;
+        self.claim_motion(order.risk()).await?;
         self.end_earlier().await?;
+        self.take_turn().await?;
+        self.end_others().await?;
         let mut exchange = Exchange::new(order.clone(), self.policy);
         if let Some(image) = &self.input {
             exchange.handle(self.now(), image);
@@ -124,7 +128,7 @@ impl Link {
     pub(super) async fn catch_up(&mut self) -> Result<(), Failure> {
         let now = Instant::now();
         while self.event(now).await? {}
-        Ok(())
+        self.still_there()
     }
 
     /// Lets what is over in a moment end, and the last change leave. A motion that was left alone is not waited for.
@@ -161,6 +165,7 @@ impl Link {
         if !self.in_flight {
             let next = self.poll();
             self.show()?;
+            self.give_turn();
             match next {
                 Some(next) => due = due.min(self.started + next.min(self.now().saturating_add(LONG))),
                 // Something has ended, which somebody waits for.
@@ -185,6 +190,7 @@ impl Link {
                 Next::Done(outcome) => {
                     self.exchange = None;
                     self.ended = Some(outcome);
+                    self.is_over = true;
                     has_ended = true;
                 }
             }
@@ -233,8 +239,13 @@ impl Link {
             Event::Reopened => {
                 self.screen.note(&format!("{}: the link is open again", self.label));
                 self.is_up = true;
-                self.rest();
+                if self.is_shared {
+                    self.shown_now();
+                } else {
+                    self.output.next = hold::after_loss(&self.output.next);
+                }
             }
+            Event::Shown(change) => self.shown_by_others(now, &change),
         }
         Ok(true)
     }
@@ -256,7 +267,8 @@ impl Link {
     }
 
     fn lost(&mut self, now: Now, why: &str) {
-        self.screen.note(&format!("{}: the link was lost: {why}; it is being opened again", self.label));
+        let again = if self.still_there().is_ok() { "; it is being opened again" } else { "" };
+        self.screen.note(&format!("{}: the link was lost: {why}{again}", self.label));
         self.totals.losses += 1;
         self.is_up = false;
         self.in_flight = false;
@@ -268,14 +280,6 @@ impl Link {
         }
         if let Some(sequence) = &mut self.sequence {
             sequence.lost(now);
-        }
-    }
-
-    /// After a loss nothing is asked for any more. But what was off to keep the robot still stays off.
-    fn rest(&mut self) {
-        let before = std::mem::replace(&mut self.output.next, resting());
-        for signal in [input::EMERGENCY_STOP, input::STOP] {
-            signal.set(&mut self.output.next, signal.is_on(&before));
         }
     }
 }

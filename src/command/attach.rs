@@ -1,0 +1,110 @@
+//! Whether a session holds the link to a robot, and the way through it.
+
+use std::path::Path;
+use std::time::Duration;
+
+use jiff::Timestamp;
+use jiff::tz::TimeZone;
+
+use crate::command::Access;
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::settings::Robot;
+use crate::transport::session::client::{self, AttachError, Attached, Found, Hindrance};
+use crate::transport::session::place::{PlaceError, key};
+use crate::transport::session::wire::Peer;
+
+/// The session that holds the robot's link, if there is one and `--no-session` does not go around it.
+pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
+    if !robot.by_session || access.dry_run {
+        return Ok(None);
+    }
+    let attached = match client::attach(&key_of(robot), &command_line()).await {
+        Ok(Found::Session(attached)) => attached,
+        Ok(Found::Nothing) => return Ok(None),
+        Ok(Found::Dead) => {
+            let open = "`armctl session open` opens another one, `armctl session close` forgets it";
+            screen.note(&format!("{}: its session has died, so this goes without it; {open}", robot.label()));
+            return Ok(None);
+        }
+        // Somebody else's folder is none of ours: there is no session, but somebody may want one to be.
+        Err(AttachError::Place(error @ PlaceError::Unsafe { .. })) => {
+            screen.note(&format!("warning: sessions are not used: {error}"));
+            return Ok(None);
+        }
+        Err(error) => return Err(refused(&robot.label(), &error)),
+    };
+    let welcome = &attached.welcome;
+    if screen.verbosity > 0 {
+        // To find out about the time zone takes longer than all else that a status does.
+        let since = since(welcome.for_ms);
+        let through = format!("through the session of process {}, open since {since}", welcome.pid);
+        screen.detail(1, &format!("{}: {through}", robot.label()));
+    }
+    if let Some(leftover) = welcome.leftover.as_ref().filter(|leftover| leftover.died) {
+        let peer = peer(&leftover.by);
+        screen.note(&format!("{}: a command was left under way by a client that has died: {peer}", robot.label()));
+    }
+    if let Some(why) = &welcome.down {
+        screen.note(&format!("{}: the link of the session is down: {why}; it is being opened again", robot.label()));
+    }
+    if access.trace.as_deref().is_some_and(|path| path != Path::new("-")) {
+        let missing = "packets and addresses are the session's (yrcx: `armctl session open --trace FILE`)";
+        screen.note(&format!("{}: --trace records what passes through the session; {missing}", robot.label()));
+    }
+    Ok(Some(attached))
+}
+
+/// What the robot's session is named by.
+pub fn key_of(robot: &Robot) -> String {
+    key(robot.family.name(), robot.target.value.url())
+}
+
+/// What was typed, for others who want the same robot.
+fn command_line() -> String {
+    let mut words = std::env::args_os();
+    let program = words.next().unwrap_or_default();
+    let program = Path::new(&program).file_name().unwrap_or(&program).to_string_lossy().into_owned();
+    let words = words.map(|word| word.to_string_lossy().into_owned());
+    std::iter::once(program).chain(words).collect::<Vec<_>>().join(" ")
+}
+
+/// A session that is there and is not used.
+pub fn refused(label: &str, error: &AttachError) -> Failure {
+    let hint = "`armctl session list` shows what there is; --no-session goes around it";
+    let kind = match error {
+        AttachError::Place(_) | AttachError::Io(_) => Kind::Local,
+        AttachError::Silent | AttachError::Refused(_) => Kind::NoAnswer,
+        AttachError::Foreign => Kind::Malformed,
+    };
+    Failure::new(kind, format!("{label}: {error}")).hint(hint)
+}
+
+/// What stands in the way within a session.
+pub fn hindered(label: &str, hindrance: &Hindrance) -> Failure {
+    match hindrance {
+        Hindrance::Ended(why) => Failure::new(Kind::NoAnswer, format!("{label}: {why}"))
+            .hint("look at the robot; `armctl session open` opens another session"),
+        Hindrance::Busy(holder) => {
+            let who = holder.as_ref().map_or_else(|| "another client".to_owned(), peer);
+            Failure::new(Kind::NoAnswer, format!("{label}: the link is in use by {who}"))
+                .hint("wait for its end; stops get through: `yrcx stop`, `toyo stop`, `yerc hold on`")
+        }
+        Hindrance::Moved(holder) => {
+            let message = format!("{label}: another client moves the robot: {}; nothing was sent", peer(holder));
+            Failure::new(Kind::RefusedHere, message)
+                .hint("wait for its end; stops get through: `yrcx stop`, `toyo stop`, `yerc hold on`")
+        }
+    }
+}
+
+/// Who, and since when.
+pub fn peer(peer: &Peer) -> String {
+    format!("process {} (`{}`), since {}", peer.pid, peer.command, since(peer.for_ms))
+}
+
+/// The moment so long ago, in the time of this machine.
+pub fn since(for_ms: u64) -> String {
+    let then = Timestamp::now().checked_sub(Duration::from_millis(for_ms)).unwrap_or(Timestamp::MIN);
+    then.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S").to_string()
+}

@@ -1,0 +1,118 @@
+//! A link that a session holds: what others show, and whose turn it is.
+
+use tokio::time::Instant;
+
+use super::{Link, Transport};
+use crate::command::attach::hindered;
+use crate::controller::yrcx::answer::Status;
+use crate::controller::yrcx::describe::{answer_summary, command_summary};
+use crate::controller::yrcx::image::{Image, Output, Words};
+use crate::controller::{Now, Risk};
+use crate::failure::{Failure, Kind};
+use crate::settings::Robot;
+use crate::settings::target::{EipRole, Place};
+use crate::transport::session::client::Hindrance;
+use crate::transport::session::wire::Change;
+
+impl Link {
+    /// Finds out whether a session holds the link, and takes over what it shows. Who asks takes no command of the
+    /// controller then: the session has it.
+    pub(super) fn join(&mut self, robot: &Robot) {
+        let Transport::Image(link) = &self.transport else { return };
+        if link.shown().is_none() {
+            return;
+        }
+        (self.is_shared, self.is_held, self.is_up) = (true, true, link.is_up());
+        self.is_owner = !matches!(&robot.target.value.place, Place::Eip(eip) if eip.role != EipRole::Owner);
+        self.shown_now();
+    }
+
+    /// Takes over what the session shows.
+    pub(super) fn shown_now(&mut self) {
+        let Transport::Image(link) = &self.transport else { return };
+        let Some(image) = link.shown().and_then(image) else { return };
+        self.output = Output::new(image);
+        if self.is_up {
+            let now = self.now();
+            self.output.sent(now);
+            self.shown = Some(image);
+        }
+    }
+
+    /// Somebody else switched bits, or gave a remote command.
+    pub(super) fn shown_by_others(&mut self, now: Now, change: &Change) {
+        let (Some(mask), Some(value)) = (image(&change.mask), image(&change.value)) else { return };
+        let mut shown = Output::new(self.shown.unwrap_or_default());
+        shown.changed(now, &mask, &value);
+        self.shown = self.shown.map(|_| shown.next);
+        self.output.changed(now, &mask, &value);
+    }
+
+    /// Becomes the only one who moves the robot, before something does.
+    pub(super) async fn claim_motion(&mut self, risk: Risk) -> Result<(), Failure> {
+        let Transport::Image(link) = &mut self.transport else { return Ok(()) };
+        if risk < Risk::Motion {
+            return Ok(());
+        }
+        link.claim_motion().await.map_err(|hindrance| hindered(&self.label, &hindrance))
+    }
+
+    /// Waits until nobody else gives a remote command.
+    pub(super) async fn take_turn(&mut self) -> Result<(), Failure> {
+        self.is_over = false;
+        let Transport::Image(link) = &mut self.transport else { return Ok(()) };
+        link.take(Instant::now() + self.timeout).await.map_err(|hindrance| hindered(&self.label, &hindrance))
+    }
+
+    /// Lets others give a remote command once the last one has ended.
+    pub(super) fn give_turn(&mut self) {
+        if std::mem::take(&mut self.is_over)
+            && let Transport::Image(link) = &mut self.transport
+        {
+            link.give();
+        }
+    }
+
+    /// Whether the link can come back.
+    pub(super) fn still_there(&self) -> Result<(), Failure> {
+        let Transport::Image(link) = &self.transport else { return Ok(()) };
+        match link.ended() {
+            Some(why) => Err(hindered(&self.label, &Hindrance::Ended(why.to_owned()))),
+            None => Ok(()),
+        }
+    }
+
+    /// Sees to it that a command that another client left to itself has ended: to take it away would stop what it does.
+    pub(super) async fn end_others(&mut self) -> Result<(), Failure> {
+        let words = self.output.next.command();
+        if !self.is_shared || self.exchange.is_some() || words == Words::default() {
+            return Ok(());
+        }
+        let until = Instant::now() + self.policy.accept;
+        loop {
+            let seen = self.input.unwrap_or_default().command();
+            match Status::of(seen[0]) {
+                Status::Running => {
+                    self.is_over = true;
+                    self.give_turn();
+                    let what = command_summary(&words);
+                    let message = format!("{}: another client's command is still under way: {what}", self.label);
+                    return Err(Failure::new(Kind::NoAnswer, message).hint(
+                        "wait for its end; `yrcx stop` stops a motion, and `yrcx io get` tells how the controller stands",
+                    ));
+                }
+                // It may not have been taken yet.
+                Status::Ready if Instant::now() < until && self.is_up => self.turn_until(until).await?,
+                _ => {
+                    let (what, end) = (command_summary(&words), answer_summary(&seen));
+                    self.screen.note(&format!("{}: another client had left {what}; it ended: {end}", self.label));
+                    return Ok(());
+                }
+            }
+        }
+    }
+}
+
+fn image(bytes: &[u8]) -> Option<Image> {
+    Image::from_bytes(bytes.get(..Image::BYTES)?)
+}

@@ -1,0 +1,472 @@
+//! The client's end: finds the session of a device, and talks through it.
+
+use std::collections::VecDeque;
+use std::io;
+use std::time::Duration;
+
+use futures_util::FutureExt as _;
+use thiserror::Error;
+use tokio::task::yield_now;
+use tokio::time::{Instant, sleep_until, timeout_at};
+
+use super::place::{Place, PlaceError, Spot};
+use super::socket::{self, WriteHalf};
+use super::wire::{Change, Control, Frame, Hello, Images, Peer, Reader, Status, VERSION, Welcome, WireError, short};
+
+/// How long a host may take to answer what it knows without asking the device.
+const ANSWERS_WITHIN: Duration = Duration::from_secs(3);
+
+/// Why a session that is there is not used.
+#[derive(Debug, Error)]
+pub enum AttachError {
+    /// Its folder or socket is not to be trusted, or cannot be read.
+    #[error("{0}")]
+    Place(#[from] PlaceError),
+    /// It does not answer.
+    #[error("the session does not answer")]
+    Silent,
+    /// It says no.
+    #[error("{0}")]
+    Refused(String),
+    /// What answers is no session, or one of another version.
+    #[error("what answers is no session of this version of armctl")]
+    Foreign,
+    /// The socket has failed.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+}
+
+impl From<WireError> for AttachError {
+    fn from(error: WireError) -> Self {
+        match error {
+            WireError::Io(error) => Self::Io(error),
+            WireError::TooLong(_) | WireError::Senseless => Self::Foreign,
+        }
+    }
+}
+
+/// What is found where a session may be.
+#[derive(Debug)]
+pub enum Found {
+    /// Nothing.
+    Nothing,
+    /// The socket of a session that has died.
+    Dead,
+    /// A session.
+    Session(Box<Attached>),
+}
+
+/// Why something cannot be done now.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Hindrance {
+    /// The session has ended, and why.
+    Ended(String),
+    /// Somebody else has the line, and has not given it back in time.
+    Busy(Option<Peer>),
+    /// Somebody else moves the robot.
+    Moved(Peer),
+}
+
+/// Looks for the session of this key, and says hello to it.
+pub async fn attach(key: &str, command: &str) -> Result<Found, AttachError> {
+    match Place::find()? {
+        Some(place) => attach_at(&place.spot(key), key, command).await,
+        None => Ok(Found::Nothing),
+    }
+}
+
+/// The same, where the spot is known.
+pub(super) async fn attach_at(spot: &Spot, key: &str, command: &str) -> Result<Found, AttachError> {
+    let Some(mut end) = End::connect(spot).await? else {
+        return Ok(if spot.check()? { Found::Dead } else { Found::Nothing });
+    };
+    let hello = Hello { version: VERSION, key: key.to_owned(), pid: std::process::id(), command: short(command) };
+    end.post(Control::Hello(hello));
+    match end.answer().await? {
+        Control::Welcome(welcome) if welcome.version == VERSION => {
+            Ok(Found::Session(Box::new(Attached::new(end, *welcome))))
+        }
+        Control::Refused(why) | Control::Ended(why) => Err(AttachError::Refused(why)),
+        _ => Err(AttachError::Foreign),
+    }
+}
+
+/// How the session at a spot stands; `None` if none lives there.
+pub async fn status(spot: &Spot) -> Result<Option<Status>, AttachError> {
+    let Some(mut end) = End::connect(spot).await? else { return Ok(None) };
+    end.post(Control::Ask);
+    match end.answer().await? {
+        Control::Status(status) => Ok(Some(*status)),
+        // It was just about to.
+        Control::Ended(_) => Ok(None),
+        _ => Err(AttachError::Foreign),
+    }
+}
+
+/// Has the session at a spot end, and waits until it is gone; `false` if none lived there.
+///
+/// # Errors
+/// [`AttachError::Refused`] if something moves, unless `force`.
+pub async fn close(spot: &Spot, force: bool) -> Result<bool, AttachError> {
+    let Some(mut end) = End::connect(spot).await? else { return Ok(false) };
+    end.post(Control::Close { force });
+    match end.answer().await? {
+        Control::Closing | Control::Ended(_) => {}
+        Control::Refused(why) => return Err(AttachError::Refused(why)),
+        _ => return Err(AttachError::Foreign),
+    }
+    // The connection ends when all is closed. Whatever comes before that says nothing new.
+    while let Ok(Some(_)) = end.reader.next().await {}
+    Ok(true)
+}
+
+/// A connection to a host.
+#[derive(Debug)]
+struct End {
+    reader: Reader,
+    writer: WriteHalf,
+    unsent: Vec<u8>,
+}
+
+impl End {
+    async fn connect(spot: &Spot) -> Result<Option<Self>, AttachError> {
+        if !spot.check()? {
+            return Ok(None);
+        }
+        let ends = socket::connect(&spot.socket()).await?;
+        Ok(ends.map(|(read, write)| Self { reader: Reader::new(read), writer: write, unsent: Vec::new() }))
+    }
+
+    /// Sends a frame at once, or as soon as the socket takes it.
+    fn post(&mut self, control: Control) {
+        self.put(&Frame::Control(control));
+    }
+
+    fn put(&mut self, frame: &Frame) {
+        frame.emit(&mut self.unsent);
+        // A socket that has failed fails again when it is read from.
+        if let Ok(sent) = self.writer.try_write(&self.unsent) {
+            self.unsent.drain(..sent);
+        }
+    }
+
+    async fn flush(&mut self) -> io::Result<()> {
+        while !self.unsent.is_empty() {
+            self.writer.writable().await?;
+            match self.writer.try_write(&self.unsent) {
+                Ok(sent) => drop(self.unsent.drain(..sent)),
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// The next frame; `None` once the host is gone. The future may be dropped.
+    async fn next(&mut self) -> Result<Option<Frame>, WireError> {
+        self.flush().await?;
+        self.reader.next().await
+    }
+
+    /// What the host says, which it does at once.
+    async fn answer(&mut self) -> Result<Control, AttachError> {
+        match timeout_at(Instant::now() + ANSWERS_WITHIN, self.next()).await {
+            Err(_) => Err(AttachError::Silent),
+            Ok(Ok(Some(Frame::Control(control)))) => Ok(control),
+            Ok(Ok(None)) => Ok(Control::Ended("the session has just ended".to_owned())),
+            Ok(Ok(Some(_))) => Err(AttachError::Foreign),
+            Ok(Err(error)) => Err(error.into()),
+        }
+    }
+}
+
+/// A client of a session.
+#[derive(Debug)]
+pub struct Attached {
+    end: End,
+    /// What came while something else was waited for.
+    early: VecDeque<Frame>,
+    /// Bytes of a piece that were not received yet.
+    rest: Vec<u8>,
+    line: Line,
+    takes: u32,
+    may_move: bool,
+    ended: Option<String>,
+    /// Whether [`Event::Lost`] has told that it has ended.
+    told: bool,
+    /// How things were at the beginning.
+    pub welcome: Welcome,
+}
+
+/// Whose the line is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Line {
+    Free,
+    /// It was asked for.
+    Asked,
+    Mine,
+}
+
+impl Attached {
+    fn new(end: End, mut welcome: Welcome) -> Self {
+        let seen = welcome.images.as_mut().and_then(|images| images.seen.take());
+        let early = seen.map(Frame::Image).into_iter().collect();
+        let (line, rest) = (Line::Free, Vec::new());
+        Self { end, early, rest, line, takes: 0, may_move: false, ended: None, told: false, welcome }
+    }
+
+    /// Why the session has ended, once that is known.
+    pub fn ended(&self) -> Option<&str> {
+        self.ended.as_deref()
+    }
+
+    /// Whether the line is this client's.
+    pub fn has_line(&self) -> bool {
+        self.line == Line::Mine
+    }
+
+    /// Waits for the line until then. The future may be dropped.
+    pub async fn take(&mut self, until: Instant) -> Result<(), Hindrance> {
+        self.take_for(0, until).await
+    }
+
+    /// Waits until a channel of the line is this client's: others may have other channels at the same time.
+    pub async fn take_for(&mut self, channel: u8, until: Instant) -> Result<(), Hindrance> {
+        if self.line == Line::Mine {
+            return Ok(());
+        }
+        if self.line == Line::Free {
+            self.takes = self.takes.wrapping_add(1);
+            self.end.post(Control::Take { number: self.takes, channel });
+            self.line = Line::Asked;
+        }
+        let mut holder = None;
+        while self.line == Line::Asked {
+            match self.arrived(until).await? {
+                None => {
+                    self.over();
+                    return Err(Hindrance::Busy(holder));
+                }
+                Some(Frame::Control(Control::Taken(take))) if take == self.takes => self.line = Line::Mine,
+                Some(Frame::Control(Control::Queued(peer))) => holder = Some(peer),
+                Some(frame) => self.early.push_back(frame),
+            }
+        }
+        if self.images().is_none() {
+            // What came before is about earlier turns.
+            self.early.clear();
+            self.rest.clear();
+        }
+        Ok(())
+    }
+
+    /// Gives the line back.
+    pub fn over(&mut self) {
+        if self.line != Line::Free {
+            self.end.post(Control::Over);
+            self.line = Line::Free;
+        }
+    }
+
+    /// Becomes the one who moves the robot.
+    pub async fn claim_motion(&mut self) -> Result<(), Hindrance> {
+        if self.may_move {
+            return Ok(());
+        }
+        self.end.post(Control::Motion);
+        let until = Instant::now() + ANSWERS_WITHIN;
+        loop {
+            match self.arrived(until).await? {
+                None => return Err(Hindrance::Ended("the session does not answer".to_owned())),
+                Some(Frame::Control(Control::Granted)) => break,
+                Some(Frame::Control(Control::Held(peer))) => return Err(Hindrance::Moved(peer)),
+                Some(frame) => self.early.push_back(frame),
+            }
+        }
+        self.may_move = true;
+        Ok(())
+    }
+
+    /// Leaves as one should.
+    pub async fn leave(mut self) {
+        // A host that is gone needs no farewell.
+        let _ = timeout_at(Instant::now() + ANSWERS_WITHIN, self.end.flush()).await;
+    }
+
+    /// Sends a datagram, or a piece of a stream. Without the line nothing is sent: the host would not pass it on.
+    pub async fn send(&mut self, channel: u8, bytes: &[u8]) -> io::Result<()> {
+        if let Some(why) = &self.ended {
+            return Err(io::Error::new(io::ErrorKind::NotConnected, why.clone()));
+        }
+        if self.has_line() {
+            self.end.put(&Frame::Data { channel, bytes: bytes.to_vec() });
+            self.end.flush().await?;
+        }
+        Ok(())
+    }
+
+    /// Has the host open a new socket for a channel.
+    pub fn renew(&mut self, channel: u8) {
+        self.end.post(Control::Renew(channel));
+    }
+
+    /// Waits for a datagram of a channel, but not longer than `until`; what does not fit the buffer is cut.
+    pub async fn receive(&mut self, wanted: u8, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
+        loop {
+            match self.data(until).await? {
+                Some((channel, bytes)) if channel == wanted => return Ok(Some(copy(&bytes, buffer))),
+                Some(_) => {}
+                None => return Ok(None),
+            }
+        }
+    }
+
+    /// Waits for bytes of a stream, but not longer than `until`; what does not fit the buffer comes next time.
+    pub async fn read(&mut self, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
+        if self.rest.is_empty() {
+            let Some((_, bytes)) = self.data(until).await? else { return Ok(None) };
+            self.rest = bytes;
+        }
+        let length = copy(&self.rest, buffer);
+        self.rest.drain(..length);
+        Ok(Some(length))
+    }
+
+    async fn data(&mut self, until: Instant) -> io::Result<Option<(u8, Vec<u8>)>> {
+        loop {
+            match self.next(until).await {
+                Some(Frame::Data { channel, bytes }) => return Ok(Some((channel, bytes))),
+                Some(Frame::Control(Control::Broken(broken))) => return Err(broken.into()),
+                Some(Frame::Control(Control::Lost(why))) => {
+                    return Err(io::Error::new(io::ErrorKind::NotConnected, why));
+                }
+                Some(_) => {}
+                None => match &self.ended {
+                    Some(why) => return Err(io::Error::new(io::ErrorKind::NotConnected, why.clone())),
+                    None => return Ok(None),
+                },
+            }
+        }
+    }
+
+    /// The next frame; `None` if none came until then, or the session has ended.
+    async fn next(&mut self, until: Instant) -> Option<Frame> {
+        match self.early.pop_front() {
+            Some(frame) => Some(frame),
+            None => self.arrived(until).await.unwrap_or_default(),
+        }
+    }
+
+    /// The next frame from the socket; `None` if none came until then.
+    async fn arrived(&mut self, until: Instant) -> Result<Option<Frame>, Hindrance> {
+        if let Some(why) = &self.ended {
+            return Err(Hindrance::Ended(why.clone()));
+        }
+        let next = if Instant::now() < until {
+            timeout_at(until, self.end.next()).await.ok()
+        } else {
+            // A timer takes a millisecond to tell that it is late; what is there already is there at once.
+            yield_now().await;
+            self.end.next().now_or_never()
+        };
+        let why = match next {
+            None => return Ok(None),
+            Some(Ok(Some(Frame::Control(Control::Ended(why))))) => why,
+            Some(Ok(Some(frame))) => return Ok(Some(frame)),
+            Some(Ok(None)) => "the session is gone".to_owned(),
+            Some(Err(error)) => format!("the session is gone: {error}"),
+        };
+        self.ended = Some(why.clone());
+        Err(Hindrance::Ended(why))
+    }
+}
+
+/// Whoever goes as he should says so; who is killed does not.
+impl Drop for Attached {
+    fn drop(&mut self) {
+        self.end.post(Control::Bye);
+    }
+}
+
+fn copy(bytes: &[u8], buffer: &mut [u8]) -> usize {
+    let length = bytes.len().min(buffer.len());
+    buffer[..length].copy_from_slice(&bytes[..length]);
+    length
+}
+
+/// What happens on an image link of a session.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Event {
+    /// What was shown last has left.
+    Sent,
+    /// The device shows something new.
+    Image(Vec<u8>),
+    /// Somebody else has changed what the device is shown.
+    Shown(Change),
+    /// The link went down, and why.
+    Lost(String),
+    /// It is up again; [`Attached::shown`] is what the device is shown now.
+    Reopened,
+    /// Nothing until then.
+    Timeout,
+}
+
+impl Attached {
+    /// How the images are, where they are what the session carries.
+    fn images(&self) -> Option<&Images> {
+        self.welcome.images.as_ref()
+    }
+
+    /// What the device is shown, as far as this client knows.
+    pub fn shown(&self) -> Option<&[u8]> {
+        self.images().map(|images| &images.shown[..])
+    }
+
+    /// Has the device shown this image, as far as it differs from what it is shown. Without the line the exclusive part
+    /// stays as it is.
+    pub fn show(&mut self, image: &[u8]) {
+        let has_line = self.has_line();
+        let Some(images) = &mut self.welcome.images else { return };
+        let masks = images.shown.iter().zip(image).enumerate().map(|(at, (before, after))| {
+            if at < images.exclusive { if has_line { 0xFF } else { 0 } } else { before ^ after }
+        });
+        let mask: Vec<u8> = masks.collect();
+        let value = image.iter().copied().take(mask.len()).collect();
+        let change = Change { generation: images.generation, mask, value };
+        change.apply(&mut images.shown);
+        self.end.put(&Frame::Show(change));
+    }
+
+    /// Waits for the next thing to happen, but not longer than `until`. The future may be dropped.
+    pub async fn event(&mut self, until: Instant) -> Event {
+        loop {
+            match self.next(until).await {
+                Some(Frame::Image(image)) => return Event::Image(image),
+                Some(Frame::Control(Control::Sent)) => return Event::Sent,
+                Some(Frame::Control(Control::Lost(why))) => return Event::Lost(why),
+                Some(Frame::Control(Control::Reopened { generation, shown })) => {
+                    if let Some(images) = &mut self.welcome.images {
+                        (images.generation, images.shown) = (generation, shown);
+                    }
+                    return Event::Reopened;
+                }
+                Some(Frame::Show(change)) => {
+                    if let Some(images) = &mut self.welcome.images {
+                        change.apply(&mut images.shown);
+                    }
+                    return Event::Shown(change);
+                }
+                Some(_) => {}
+                None => {
+                    match self.ended.clone() {
+                        Some(why) if !std::mem::replace(&mut self.told, true) => return Event::Lost(why),
+                        // Nothing comes any more.
+                        Some(_) => sleep_until(until).await,
+                        None => {}
+                    }
+                    return Event::Timeout;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,361 @@
+//! The host: holds the link, and lets clients have it one after the other.
+
+mod clients;
+pub mod held;
+
+use std::collections::{BTreeMap, VecDeque};
+use std::io;
+
+use futures_util::future::join_all;
+use tokio::sync::mpsc;
+use tokio::time::Instant;
+
+use self::clients::{Client, Letter, milliseconds};
+use self::held::{Happening, Held};
+use super::place::Claim;
+use super::socket::{Listener, ReadHalf, WriteHalf};
+use super::wire::{Broken, Control, Frame, Hello, Info, Leftover, Peer, Status, VERSION, Welcome, short};
+
+/// Letters that wait before clients must.
+const LETTERS: usize = 64;
+/// Clients at a time.
+const MOST_CLIENTS: usize = 64;
+
+/// A session.
+pub struct Host {
+    claim: Claim,
+    listener: Listener,
+    key: String,
+    info: Info,
+    held: Held,
+    clients: BTreeMap<u64, Client>,
+    last: u64,
+    letters: mpsc::Receiver<Letter>,
+    letterbox: mpsc::Sender<Letter>,
+    /// Who has the line, and who waits for it.
+    line: Option<u64>,
+    queue: VecDeque<(u64, u32)>,
+    /// Who moves the robot.
+    motion: Option<u64>,
+    /// Whose images have not left yet.
+    showing: Vec<u64>,
+    leftover: Option<(Leftover, Instant)>,
+    began: Instant,
+    reopenings: u32,
+    /// Where what happens is told.
+    say: Box<dyn FnMut(&str)>,
+}
+
+impl Host {
+    /// Lets clients in.
+    pub fn new(claim: Claim, key: String, info: Info, held: Held, say: impl FnMut(&str) + 'static) -> io::Result<Self> {
+        let (letterbox, letters) = mpsc::channel(LETTERS);
+        Ok(Self {
+            listener: claim.listen()?,
+            claim,
+            key,
+            info,
+            held,
+            clients: BTreeMap::new(),
+            last: 0,
+            letters,
+            letterbox,
+            line: None,
+            queue: VecDeque::new(),
+            motion: None,
+            showing: Vec::new(),
+            leftover: None,
+            began: Instant::now(),
+            reopenings: 0,
+            say: Box::new(say),
+        })
+    }
+
+    /// Serves until a client has it end. The future may be dropped: [`Host::end`] goes on from there.
+    pub async fn serve(&mut self) {
+        loop {
+            tokio::select! {
+                Some((client, frame)) = self.letters.recv() => {
+                    if self.heard(client, frame).await {
+                        return;
+                    }
+                }
+                Ok(connection) = self.listener.accept() => self.accept(connection),
+                happening = self.held.next() => self.happened(happening),
+            }
+        }
+    }
+
+    /// Ends it: nobody new comes, everybody is told, the link is closed.
+    ///
+    /// # Errors
+    /// What was not closed properly, in words.
+    pub async fn end(self, why: &str) -> Result<(), String> {
+        self.claim.hide();
+        drop(self.listener);
+        join_all(self.clients.values().map(|client| client.dismiss(Control::Ended(why.to_owned())))).await;
+        let closed = self.held.close().await;
+        // Connections end after all: who had it end waits for that.
+        drop(self.claim);
+        drop(self.clients);
+        closed
+    }
+
+    fn accept(&mut self, connection: (ReadHalf, WriteHalf, Option<u32>)) {
+        if self.clients.len() < MOST_CLIENTS {
+            self.last += 1;
+            self.clients.insert(self.last, Client::new(self.last, connection, self.letterbox.clone()));
+        }
+    }
+
+    /// Something came from a client; whether it has the session end.
+    async fn heard(&mut self, id: u64, frame: Option<Frame>) -> bool {
+        let Some(client) = self.clients.get_mut(&id) else { return false };
+        let is_named = client.is_named();
+        let Some(frame) = frame else {
+            self.gone(id);
+            return false;
+        };
+        match frame {
+            Frame::Control(Control::Hello(hello)) => self.welcome(id, &hello),
+            Frame::Control(Control::Ask) => self.tell_status(id),
+            Frame::Control(Control::Close { force }) => return self.may_close(id, force),
+            // Nobody does anything before he has said who he is.
+            _ if !is_named => self.gone(id),
+            Frame::Control(Control::Bye) => client.has_left = true,
+            Frame::Control(Control::Take { number, channel }) => self.queue_up(id, number, channel),
+            Frame::Control(Control::Over) => self.release(id),
+            Frame::Control(Control::Motion) => self.claim_motion(id),
+            Frame::Control(Control::Renew(channel)) => self.held.renew(id, channel),
+            Frame::Show(change) => {
+                let has_line = self.line == Some(id);
+                let changed = self.held.images().and_then(|images| {
+                    let before = images.shown.clone();
+                    let change = images.change(change, has_line)?;
+                    Some((images.shown != before, images.is_clear(), change))
+                });
+                // What was meant for the time before a loss is not done, and the loss has been told.
+                if let Some((is_new, is_clear, change)) = changed {
+                    if is_clear {
+                        self.leftover = None;
+                    }
+                    if !self.showing.contains(&id) {
+                        self.showing.push(id);
+                    }
+                    if is_new {
+                        self.others(id).for_each(|other| other.send(Frame::Show(change.clone())));
+                    }
+                }
+            }
+            Frame::Data { channel, bytes } if self.line == Some(id) || self.held.is_parallel(channel) => {
+                if let Err(error) = self.held.send(id, channel, &bytes).await {
+                    self.break_to(id, &error);
+                }
+            }
+            // Without the line nobody talks. Anything else only a host says.
+            _ => {}
+        }
+        false
+    }
+
+    fn break_to(&self, id: u64, error: &io::Error) {
+        if let Some(client) = self.clients.get(&id) {
+            client.tell(Control::Broken(Broken::from(error)));
+        }
+    }
+
+    fn others(&self, id: u64) -> impl Iterator<Item = &Client> {
+        self.clients.iter().filter(move |(other, client)| **other != id && client.is_named()).map(|(_, client)| client)
+    }
+
+    fn welcome(&mut self, id: u64, hello: &Hello) {
+        let welcome = Welcome {
+            version: VERSION,
+            pid: std::process::id(),
+            for_ms: milliseconds(self.began),
+            down: self.held.down().map(str::to_owned),
+            leftover: self.leftover(),
+            images: self.held.images().map(|images| images.welcome()),
+        };
+        let Some(client) = self.clients.get_mut(&id) else { return };
+        if hello.key != self.key {
+            client.tell(Control::Refused("the session is for another device".to_owned()));
+            return;
+        }
+        // One of another version sees it here, and goes.
+        client.named(hello.pid, short(&hello.command));
+        client.tell(Control::Welcome(Box::new(welcome)));
+    }
+
+    fn queue_up(&mut self, id: u64, take: u32, channel: u8) {
+        if self.held.is_parallel(channel) {
+            if let Some(client) = self.clients.get(&id) {
+                client.tell(Control::Taken(take));
+            }
+            return;
+        }
+        let holder = self.line.and_then(|holder| self.clients.get(&holder));
+        if let (Some(holder), Some(client)) = (holder, self.clients.get(&id)) {
+            client.tell(Control::Queued(holder.peer(holder.line_since)));
+        }
+        self.queue.retain(|(other, _)| *other != id);
+        self.queue.push_back((id, take));
+        self.next_in_queue();
+    }
+
+    fn next_in_queue(&mut self) {
+        while self.line.is_none() {
+            let Some((id, take)) = self.queue.pop_front() else { return };
+            let Some(client) = self.clients.get_mut(&id) else { continue };
+            self.line = Some(id);
+            client.line_since = Instant::now();
+            self.held.begin();
+            client.tell(Control::Taken(take));
+            if let Some(why) = self.held.down().filter(|_| !matches!(self.held, Held::Images(_))) {
+                client.tell(Control::Lost(why.to_owned()));
+            }
+        }
+    }
+
+    /// A client does not want the line any more, or cannot have it.
+    fn release(&mut self, id: u64) {
+        self.queue.retain(|(other, _)| *other != id);
+        self.held.pause(id);
+        if self.line == Some(id) {
+            self.line = None;
+            self.next_in_queue();
+        }
+    }
+
+    fn claim_motion(&mut self, id: u64) {
+        let holder = self.motion.filter(|holder| *holder != id).and_then(|holder| self.clients.get(&holder));
+        let answer = match holder {
+            Some(holder) => Control::Held(holder.peer(holder.motion_since)),
+            None => Control::Granted,
+        };
+        let is_granted = answer == Control::Granted;
+        if let Some(client) = self.clients.get_mut(&id) {
+            client.tell(answer);
+            if is_granted && self.motion != Some(id) {
+                client.motion_since = Instant::now();
+                self.motion = Some(id);
+            }
+        }
+    }
+
+    /// A client has gone, or is not let in: it gives back all that it holds. What it has left on the image stays there.
+    fn gone(&mut self, id: u64) {
+        let Some(client) = self.clients.remove(&id) else { return };
+        let died = client.is_named() && !client.has_left;
+        let leaves = self.line == Some(id) && self.held.images().is_some_and(|images| !images.is_clear());
+        let by = client.peer(client.since);
+        if died {
+            let mut what = vec![format!("client {} has died ({})", by.pid, by.command)];
+            if self.motion == Some(id) {
+                what.push("it was moving the robot".to_owned());
+            }
+            if leaves {
+                what.push("the command that it gave is left as it is".to_owned());
+            }
+            (self.say)(&what.join("; "));
+        }
+        if leaves {
+            self.leftover = Some((Leftover { by, died }, Instant::now()));
+        }
+        if self.motion == Some(id) {
+            self.motion = None;
+        }
+        self.held.forget(id);
+        self.release(id);
+    }
+
+    fn leftover(&self) -> Option<Leftover> {
+        let (leftover, since) = self.leftover.as_ref()?;
+        Some(Leftover { by: Peer { for_ms: milliseconds(*since), ..leftover.by.clone() }, ..leftover.clone() })
+    }
+
+    fn status(&mut self) -> Status {
+        let mover = self.motion.and_then(|id| self.clients.get(&id));
+        Status {
+            motion: mover.map(|client| client.peer(client.motion_since)),
+            info: self.info.clone(),
+            for_ms: milliseconds(self.began),
+            down: self.held.down().map(str::to_owned),
+            reopenings: self.reopenings,
+            clients: self
+                .clients
+                .values()
+                .filter(|client| client.is_named())
+                .map(|client| client.peer(client.since))
+                .collect(),
+            leftover: self.leftover(),
+            under_way: self.held.images().is_some_and(|images| images.under_way()),
+        }
+    }
+
+    fn tell_status(&mut self, id: u64) {
+        let status = Control::Status(Box::new(self.status()));
+        if let Some(client) = self.clients.get(&id) {
+            client.tell(status);
+        }
+    }
+
+    fn may_close(&mut self, id: u64, force: bool) -> bool {
+        let status = self.status();
+        let moves = match &status.motion {
+            Some(Peer { pid, command, .. }) => Some(format!("client {pid} moves the robot ({command})")),
+            None if status.under_way => Some("the controller shows that something is under way".to_owned()),
+            None => None,
+        };
+        let Some(client) = self.clients.get(&id) else { return false };
+        let refused = moves.filter(|_| !force);
+        let closes = refused.is_none();
+        client.tell(refused.map_or(Control::Closing, Control::Refused));
+        closes
+    }
+
+    /// Something happened on the link.
+    fn happened(&mut self, happening: Happening) {
+        match happening {
+            Happening::Sent => {
+                for id in std::mem::take(&mut self.showing) {
+                    if let Some(client) = self.clients.get(&id) {
+                        client.tell(Control::Sent);
+                    }
+                }
+            }
+            Happening::Image(image) => self.everybody(|| Frame::Image(image.to_vec())),
+            Happening::Data { to, channel, bytes } => {
+                // What comes when nobody has asked is nobody's.
+                if let Some(client) = to.or(self.line).and_then(|id| self.clients.get(&id)) {
+                    client.send(Frame::Data { channel, bytes });
+                }
+            }
+            Happening::Broken { to, error } => self.break_to(to, &error),
+            Happening::Lost(why) => {
+                (self.say)(&format!("the link was lost: {why}; it is being opened again"));
+                self.showing.clear();
+                if self.leftover.take().is_some() {
+                    (self.say)("what a client had left under way went with it");
+                }
+                self.everybody(|| Frame::Control(Control::Lost(why.clone())));
+            }
+            Happening::Reopened => {
+                self.reopenings = self.reopenings.saturating_add(1);
+                (self.say)("the link is open again");
+                if let Some(images) = self.held.images() {
+                    let (generation, shown) = (images.generation, images.shown.clone());
+                    self.everybody(|| Frame::Control(Control::Reopened { generation, shown: shown.clone() }));
+                }
+            }
+        }
+    }
+
+    fn everybody(&self, frame: impl Fn() -> Frame) {
+        self.clients.values().filter(|client| client.is_named()).for_each(|client| client.send(frame()));
+    }
+}
+
+#[cfg(test)]
+#[cfg(unix)]
+mod tests;

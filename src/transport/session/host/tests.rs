@@ -1,0 +1,223 @@
+//! Host and clients over a real socket, with a peer in this process behind it.
+
+use std::collections::VecDeque;
+use std::path::Path;
+use std::time::Duration;
+
+use tokio::time::Instant;
+
+use super::held::{Datagrams, Held, Images, Rules};
+use super::*;
+use crate::transport::image::{Event, ImageLink, ImagePeer};
+use crate::transport::session::client::{Attached, Found, Hindrance, attach_at, status};
+use crate::transport::session::place::Spot;
+use crate::transport::sim;
+
+/// Shows what it is shown.
+#[derive(Debug, Default)]
+struct Mirror(Vec<u8>);
+
+impl ImagePeer for Mirror {
+    fn input(&mut self, _now: Duration, image: Option<&[u8]>) {
+        self.0 = image.unwrap_or_default().to_vec();
+    }
+
+    fn output(&mut self, _now: Duration) -> Option<Vec<u8>> {
+        Some(self.0.clone())
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        None
+    }
+}
+
+/// Answers each datagram with itself.
+#[derive(Debug, Default)]
+struct Echo(VecDeque<(usize, Vec<u8>)>);
+
+impl sim::Peer for Echo {
+    fn receive(&mut self, _now: Duration, channel: usize, bytes: &[u8]) {
+        self.0.push_back((channel, bytes.to_vec()));
+    }
+
+    fn transmit(&mut self, _now: Duration) -> Option<(usize, Vec<u8>)> {
+        self.0.pop_front()
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        None
+    }
+}
+
+/// Two bytes that one client at a time changes, and one of bits; it moves while the first byte is not 0.
+fn images() -> Held {
+    let rules = Rules {
+        is_owner: true,
+        exclusive: 2,
+        resting: vec![0, 0, 0x41],
+        rest: <[u8]>::to_vec,
+        under_way: |_, seen| seen.first().is_some_and(|byte| *byte != 0),
+    };
+    Held::Images(Images::new(ImageLink::in_process(Box::new(Mirror::default())), rules).unwrap())
+}
+
+fn info() -> Info {
+    Info { pid: 1, robot: "cell".to_owned(), family: "yrcx".to_owned(), target: "sim:".to_owned() }
+}
+
+fn host(folder: &Path, held: Held) -> (Host, Spot) {
+    let spot = Spot::at(folder.join("key"));
+    let claim = spot.claim(&info()).unwrap().unwrap();
+    (Host::new(claim, "key".to_owned(), info(), held, |_| {}).unwrap(), spot)
+}
+
+async fn client(spot: &Spot, name: &str) -> Box<Attached> {
+    match attach_at(spot, "key", name).await.unwrap() {
+        Found::Session(attached) => attached,
+        found => panic!("{found:?}"),
+    }
+}
+
+fn soon() -> Instant {
+    Instant::now() + Duration::from_secs(60)
+}
+
+/// Runs what clients do, while the host serves.
+async fn served<T>(host: &mut Host, clients: impl Future<Output = T>) -> T {
+    tokio::select! {
+        () = host.serve() => panic!("nobody closed it"),
+        done = clients => done,
+    }
+}
+
+async fn shows(link: &mut ImageLink, image: &[u8]) {
+    link.show(image).unwrap();
+    while link.next(soon()).await != Event::Sent {}
+}
+
+async fn sees(link: &mut ImageLink, wanted: &[u8]) {
+    loop {
+        if let Event::Image(image) = link.next(soon()).await
+            && image[..] == *wanted
+        {
+            return;
+        }
+    }
+}
+
+#[tokio::test]
+async fn the_exclusive_part_is_one_clients_and_bits_are_everybodys() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut host, spot) = host(folder.path(), images());
+    served(&mut host, async {
+        let mut mover = ImageLink::in_session(client(&spot, "mover").await);
+        let mut other = ImageLink::in_session(client(&spot, "other").await);
+        assert_eq!(mover.shown().unwrap(), [0, 0, 0x41]);
+        mover.take(soon()).await.unwrap();
+        shows(&mut mover, &[7, 8, 0x41]).await;
+        // Without the line only bits count; what the mover shows stays.
+        shows(&mut other, &[9, 9, 0x01]).await;
+        sees(&mut mover, &[7, 8, 0x01]).await;
+        assert_eq!(mover.shown().unwrap(), [7, 8, 0x01], "it knows of the bit that went off");
+        shows(&mut mover, &[0, 0, 0x01]).await;
+        sees(&mut other, &[0, 0, 0x01]).await;
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn the_line_and_motion_have_one_owner() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut host, spot) = host(folder.path(), images());
+    served(&mut host, async {
+        let (mut first, mut second) = (client(&spot, "first").await, client(&spot, "second").await);
+        first.take(soon()).await.unwrap();
+        first.claim_motion().await.unwrap();
+        assert!(matches!(second.claim_motion().await, Err(Hindrance::Moved(peer)) if peer.command == "first"));
+        let busy = second.take(Instant::now() + Duration::from_millis(20)).await;
+        assert!(matches!(busy, Err(Hindrance::Busy(Some(peer))) if peer.command == "first"));
+        // Who gave up does not have it when it is free; who asks again does.
+        first.over();
+        first.take(soon()).await.unwrap();
+        let waiting = status(&spot).await.unwrap().unwrap();
+        assert_eq!((waiting.clients.len(), waiting.motion.unwrap().command), (2, "first".to_owned()));
+        drop(first);
+        second.take(soon()).await.unwrap();
+        second.claim_motion().await.unwrap();
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn what_somebody_leaves_on_the_image_stays_and_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut host, spot) = host(folder.path(), images());
+    served(&mut host, async {
+        let mut mover = ImageLink::in_session(client(&spot, "mover").await);
+        mover.take(soon()).await.unwrap();
+        shows(&mut mover, &[7, 0, 0x41]).await;
+        drop(mover);
+        let mut next = client(&spot, "next").await;
+        while next.welcome.leftover.is_none() {
+            next = client(&spot, "next").await;
+        }
+        let leftover = next.welcome.leftover.clone().unwrap();
+        assert_eq!((leftover.by.command.as_str(), leftover.died), ("mover", false));
+        assert_eq!(next.shown().unwrap(), [7, 0, 0x41]);
+        let mut next = ImageLink::in_session(next);
+        next.take(soon()).await.unwrap();
+        shows(&mut next, &[0, 0, 0x41]).await;
+        assert_eq!(status(&spot).await.unwrap().unwrap().leftover, None);
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn datagrams_are_for_whoever_has_the_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let echo: Box<dyn sim::Peer> = Box::new(Echo::default());
+    let held = Held::Datagrams(Datagrams::in_process(sim::InProcess::new(echo, None)));
+    let (mut host, spot) = host(folder.path(), held);
+    served(&mut host, async {
+        let (mut first, mut second) = (client(&spot, "first").await, client(&spot, "second").await);
+        let mut buffer = [0; 16];
+        first.take(soon()).await.unwrap();
+        // Without the line nothing is sent.
+        second.send(0, b"no").await.unwrap();
+        first.send(1, b"yes").await.unwrap();
+        assert_eq!(first.receive(1, &mut buffer, soon()).await.unwrap(), Some(3));
+        assert_eq!(&buffer[..3], b"yes");
+        first.over();
+        second.take(soon()).await.unwrap();
+        second.send(0, b"now").await.unwrap();
+        assert_eq!(second.receive(0, &mut buffer, soon()).await.unwrap(), Some(3));
+        assert_eq!(&buffer[..3], b"now");
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn the_end_is_told_to_everybody() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut host, spot) = host(folder.path(), images());
+    let mut link = served(&mut host, async { ImageLink::in_session(client(&spot, "first").await) }).await;
+    host.end("the session was closed").await.unwrap();
+    let lost = loop {
+        match link.next(soon()).await {
+            Event::Lost(why) => break why,
+            Event::Timeout => panic!("it was never told"),
+            _ => {}
+        }
+    };
+    assert_eq!((lost.as_str(), link.ended()), ("the session was closed", Some("the session was closed")));
+    assert!(matches!(link.take(soon()).await, Err(Hindrance::Ended(_))));
+    assert!(matches!(attach_at(&spot, "key", "late").await.unwrap(), Found::Nothing));
+}
+
+#[tokio::test]
+async fn a_client_for_another_device_is_sent_away() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut host, spot) = host(folder.path(), images());
+    let refused = served(&mut host, attach_at(&spot, "other", "wrong")).await;
+    assert!(refused.unwrap_err().to_string().contains("another device"));
+}

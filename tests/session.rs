@@ -1,0 +1,428 @@
+//! `armctl session` as its user has it: processes, sockets, signals. What is waited for is a condition, never a time.
+#![cfg(unix)]
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+use std::io::{BufRead as _, BufReader, Read as _};
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStderr, Command, Output, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A user with an inventory and a runtime folder of his own.
+struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    /// With robots by name, family and target.
+    fn new(robots: &[(&str, &str, &str)]) -> Self {
+        let desk = Self { folder: tempfile::tempdir().unwrap() };
+        let robots: Vec<String> = robots
+            .iter()
+            .map(|(name, family, target)| {
+                format!("[[robot]]\nname = \"{name}\"\nfamily = \"{family}\"\ntarget = \"{target}\"\n")
+            })
+            .collect();
+        std::fs::write(desk.folder.path().join("robots.toml"), robots.concat()).unwrap();
+        std::fs::create_dir(desk.folder.path().join("run")).unwrap();
+        desk
+    }
+
+    fn command(&self, words: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.env_clear().env("HOME", self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path().join("run"));
+        command.env("ARMCTL_CONFIG", self.folder.path().join("robots.toml")).stdin(Stdio::null());
+        command.args(words.split(' '));
+        command
+    }
+
+    fn run(&self, words: &str) -> Output {
+        self.command(words).output().unwrap()
+    }
+
+    /// The data of a command that succeeds.
+    fn data(&self, words: &str) -> Value {
+        let output = self.run(&format!("{words} --json"));
+        assert!(output.status.success(), "{words}: {}", stderr(&output));
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()["data"].clone()
+    }
+
+    /// The first session of the list.
+    fn listed(&self) -> Value {
+        self.data("session list")["sessions"][0].clone()
+    }
+
+    /// Looks at the first session until it is as it shall be.
+    fn until(&self, condition: impl Fn(&Value) -> bool) -> Value {
+        loop {
+            let session = self.listed();
+            if condition(&session) {
+                return session;
+            }
+        }
+    }
+
+    /// Files of sessions with this extension.
+    fn files(&self, extension: &str) -> Vec<PathBuf> {
+        let Ok(found) = std::fs::read_dir(self.folder.path().join("run/armctl")) else { return Vec::new() };
+        found
+            .map(|entry| entry.unwrap().path())
+            .filter(|path| path.extension().is_some_and(|found| found == extension))
+            .collect()
+    }
+}
+
+impl Drop for Desk {
+    fn drop(&mut self) {
+        // What runs in the background must not outlive the test.
+        self.run("session close --all --force");
+    }
+}
+
+/// A process, and what it says on stderr.
+struct Running {
+    process: Child,
+    stderr: BufReader<ChildStderr>,
+    first: String,
+}
+
+impl Running {
+    /// Starts it, and waits for the first line on stdout where one is wanted.
+    fn start(mut command: Command, speaks: bool) -> Self {
+        let mut process = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut first = String::new();
+        if speaks {
+            BufReader::new(process.stdout.take().unwrap()).read_line(&mut first).unwrap();
+        }
+        let stderr = BufReader::new(process.stderr.take().unwrap());
+        Self { process, stderr, first: first.trim_end().to_owned() }
+    }
+
+    /// A session in the foreground.
+    fn session(desk: &Desk, robot: &str) -> Self {
+        let session = Self::start(desk.command(&format!("-r {robot} session open")), true);
+        assert!(session.first.contains("held by process"), "{}", session.first);
+        session
+    }
+
+    /// Waits until it has said this.
+    fn says(&mut self, part: &str) {
+        let mut line = String::new();
+        while !line.contains(part) {
+            line.clear();
+            assert!(self.stderr.read_line(&mut line).unwrap() > 0, "it never said '{part}'");
+        }
+    }
+
+    fn signal(&self, signal: &str) {
+        let pid = self.process.id().to_string();
+        assert!(Command::new("kill").args(["-s", signal, &pid]).status().unwrap().success());
+    }
+
+    /// Its exit code, and what else it had to say.
+    fn end(mut self) -> (Option<i32>, String) {
+        let mut rest = String::new();
+        self.stderr.read_to_string(&mut rest).unwrap();
+        (self.process.wait().unwrap().code(), rest)
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended already.
+        self.process.kill().unwrap_or_default();
+        self.process.wait().unwrap();
+    }
+}
+
+/// A simulator on this address, or on one of its own; its target is the first thing that it says.
+fn simulator(desk: &Desk, family: &str, address: &str) -> Running {
+    let words = format!("sim {family} --bind {address} --jq .data.target");
+    let mut simulator = Running::start(desk.command(&words), true);
+    if !simulator.first.contains("://") {
+        let mut said = String::new();
+        simulator.stderr.read_to_string(&mut said).unwrap();
+        panic!("the simulator does not serve: {said}");
+    }
+    simulator
+}
+
+/// A simulated YRCX, and a user who knows it as `cell`. A busy machine is late: nobody shall think that the other is gone.
+fn cell() -> (Running, Desk) {
+    let simulator = simulator(&Desk::new(&[]), "yrcx", "127.0.0.1:0");
+    let desk = Desk::new(&[("cell", "yrcx", &format!("{}?rpi=5ms&multiplier=512", simulator.first))]);
+    (simulator, desk)
+}
+
+/// A motion that takes minutes.
+const SLOW: &str = "-r cell yrcx move --to 900,0,0,0 --speed-of-max 0.1 --yes";
+
+/// Such a motion, once the controller carries it out.
+fn moving(desk: &Desk) -> Running {
+    let mut moving = Running::start(desk.command(&format!("{SLOW} -vv")), false);
+    moving.says("<- WO 0100");
+    moving
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn fails(output: &Output, exit: i32, part: &str) {
+    let stderr = stderr(output);
+    assert!(output.status.code() == Some(exit) && stderr.contains(part), "{:?}: {stderr}", output.status.code());
+    assert!(stderr.contains("hint: "), "{stderr}");
+}
+
+fn mode(path: &Path) -> u32 {
+    path.metadata().unwrap().permissions().mode() & 0o7777
+}
+
+#[test]
+fn commands_go_through_a_session_by_themselves() {
+    let (_simulator, desk) = cell();
+    let session = Running::session(&desk, "cell");
+    let folder = desk.folder.path().join("run/armctl");
+    let sockets = desk.files("sock");
+    assert_eq!((mode(&folder), sockets.len(), mode(&sockets[0])), (0o700, 1, 0o600));
+    for words in ["yrcx info servo -v", "yrcx status -v", "yrcx io get alarm -v", "status -v"] {
+        let output = desk.run(&format!("-r cell {words}"));
+        let stderr = stderr(&output);
+        assert!(output.status.success() && stderr.contains("through the session of process"), "{words}: {stderr}");
+        assert!(!stderr.contains("closed"), "no fault of the link: {stderr}");
+    }
+    assert_eq!(desk.data("-r cell yrcx status")["alarm"], false, "the connection stayed open");
+    // The same device by its URL is the same session; another way to it is none.
+    let url = desk.listed()["target"].as_str().unwrap().to_owned();
+    assert!(stderr(&desk.run(&format!("-t {url} yrcx status -v"))).contains("through the session"));
+    fails(&desk.run("-r cell --no-session yrcx info servo"), 3, "[0x0106]");
+    let second = desk.run("-r cell session open");
+    fails(&second, 4, &format!("a session is open already: process {}, since", session.process.id()));
+    session.signal("TERM");
+    assert_eq!(session.end().0, Some(0));
+    assert!(desk.files("sock").is_empty());
+}
+
+#[test]
+fn one_client_moves_and_another_one_stops_it() {
+    let (_simulator, desk) = cell();
+    let _session = Running::session(&desk, "cell");
+    let moving = moving(&desk);
+    let pid = moving.process.id();
+    let listed = desk.listed();
+    assert_eq!((&listed["motion"]["pid"], &listed["under_way"]), (&pid.into(), &true.into()));
+    assert!(listed["motion"]["command"].as_str().unwrap().contains("yrcx move --to 900,0,0,0"), "{listed}");
+    fails(&desk.run("-r cell yrcx servo on --yes"), 7, &format!("another client moves the robot: process {pid} ("));
+    fails(&desk.run("-r cell yrcx info servo --timeout 100ms"), 4, "the link is in use by process");
+    fails(&desk.run("session close cell"), 7, "moves the robot");
+    assert_eq!(desk.data("-r cell yrcx status")["command_status"], "running");
+    assert_eq!(desk.data("-r cell status")["reachable"], true);
+
+    assert!(desk.run("-r cell yrcx stop").status.success());
+    let (code, said) = moving.end();
+    assert!(code == Some(3) && said.contains("12.400"), "{code:?} {said}");
+    desk.data("-r cell yrcx io set stop=on");
+    assert!(desk.run("-r cell yrcx servo on --yes").status.success(), "nobody moves it any more");
+}
+
+#[test]
+fn an_interrupt_stops_a_motion_in_a_session_too() {
+    let (_simulator, desk) = cell();
+    let _session = Running::session(&desk, "cell");
+    let moving = moving(&desk);
+    moving.signal("INT");
+    let (code, said) = moving.end();
+    assert!(code == Some(130) && said.contains("was stopped by the stop input SI(06), which is on again"), "{said}");
+}
+
+#[test]
+fn what_a_dead_client_has_left_is_told_and_dealt_with() {
+    let (_simulator, desk) = cell();
+    let mut session = Running::session(&desk, "cell");
+    let moving = moving(&desk);
+    let pid = moving.process.id();
+    moving.signal("KILL");
+    session.says(&format!("client {pid} has died"));
+    let listed = desk.listed();
+    assert_eq!((&listed["leftover"]["pid"], &listed["leftover"]["died"]), (&pid.into(), &true.into()));
+    assert_eq!((&listed["motion"], &listed["under_way"]), (&Value::Null, &true.into()), "it goes on");
+    let output = desk.run("-r cell yrcx servo on --yes");
+    fails(&output, 4, "another client's command is still under way: move-mm");
+    assert!(stderr(&output).contains("by a client that has died"), "{}", stderr(&output));
+
+    assert!(desk.run("-r cell yrcx stop").status.success());
+    let next = desk.run("-r cell yrcx info servo");
+    assert!(next.status.success(), "{}", stderr(&next));
+    assert!(stderr(&next).contains("another client had left move-mm"), "{}", stderr(&next));
+    assert_eq!(desk.listed()["leftover"], Value::Null);
+}
+
+#[test]
+fn a_motion_without_waiting_goes_on_after_its_command() {
+    let (_simulator, desk) = cell();
+    let _session = Running::session(&desk, "cell");
+    let moved = desk.run("-r cell yrcx move --to 10,0,0,0 --speed-of-max 1 --yes --no-wait");
+    assert!(moved.status.success(), "{}", stderr(&moved));
+    assert_eq!(desk.listed()["leftover"]["died"], false);
+    let filter = ".data.command_status == \"normal end\"";
+    let mut watch = desk.command("-r cell yrcx status --watch 10ms --for 1m --json");
+    let watched = watch.args(["--until", filter]).output().unwrap();
+    assert!(watched.status.success(), "{:?}", watched.stdout.rsplit(|byte| *byte == b'\n').nth(1));
+    assert_eq!(desk.data("-r cell yrcx status --full")["position_mm"][0], 10.0);
+}
+
+#[test]
+fn a_session_that_is_killed_takes_the_outcome_with_it() {
+    let (_simulator, desk) = cell();
+    let session = Running::session(&desk, "cell");
+    let moving = moving(&desk);
+    session.signal("KILL");
+    let (code, said) = moving.end();
+    assert!(code == Some(6) && said.contains("the session is gone") && said.contains("hint: keep clear"), "{said}");
+    assert_eq!((desk.files("sock").len(), desk.listed()["link"].as_str()), (1, Some("dead")));
+    assert!(stderr(&desk.run("-r cell yrcx status")).contains("its session has died, so this goes without it"));
+    // A stale socket is no obstacle. The adapter notices after a moment that its owner is gone.
+    while !desk.run("-r cell session open --background").status.success() {}
+    assert_eq!(desk.listed()["link"], "up");
+    let killed = desk.listed()["pid"].to_string();
+    assert!(Command::new("kill").args(["-s", "KILL", &killed]).status().unwrap().success());
+    desk.until(|session| session["link"] == "dead");
+    assert_eq!(desk.data("session close cell")["sessions"][0]["became"], "forgotten");
+    assert!(desk.files("sock").is_empty());
+}
+
+#[test]
+fn a_session_that_is_asked_to_end_tells_its_clients() {
+    let (_simulator, desk) = cell();
+    let session = Running::session(&desk, "cell");
+    let moving = moving(&desk);
+    session.signal("TERM");
+    let (code, said) = moving.end();
+    assert!(code == Some(6) && said.contains("the session has ended: asked to end (SIGTERM)"), "{code:?} {said}");
+    let (code, said) = session.end();
+    assert!(code == Some(0) && !said.contains("not closed properly"), "{said}");
+    assert!(desk.files("sock").is_empty());
+}
+
+#[test]
+fn a_lost_link_is_opened_again() {
+    let (simulator, desk) = cell();
+    let mut session = Running::session(&desk, "cell");
+    let address = simulator.first.trim_start_matches("eip://").to_owned();
+    drop(simulator);
+    session.says("the link was lost");
+    desk.until(|session| session["link"] == "down");
+    fails(&desk.run("-r cell yrcx info servo --timeout 100ms"), 4, "the controller shows nothing");
+    let _simulator = self::simulator(&desk, "yrcx", &format!("{address} --io-port 0"));
+    session.says("the link is open again");
+    let listed = desk.until(|session| session["link"] == "up");
+    assert_eq!(listed["reopenings"], 1);
+    assert!(desk.run("-r cell yrcx info servo").status.success());
+}
+
+#[test]
+fn a_session_in_the_background_is_up_when_it_says_so() {
+    let (_simulator, desk) = cell();
+    let opened = desk.data("-r cell session open --background");
+    assert_eq!((&opened["robot"], &opened["background"]), (&"cell".into(), &true.into()));
+    let log = PathBuf::from(opened["log"].as_str().unwrap());
+    assert_eq!(mode(&log), 0o600);
+    assert!(std::fs::read_to_string(&log).unwrap().contains("the link is open"));
+    assert_eq!(desk.listed()["pid"], opened["pid"]);
+    fails(&desk.run("-r cell session open --background"), 4, "a session is open already");
+    fails(&desk.run("session close elsewhere"), 2, "there is no session of 'elsewhere'");
+    assert_eq!(desk.data("session close cell")["sessions"][0]["became"], "closed");
+    assert_eq!(desk.data("session list")["sessions"].as_array().unwrap().len(), 0);
+    // It is gone, with its connection, so that another one can take its place.
+    desk.data("-r cell session open --background");
+
+    let nobody = Desk::new(&[("cell", "yrcx", "eip://127.0.0.1:1"), ("yas", "yerc", "udp://127.0.0.1:1")]);
+    for robot in ["cell", "yas"] {
+        fails(&nobody.run(&format!("-r {robot} session open --background --retries 0")), 4, "127.0.0.1:1");
+    }
+    assert!(nobody.files("sock").is_empty());
+}
+
+#[test]
+fn datagrams_go_through_a_session() {
+    let simulator = simulator(&Desk::new(&[]), "yerc", "127.0.0.1:0");
+    let desk = Desk::new(&[("cell", "yerc", &simulator.first)]);
+    let session = Running::session(&desk, "cell");
+    let through = desk.run("-r cell yerc status -v");
+    assert!(stderr(&through).contains("through the session of process"), "{}", stderr(&through));
+    assert_eq!(
+        desk.data("-r cell yerc var set B0=7 --yes")["written"],
+        desk.data("-r cell yerc var set B0=7")["written"]
+    );
+    // Files come in many datagrams, over the other port.
+    let file = desk.folder.path().join("COUNT.JBI");
+    let saved = desk.run(&format!("-r cell yerc file get COUNT.JBI --output {}", desk.folder.path().display()));
+    assert!(saved.status.success() && file.exists(), "{}", stderr(&saved));
+    let sent = desk.run(&format!("-r cell --yes yerc file put {} --replace", file.display()));
+    assert!(sent.status.success(), "{}", stderr(&sent));
+
+    let slow = "-r cell --yes yerc move relative --z -600 --speed 1mm/s";
+    let moving = Running::start(desk.command(slow), false);
+    let pid = desk.until(|session| session["motion"] != Value::Null)["motion"]["pid"].clone();
+    assert_eq!(pid, moving.process.id());
+    fails(&desk.run("-r cell --yes yerc servo on"), 7, "another client moves the robot");
+    assert!(desk.run("-r cell yerc hold on").status.success(), "a hold gets through");
+    moving.signal("INT");
+    assert_eq!(moving.end().0, Some(130));
+    session.signal("INT");
+    assert_eq!(session.end().0, Some(0));
+}
+
+#[test]
+fn a_line_goes_from_client_to_client() {
+    let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
+    let desk = Desk::new(&[("cell", "toyo", &simulator.first)]);
+    let mut session = Running::session(&desk, "cell");
+    let homing = Running::start(desk.command("-r cell toyo home --yes -vv"), false);
+    let pid = desk.until(|session| session["motion"] != Value::Null)["motion"]["pid"].clone();
+    assert_eq!(pid, homing.process.id());
+    assert!(desk.run("-r cell toyo status").status.success(), "questions get through");
+    fails(&desk.run("-r cell toyo servo on --yes"), 7, "another client moves the robot");
+    let stopped = desk.run("-r cell toyo stop");
+    assert!(stopped.status.success(), "{}", stderr(&stopped));
+    assert_eq!(homing.end().0, Some(8), "stopped by somebody else");
+
+    let address = simulator.first.trim_start_matches("tcp://").to_owned();
+    drop(simulator);
+    session.says("the link was lost");
+    fails(&desk.run("-r cell toyo status"), 4, "the line is gone");
+    let _simulator = self::simulator(&desk, "toyo", &address);
+    session.says("the link is open again");
+    assert!(desk.run("-r cell toyo status").status.success());
+}
+
+#[test]
+fn a_simulator_in_a_session_keeps_its_state() {
+    let desk = Desk::new(&[("x", "yrcx", "sim:"), ("y", "yerc", "sim:"), ("t", "toyo", "sim:")]);
+    for robot in ["x", "y", "t"] {
+        assert!(desk.run(&format!("-r {robot} session open --background")).status.success());
+    }
+    assert_eq!(desk.data("session list")["sessions"].as_array().unwrap().len(), 3);
+    desk.data("-r x yrcx io set 20=on");
+    assert_eq!(desk.data("-r x yrcx io get SI20")["signals"][0]["on"], true);
+    desk.data("-r y yerc var set B0=42");
+    assert_eq!(desk.data("-r y yerc var get B0")["variables"][0]["value"], 42);
+    desk.data("-r t toyo counter set 7 42");
+    assert_eq!(desk.data("-r t toyo counter get 7")["counters"][0]["count"], 42);
+    // By itself a simulator is as it always is.
+    assert_eq!(desk.data("--no-session -r t toyo counter get 7")["counters"][0]["count"], 0);
+    assert_eq!(desk.data("session close --all")["sessions"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn a_folder_of_others_is_not_trusted() {
+    let desk = Desk::new(&[("x", "yrcx", "sim:")]);
+    let folder = desk.folder.path().join("run/armctl");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(0o755)).unwrap();
+    fails(&desk.run("-r x session open"), 1, "other users may use it");
+    let output = desk.run("-r x yrcx status");
+    assert!(output.status.success() && stderr(&output).contains("sessions are not used"), "{}", stderr(&output));
+}
