@@ -24,7 +24,8 @@ const DOCUMENTED: [(&str, &str); 3] =
 /// Separates the commands of a block in the output of its shell.
 const MARK: &str = "\u{1}--next--";
 /// Pages with blocks.
-const PAGES: [&str; 5] = ["README.md", "docs/yerc.md", "docs/toyo.md", "docs/yrcx.md", "docs/scripting.md"];
+const PAGES: [&str; 6] =
+    ["README.md", "docs/yerc.md", "docs/toyo.md", "docs/yrcx.md", "docs/scripting.md", "docs/sessions.md"];
 
 #[test]
 fn console_blocks_print_what_they_show() {

@@ -12,11 +12,20 @@ const WIDTH: usize = 100;
 fn redacted(text: &str) -> String {
     let text = replaced(text, "\"time\":\"", |value| value.find('"').filter(|end| value[..*end].ends_with('Z')));
     let text = replaced(&text, "\"elapsed_ms\":", |value| value.find([',', '}']));
+    let text = replaced(&text, "\"pid\":", |value| value.find([',', '}']));
+    let text = replaced(&text, "\"since\":\"", |value| value.find('"').filter(|end| value[..*end].ends_with('Z')));
+    let text = replaced(&text, "process ", |value| value.find(|c: char| !c.is_ascii_digit()).filter(|end| *end > 0));
+    let text = replaced(&text, " since ", |value| {
+        Some(DATE.len()).filter(|end| value.as_bytes().get(*end - 3) == Some(&b':'))
+    });
     let text = replaced(&text, "\"taken_at\":\"", |value| value.find('"'));
     let text = replaced(&text, "\"taken_at\": \"", |value| value.find('"'));
     let end = |value: &str| value.starts_with(|next: char| next.is_ascii_digit()).then_some(value.len());
     replaced(&replaced(&text, "taken at   ", end), "elapsed (ms)  ", end)
 }
+
+/// A time as it stands in a sentence.
+const DATE: &str = "2026-11-21 09:31:05";
 
 /// Text with `[..]` for what follows a name; `end` finds where that ends.
 fn replaced(text: &str, name: &str, end: impl Fn(&str) -> Option<usize>) -> String {

@@ -39,6 +39,7 @@ transcripts! {
     raw
     robots
     robots_check
+    sessions
     signals
     simulator
     status

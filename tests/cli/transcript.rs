@@ -82,6 +82,7 @@ impl Desk {
     /// A desk with the files of `files/` on it.
     pub fn new() -> Self {
         let desk = Self { folder: tempfile::tempdir().expect("a folder") };
+        std::fs::create_dir(desk.path().join(".run")).expect("a folder for sockets");
         for file in std::fs::read_dir(folder().join("files")).expect("the folder of files") {
             let file = file.expect("an entry");
             std::fs::copy(file.path(), desk.path().join(file.file_name())).expect("a file is copied");
@@ -109,6 +110,7 @@ impl Desk {
         let mut command = Command::new(program);
         command.env_clear().env("PATH", path.expect("a search path")).current_dir(self.path());
         command.env("HOME", self.path()).env("XDG_CONFIG_HOME", self.path().join(".config"));
+        command.env("XDG_RUNTIME_DIR", self.path().join(".run"));
         command.env("NO_COLOR", "1").env("TERM", "dumb").env("TZ", "UTC").env("LC_ALL", "C");
         command.stdin(Stdio::null());
         command
@@ -136,6 +138,15 @@ impl Desk {
             None => format!("? {}\n", output.status),
         };
         stdout + &stderr + &code
+    }
+}
+
+impl Drop for Desk {
+    fn drop(&mut self) {
+        // A session in the background must not outlive its test.
+        if self.path().join(".run/armctl").exists() {
+            let _ = self.armctl(&["session", "close", "--all", "--force"]).output();
+        }
     }
 }
 
