@@ -260,6 +260,19 @@ fn what_a_dead_client_has_left_is_told_and_dealt_with() {
 }
 
 #[test]
+fn a_jog_whose_client_is_killed_is_stopped() {
+    let (_simulator, desk) = cell();
+    let mut session = Running::session(&desk, "cell");
+    let mut jogging = Running::start(desk.command("-r cell yrcx jog pulse 1 + --yes -vv"), false);
+    jogging.says("<- WO 0100");
+    jogging.signal("KILL");
+    session.says("what it was to be stopped by is shown");
+    desk.until(|session| session["under_way"] == false);
+    let next = desk.run("-r cell yrcx info servo");
+    assert!(next.status.success() && stderr(&next).contains("12.400 stopped by the stop input"), "{}", stderr(&next));
+}
+
+#[test]
 fn a_motion_without_waiting_goes_on_after_its_command() {
     let (_simulator, desk) = cell();
     let _session = Running::session(&desk, "cell");

@@ -168,6 +168,13 @@ impl ImageLink {
         }
     }
 
+    /// Has a session show these bits, mask and value, if this process dies; or no more. Without one, the link dies with it.
+    pub fn bequeath(&mut self, bits: Option<(&[u8], &[u8])>) {
+        if let Way::Session(attached) = &mut self.way {
+            attached.bequeath(bits);
+        }
+    }
+
     /// Becomes the only one who moves the robot.
     pub async fn claim_motion(&mut self) -> Result<(), Hindrance> {
         match &mut self.way {

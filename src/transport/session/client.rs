@@ -437,6 +437,15 @@ impl Attached {
         self.end.put(&Frame::Show(change));
     }
 
+    /// Has the device shown these bits, mask and value, if this process dies; or no more. It counts from the next image
+    /// that is shown on.
+    pub fn bequeath(&mut self, bits: Option<(&[u8], &[u8])>) {
+        let Some(images) = &self.welcome.images else { return };
+        let generation = images.generation;
+        let will = bits.map(|(mask, value)| Change { generation, mask: mask.to_vec(), value: value.to_vec() });
+        self.end.post(Control::Will(will));
+    }
+
     /// Waits for the next thing to happen, but not longer than `until`. The future may be dropped.
     pub async fn event(&mut self, until: Instant) -> Event {
         loop {

@@ -39,7 +39,7 @@ pub enum Frame {
 }
 
 /// A change of an image: bits under the mask become those of the value.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Change {
     /// The opening of the link that it is meant for: what was meant for the time before a loss is not done after it.
     pub generation: u32,
@@ -84,6 +84,8 @@ pub enum Control {
     Motion,
     /// Client: a new socket for this channel, please.
     Renew(u8),
+    /// Client: have the device shown this if I die; or no more.
+    Will(Option<Change>),
     /// Client: I leave as I should.
     Bye,
 

@@ -30,11 +30,12 @@ commands! {
     }
 }
 
-/// A signal as typed: `servo-on`, `20` and `SO(20)` are outputs of the controller, `SI20` is an input.
+/// A signal as typed: `servo-on`, `20` and `SO(20)` are outputs of the controller, `SI20` is an input, and so is what only
+/// an input is called, such as `stop`.
 fn readable(text: &str) -> Result<Signal, String> {
     let is_input = text.get(..2).is_some_and(|prefix| prefix.eq_ignore_ascii_case("SI"));
     let side = if is_input { Side::Input } else { Side::Output };
-    Signal::parse(side, text).map_err(|error| error.to_string())
+    Signal::parse(side, text).or_else(|error| input(text).map_err(|_| error.to_string()))
 }
 
 /// `servo-on (SI(01))`; a general-purpose signal has but its number.

@@ -5,11 +5,12 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 use super::driver::LONG;
-use super::{Done, Link};
+use super::{Done, Link, Transport};
 use crate::command::interrupt::abandoned;
 use crate::command::yrcx::refusal;
 use crate::controller::yrcx::alarm::STOP_INPUT;
 use crate::controller::yrcx::answer::Answer;
+use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::procedure::Procedure;
 use crate::controller::yrcx::session::Outcome;
@@ -69,6 +70,7 @@ impl Link {
     pub(super) async fn see_through(&mut self, order: &Order, time: Option<Duration>) -> Result<Seen, Failure> {
         let key = abandoned();
         self.start(order).await?;
+        self.bequeath_stop(true);
         let cut = tokio::select! {
             biased;
             key = key => Some(Failure::new(Kind::Interrupted, key)),
@@ -87,8 +89,18 @@ impl Link {
             let message = format!("{why}the axis may still move: nothing reaches the controller any more");
             return Err(Failure::new(Kind::OutcomeUnknown, message).hint("press the emergency stop"));
         };
+        self.bequeath_stop(false);
         self.count(order, &outcome);
         Ok(Seen { outcome, is_stopped, cut })
+    }
+
+    /// Has a session that holds the link switch the stop input off if this process is killed; or no more.
+    fn bequeath_stop(&mut self, on: bool) {
+        let Transport::Image(link) = &mut self.transport else { return };
+        let mut mask = Image::default();
+        input::STOP.set(&mut mask, true);
+        let (mask, off) = (mask.to_bytes(), Image::default().to_bytes());
+        link.bequeath(on.then_some((&mask[..], &off[..])));
     }
 
     /// Turns until the jog has gone on for its time, or has ended.

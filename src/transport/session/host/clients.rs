@@ -9,7 +9,7 @@ use tokio::task::JoinHandle;
 use tokio::time::{Instant, timeout_at};
 
 use crate::transport::session::socket::{ReadHalf, WriteHalf};
-use crate::transport::session::wire::{Control, Frame, Peer, Reader};
+use crate::transport::session::wire::{Change, Control, Frame, Peer, Reader};
 
 /// What came from whom; `None` when he has gone.
 pub type Letter = (u64, Option<Frame>);
@@ -30,6 +30,8 @@ pub struct Client {
     name: Option<(u32, String)>,
     /// Whether it said that it leaves.
     pub has_left: bool,
+    /// What the device is shown if it dies.
+    pub will: Option<Change>,
     /// Since when it is there, has the line, may move.
     pub since: Instant,
     /// Since when it has the line.
@@ -55,6 +57,7 @@ impl Client {
             pid,
             name: None,
             has_left: false,
+            will: None,
             since: now,
             line_since: now,
             motion_since: now,

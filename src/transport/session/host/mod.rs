@@ -123,6 +123,7 @@ impl Host {
             // Nobody does anything before he has said who he is.
             _ if !is_named => self.gone(id),
             Frame::Control(Control::Bye) => client.has_left = true,
+            Frame::Control(Control::Will(will)) => client.will = will,
             Frame::Control(Control::Take { number, channel }) => self.queue_up(id, number, channel),
             Frame::Control(Control::Over) => self.release(id),
             Frame::Control(Control::Motion) => self.claim_motion(id),
@@ -243,7 +244,8 @@ impl Host {
         }
     }
 
-    /// A client has gone, or is not let in: it gives back all that it holds. What it has left on the image stays there.
+    /// A client has gone, or is not let in: it gives back all that it holds. What it has left on the image stays there,
+    /// but for what it wanted shown if it died.
     fn gone(&mut self, id: u64) {
         let Some(client) = self.clients.remove(&id) else { return };
         let died = client.is_named() && !client.has_left;
@@ -256,6 +258,10 @@ impl Host {
             }
             if leaves {
                 what.push("the command that it gave is left as it is".to_owned());
+            }
+            if let Some(will) = client.will.as_ref().and_then(|will| self.held.images()?.change(will.clone(), false)) {
+                what.push("what it was to be stopped by is shown".to_owned());
+                self.others(id).for_each(|other| other.send(Frame::Show(will.clone())));
             }
             (self.say)(&what.join("; "));
         }
