@@ -1,6 +1,6 @@
 # Print an optspec for argparse to handle cmd's options that are independent of any subcommand.
 function __fish_armctl_global_optspecs
-    string join \n sim t/target= r/robot= all tag= config= o/format= json jq= q/quiet v/verbose color= trace= y/yes dry-run on-interrupt= timeout= retries= encoding= watch= count= until= for= h/help V/version
+    string join \n sim t/target= r/robot= all tag= config= o/format= json jq= q/quiet v/verbose color= trace= y/yes dry-run on-interrupt= timeout= retries= encoding= no-session watch= count= until= for= h/help V/version
 end
 
 function __fish_armctl_needs_command
@@ -53,13 +53,15 @@ complete -c armctl -n "__fish_armctl_needs_command" -s q -l quiet -d 'Only error
 complete -c armctl -n "__fish_armctl_needs_command" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_needs_command" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_needs_command" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_needs_command" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_needs_command" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_needs_command" -s V -l version -d 'Print version'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "yerc" -d 'Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "yrcx" -d 'OMRON / Yamaha YRCX over EtherNet/IP'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "toyo" -d 'Toyo over RS-232C host communication'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "status" -d 'One line a robot: reachable, mode, servo, state, alarm, position'
-complete -c armctl -n "__fish_armctl_needs_command" -f -a "robots" -d 'The inventory: list, show, add, remove'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "robots" -d 'The inventory: list, show, add, remove; check and discover'
+complete -c armctl -n "__fish_armctl_needs_command" -f -a "session" -d 'Hold a link for all commands that follow: open, list, close'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "sim" -d 'Serve the simulators on real sockets'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "decode" -d 'Explain bytes of the line'
 complete -c armctl -n "__fish_armctl_needs_command" -f -a "explain" -d 'What an error or alarm code means and what to do'
@@ -96,6 +98,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "status" -d 'Mode, cycle, servo, hold, alarm: every status bit'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and not __fish_seen_subcommand_from status alarm job file position axes position-error torque var io register servo hold hlock cycle say move hours info raw" -f -a "alarm" -d 'Alarms: list, history, reset, cancel'
@@ -146,6 +149,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from status" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -176,6 +180,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -f -a "list" -d 'The alarms that are present'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from alarm" -f -a "history" -d 'The alarms of the past, the latest of each class first'
@@ -210,6 +215,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -f -a "show" -d 'What runs: job, line, step and speed override of a task'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from job" -f -a "select" -d 'Choose the job that a start will run'
@@ -243,6 +249,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -f -a "list" -d 'List the files on the controller'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from file" -f -a "get" -d 'Fetch files'
@@ -285,6 +292,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l group -d 'Control group: R1 …, B1 …, S1 …, or all that exist' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -316,6 +324,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from axes" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l group -d 'Control group: R1 …, B1 …, S1 …' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -347,6 +356,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from position-error" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l group -d 'Control group: R1 …, B1 …, S1 …' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -378,6 +388,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from torque" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -408,6 +419,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -f -a "get" -d 'Read variables: B0 I1..I20 D5 R3 S2 P10 BP1 EX1'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from var" -f -a "set" -d 'Write variables: B0=255 R3=1.5 S7=HELLO P1=base:x=…'
@@ -442,6 +454,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -f -a "get" -d 'Read signals: 20010, #20010..#20017, or --group 2001'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from io" -f -a "set" -d 'Switch network inputs: 27010=on, or --group 2701=0xA5'
@@ -474,6 +487,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -f -a "get" -d 'Read registers: 0 to 999'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from register" -f -a "set" -d 'Write registers: 0 to 559'
@@ -506,6 +520,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from servo" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -536,6 +551,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hold" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -566,6 +582,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hlock" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -596,6 +613,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from cycle" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -626,6 +644,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from say" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -656,6 +675,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -f -a "joint" -d 'To a position, each axis on its own way'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from move" -f -a "linear" -d 'To a position, in a straight line'
@@ -692,6 +712,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from hours" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l group -d 'A robot or station, or all that exist with their applications [default: all]' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l application -d 'An application' -r
@@ -724,6 +745,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from info" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l command -d 'Command number, such as 0x72' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l instance -d 'Instance: which of the things that the command addresses' -r
@@ -761,53 +783,85 @@ complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yerc; and __fish_seen_subcommand_from raw" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
 json\t'One envelope, or an array of them'
 jsonl\t'An envelope a line, with the time'
 csv\t'Comma-separated values'"
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l jq -d 'Print what a jq filter makes of the JSON' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
 always\t'Even into a file'
 never\t'Not at all'"
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
 leave\t'Disconnect only; the motion goes on'"
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l count -d 'Stop after so many reads' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l for -d 'How long --until waits before it gives up with exit code 8' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l sim -d 'Talk to the built-in simulator, in this process'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l all -d 'Talk to every robot of the inventory'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l json -d 'Print JSON (the same as -o json)'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s q -l quiet -d 'Only errors and questions on stderr'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s y -l yes -d 'Answer yes to the question before a motion'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -l dry-run -d 'Send nothing; print what would be sent'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "status" -d 'Signals, servos and position in words'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "move" -d 'Move a robot to a point or to coordinates'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "servo" -d 'Switch servos on or off, or release their brakes'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "motor" -d 'Switch motor power on or off'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "info" -d 'Versions, positions, servos, alarms'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "alarm" -d 'Alarms'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "io" -d 'Signals: what the controller shows and is shown'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "power-on" -d 'Servos on, by signals'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "emergency-stop" -d 'Into emergency stop, by signals'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "recover" -d 'Out of emergency stop with servos on, by signals'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "auto-mode" -d 'Wait for AUTO mode'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "reset" -d 'Reset the robot program, by signals'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "run" -d 'Run the robot program, by signals'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "stop" -d 'Stop the robot program, by signals'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move servo motor info alarm io power-on emergency-stop recover auto-mode reset run stop raw" -f -a "raw" -d 'Send the words of any remote command, and explain the answer'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "status" -d 'Signals, servos and position in words'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "move" -d 'Move a robot to a point or to coordinates'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "movei" -d 'Move a robot by distances'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "movet" -d 'Move a robot to a point in the coordinates of its tool'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "drive" -d 'Move one axis to a place'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "drivei" -d 'Move one axis by a distance'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "pallet" -d 'Move a robot to a place on a pallet'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "push" -d 'Push with one axis'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "jog" -d 'Move an axis until it is stopped'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "inch" -d 'Move an axis by the inching distance'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "inch-distance" -d 'Set the inching distance'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "teach" -d 'Store where the robot is in a point'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "origin" -d 'Return to origin'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "abs-reset" -d 'Reset the absolute position of an axis'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "speed" -d 'Set a speed'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "shift" -d 'The shift of the coordinates'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "hand" -d 'The hand at the robot\'s end'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "arm" -d 'The hand system of the arm'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "torque-limit" -d 'Limit the torque of an axis'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "servo" -d 'Switch servos on or off, or release their brakes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "motor" -d 'Switch motor power on or off'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "point" -d 'Points'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "comment" -d 'Comments of points'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "pallet-data" -d 'Pallets'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "shift-data" -d 'Shifts of coordinates'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "hand-data" -d 'Hands'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "point-calc" -d 'Points and shifts that the controller computes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "var" -d 'Static variables SGI and SGR'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "param" -d 'Parameters of robots and axes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "port" -d 'Ports of eight signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "program" -d 'Programs and their tasks'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "info" -d 'Versions, positions, servos, tasks, alarms'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "clock" -d 'The controller\'s clock'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "alarm" -d 'Alarms'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "io" -d 'Signals: what the controller shows and is shown'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "power-on" -d 'Servos on, by signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "emergency-stop" -d 'Into emergency stop, by signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "recover" -d 'Out of emergency stop with servos on, by signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "auto-mode" -d 'Wait for AUTO mode'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "reset" -d 'Reset the robot program, by signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "run" -d 'Run the robot program, by signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "stop" -d 'Stop the robot program, by signals'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "status-reset" -d 'Reset the status of remote commands'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "raw" -d 'Send the words of any remote command, and explain the answer'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and not __fish_seen_subcommand_from status move movei movet drive drivei pallet push jog inch inch-distance teach origin abs-reset speed shift hand arm torque-limit servo motor point comment pallet-data shift-data hand-data point-calc var param port program info clock alarm io power-on emergency-stop recover auto-mode reset run stop status-reset raw eip" -f -a "eip" -d 'The network board itself: who it is, which assemblies it has (diagnosis)'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -831,6 +885,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l count -d 'Stop after so many reads' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l full -d 'Take command of the controller, and ask for servos and position as well'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l sim -d 'Talk to the built-in simulator, in this process'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l all -d 'Talk to every robot of the inventory'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l json -d 'Print JSON (the same as -o json)'
@@ -838,6 +893,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l point -d 'Point to move to; two points of an arc with --circular, as in 100,101' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l to -d 'Coordinates of the axes in mm, of all four or of those of --axes' -r
@@ -848,7 +904,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l arch-unit -d 'What positions of the arch are measured in' -r -f -a "mm\t'Millimetres; degrees of what turns'
 pulse\t'Pulses of the encoders'"
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l axes -d 'Axes that move, as in 1,3; all unless given' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l speed -d '50 or 50% of the program speed, or 200mm/s along a line or an arc' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l speed -d 'Percent, as in 50 or 50%, in place of the program speed' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l speed-of-max -d 'Percent of the robot\'s maximum, in steps of 0.01' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l accel -d 'Acceleration in percent' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l decel -d 'Deceleration in percent' -r
@@ -879,8 +935,8 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l count -d 'Stop after so many reads' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l for -d 'How long --until waits before it gives up with exit code 8' -r
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l linear -d 'In a straight line'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l circular -d 'In an arc over the first point to the second'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l linear -d 'In a straight line; --speed may be 200mm/s then'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l circular -d 'In an arc over the first point to the second; --speed may be 200mm/s then'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l no-wait -d 'Do not wait for the end'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l sim -d 'Talk to the built-in simulator, in this process'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l all -d 'Talk to every robot of the inventory'
@@ -889,7 +945,640 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from move" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l point -d 'Point whose data are the distances' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l by -d 'Distances of the axes in mm, of all four or of those of --axes' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l by-pulse -d 'Distances of the axes in pulses, likewise' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l axes -d 'Axes that move, as in 1,3; all unless given' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l speed -d 'Percent, as in 50 or 50%, in place of the program speed' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l speed-of-max -d 'Percent of the robot\'s maximum, in steps of 0.01' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l accel -d 'Acceleration in percent' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l decel -d 'Deceleration in percent' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l hand -d 'Hand system at the end of --by' -r -f -a "right\t'Right-handed'
+left\t'Left-handed'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l report -d 'Report the position at the end, in this unit' -r -f -a "mm\t'Millimetres; degrees of what turns'
+pulse\t'Pulses of the encoders'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l linear -d 'In a straight line; --speed may be 200mm/s then'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l no-wait -d 'Do not wait for the end'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movei" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l point -d 'Point to move to' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l axes -d 'Axes that move, as in 1,3; all unless given' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l speed -d 'Percent, as in 50 or 50%, in place of the program speed' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l speed-of-max -d 'Percent of the robot\'s maximum, in steps of 0.01' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l accel -d 'Acceleration in percent' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l decel -d 'Deceleration in percent' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l report -d 'Report the position at the end, in this unit' -r -f -a "mm\t'Millimetres; degrees of what turns'
+pulse\t'Pulses of the encoders'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l linear -d 'In a straight line; --speed may be 200mm/s then'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l no-wait -d 'Do not wait for the end'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from movet" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l axis -d 'Axis to move, 1 to 4' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l point -d 'Point whose coordinate of this axis is the target' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l to -d 'Position in mm, of an axis that turns in degrees' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l to-pulse -d 'Position in pulses' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l speed -d 'Percent, as in 50 or 50%, in place of the program speed' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l speed-of-max -d 'Percent of the robot\'s maximum, in steps of 0.01' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l report -d 'Report the position at the end, in this unit' -r -f -a "mm\t'Millimetres; degrees of what turns'
+pulse\t'Pulses of the encoders'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l no-wait -d 'Do not wait for the end'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drive" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l axis -d 'Axis to move, 1 to 4' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l point -d 'Point whose coordinate of this axis is the distance' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l by -d 'Distance in mm, of an axis that turns in degrees' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l by-pulse -d 'Distance in pulses' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l speed -d 'Percent, as in 50 or 50%, in place of the program speed' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l speed-of-max -d 'Percent of the robot\'s maximum, in steps of 0.01' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l report -d 'Report the position at the end, in this unit' -r -f -a "mm\t'Millimetres; degrees of what turns'
+pulse\t'Pulses of the encoders'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l no-wait -d 'Do not wait for the end'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from drivei" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l pallet -d 'Pallet, 0 to 39' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l position -d 'Place on it, from 1 on' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l arch -d 'In an arch: this axis goes to this position first, as in 3:10.0' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l arch-start -d 'Where the arch begins; 0 unless given' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l arch-end -d 'Where the arch ends; 0 unless given' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l arch-unit -d 'What positions of the arch are measured in' -r -f -a "mm\t'Millimetres; degrees of what turns'
+pulse\t'Pulses of the encoders'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l speed -d 'Percent, as in 50 or 50%, in place of the program speed' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l speed-of-max -d 'Percent of the robot\'s maximum, in steps of 0.01' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l accel -d 'Acceleration in percent' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l decel -d 'Deceleration in percent' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l report -d 'Report the position at the end, in this unit' -r -f -a "mm\t'Millimetres; degrees of what turns'
+pulse\t'Pulses of the encoders'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l no-wait -d 'Do not wait for the end'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l axis -d 'Axis to push with, 1 to 4' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l point -d 'Point whose coordinate of this axis is the target' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l to -d 'Position in mm, of an axis that turns in degrees' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l to-pulse -d 'Position in pulses' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l force -d 'Force in percent of the rated torque, -1000 to 1000' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l time -d 'How long to push, 1ms to 32767ms' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l speed -d 'Percent, as in 50 or 50%, in place of the program speed' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l speed-of-max -d 'Percent of the robot\'s maximum, in steps of 0.01' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l report -d 'Report the position at the end, in this unit' -r -f -a "mm\t'Millimetres; degrees of what turns'
+pulse\t'Pulses of the encoders'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l no-wait -d 'Do not wait for the end'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from push" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l for -d 'How long; until Ctrl-C unless given' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l report -d 'Report the position at the end, in this unit; in that of the axes unless given' -r -f -a "mm\t'Millimetres; degrees of what turns'
+pulse\t'Pulses of the encoders'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from jog" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l report -d 'Report the position at the end, in this unit' -r -f -a "mm\t'Millimetres; degrees of what turns'
+pulse\t'Pulses of the encoders'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l no-wait -d 'Do not wait for the end'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from inch-distance" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l point -d 'Point to store it in, 0 to 29999' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l in -d 'Unit of the point' -r -f -a "mm\t'Millimetres; degrees of what turns'
+pulse\t'Pulses of the encoders'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from teach" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l axis -d 'One axis of one robot, 1 to 4' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l only -d 'Only axes of this kind' -r -f -a "incremental\t'Axes of the incremental type'
+absolute\t'Axes of the absolute type'
+incomplete\t'Axes whose origin is not known'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l no-wait -d 'Do not wait for the end'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from origin" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l axis -d 'The axis, 1 to 4' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l move -d 'Move only, this way, to the nearest position where a reset is possible' -r -f -a "+\t'Plus'
+-\t'Minus'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l no-wait -d 'Do not wait for the end of the motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from abs-reset" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from speed" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift" -f -a "select" -d 'Select a shift of the coordinates'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand" -f -a "select" -d 'Select the hand at the robot\'s end'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from arm" -f -a "select" -d 'Select the hand system that coordinates are reached in'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l axis -d 'The axis, 1 to 4' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from torque-limit" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l axis -d 'Only this axis, 1 to 4' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -921,6 +1610,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from servo" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -952,7 +1642,361 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from motor" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -f -a "get" -d 'Read points: 100, 0..29'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point" -f -a "set" -d 'Define a point: 100 --mm 10,-20,5,-18'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -f -a "get" -d 'Read the comments of points: 100, 0..29'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from comment" -f -a "set" -d 'Write the comment of a point: 100 \'WAIT ORG\''
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -f -a "get" -d 'Read pallets: 10, 0..39'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from pallet-data" -f -a "set" -d 'Define a pallet: 10 --nx 10 --ny 15 --first-point 100'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -f -a "get" -d 'Read shifts: 5, 0..39'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from shift-data" -f -a "set" -d 'Define a shift: 5 --mm 10,-20,5,-18'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -f -a "get" -d 'Read hands: 1, 0..31'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from hand-data" -f -a "set" -d 'Define a hand: 1 --data-1 10000 --data-2 -2 --data-3 5'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -f -a "copy" -d 'Copy a point: 100 --to 1'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -f -a "add" -d 'Add a point to another one: 100 --to 1'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -f -a "sub" -d 'Subtract a point from another one: 100 --from 1'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -f -a "pallet" -d 'Copy a place of a pallet to a point: 2 --place 133 --to 100'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -f -a "element" -d 'Set one element of a point: 1 --element 4 --mm 1.0'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from point-calc" -f -a "shift-element" -d 'Set one element of a shift: 1 --element 2 --mm 1.0'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -f -a "get" -d 'Read variables: SGI1, SGI0..SGI31, SGR5'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -f -a "set" -d 'Set a variable: SGI1 10000, or SGI1 SGI2'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -f -a "add" -d 'Add a number or a variable to a variable'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -f -a "sub" -d 'Subtract a number or a variable from a variable'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -f -a "mul" -d 'Multiply a variable by a number or a variable'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from var" -f -a "div" -d 'Divide a variable by a number or a variable'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -f -a "get" -d 'Read parameters: WEIGHT, or TOLE --axis 1,3'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from param" -f -a "set" -d 'Set a parameter: TOLE 1000 --axis 3'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -f -a "get" -d 'Read ports or signals: DI2, DO12, DO2.1'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from port" -f -a "set" -d 'Switch a port or a signal: DO12 7, DO2.1 on'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -f -a "select" -d 'Register a program in a task'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -f -a "run" -d 'Run a program, or all of them'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -f -a "step" -d 'Run one line, also of a subroutine'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -f -a "skip" -d 'Skip one line'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -f -a "next" -d 'Run one line, a subroutine as a whole'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -f -a "reset" -d 'Put a program back to its first line, or all of them'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from program" -f -a "show" -d 'Read what a program does'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -983,11 +2027,56 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "version" -d 'Versions of the software'
-complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "position" -d 'Where a robot is'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "system" -d 'Model numbers of a robot and its axes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "position" -d 'Where a robot is, once or as it changes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "servo" -d 'The servo of each axis'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "origin" -d 'Whether the origin is known'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "arm" -d 'Hand systems: the selected one and the arm\'s'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "speed" -d 'Speed settings'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "torque" -d 'Torque of the axes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "inch" -d 'The inching amount'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "tasks" -d 'What tasks do'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "line" -d 'Which line each task stands at'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "slots" -d 'What is in the option slots'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "message" -d 'Messages of the alarm history'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from info" -f -a "alarm" -d 'An alarm of the history, or the latest of a remote command'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -f -a "get" -d 'Read date and time'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from clock" -f -a "set" -d 'Set date and time: now, 2026-03-01T08:45:00, 2026-03-01 or 08:45'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -1018,6 +2107,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from alarm" -f -a "reset" -d 'Reset the alarm'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
@@ -1050,6 +2140,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -f -a "get" -d 'Read signals'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from io" -f -a "set" -d 'Switch inputs of the controller: servo-on=on, 20=off'
@@ -1086,6 +2177,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from power-on" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -1117,6 +2209,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from emergency-stop" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -1148,6 +2241,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from recover" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -1179,6 +2273,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from auto-mode" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -1210,6 +2305,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from reset" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -1241,6 +2337,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from run" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -1272,7 +2369,40 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from stop" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from status-reset" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l wi -d 'WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -1304,7 +2434,44 @@ complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from raw" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l unit -d 'Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -f -a "identity" -d 'Who the board is'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -f -a "probe" -d 'Find the assemblies of the board, their sizes, and what makes a connection'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -f -a "get" -d 'Read an attribute of an object of the board (raw)'
+complete -c armctl -n "__fish_armctl_using_subcommand yrcx; and __fish_seen_subcommand_from eip" -f -a "set" -d 'Change an attribute of an object of the board (raw)'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy backup restore io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy backup restore io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy backup restore io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
@@ -1334,6 +2501,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy backup restore io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy backup restore io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy backup restore io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy backup restore io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy backup restore io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy backup restore io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "status" -d 'All five status pages in words'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and not __fish_seen_subcommand_from status home position host mode servo stop reset error run jog param point speed-table accel-table mvm torque-table program palletizing easy backup restore io counter timer override task offset coordinate bus card init robot-type info raw ports sim" -f -a "home" -d 'Return to the origin'
@@ -1401,6 +2569,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from status" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l sync -d 'Search the origin of synchronized axes instead, with this drive axis, 1 to 3 (KCA-20-M00 and -M01)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -1433,6 +2602,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from home" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -1463,6 +2633,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from position" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -1493,6 +2664,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from host" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -1523,6 +2695,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mode" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -1553,6 +2726,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from servo" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -1584,6 +2758,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from stop" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -1614,6 +2789,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from reset" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -1644,6 +2820,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -f -a "show" -d 'The error that is present, with cause and remedy'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from error" -f -a "history" -d 'The errors of the past, the latest first'
@@ -1678,6 +2855,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -f -a "sequential" -d 'Start the sequential program'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from run" -f -a "palletizing" -d 'Start palletizing'
@@ -1713,6 +2891,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from jog" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -1743,6 +2922,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -f -a "get" -d 'Read parameters by name or id: soft-limit-plus P01 M09'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from param" -f -a "set" -d 'Change a parameter: soft-limit-plus 100 200 0 0'
@@ -1778,6 +2958,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -f -a "get" -d 'Read points: 1-10,20'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from point" -f -a "set" -d 'Write a point, or all that a CSV file has'
@@ -1811,6 +2992,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -f -a "get" -d 'Read rows: 1-5,20; without any, all 20'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from speed-table" -f -a "set" -d 'Write a row: 5 250'
@@ -1843,6 +3025,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -f -a "get" -d 'Read rows: 1-5,20; without any, all 20'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from accel-table" -f -a "set" -d 'Write a row: 5 0.25'
@@ -1875,6 +3058,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -f -a "get" -d 'Read groups: 1-3; without any, all 32'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from mvm" -f -a "set" -d 'Change values of a group: 1 origin=5 pieces1=10'
@@ -1907,6 +3091,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -f -a "get" -d 'Read rows: 1-3; without any, all 8'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from torque-table" -f -a "set" -d 'Write a row: 3 2.5 2.0'
@@ -1939,6 +3124,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -f -a "list" -d 'The tasks, with the steps their programs have room for and use'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from program" -f -a "get" -d 'Read a program as text'
@@ -1978,6 +3164,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -f -a "get" -d 'Read the records of a program, also into a TOML file'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from palletizing" -f -a "set" -d 'Write a record, or those of a TOML file: 1 source-p1 x=100'
@@ -2013,6 +3200,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -f -a "get" -d 'Read programs: 1-3; without any, all 8'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from easy" -f -a "set" -d 'Write a program: 1 START LOOP END'
@@ -2051,6 +3239,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from backup" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from backup" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from backup" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from backup" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from backup" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from restore" -l only -d 'These parts only, such as parameters,points-1,program' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from restore" -l resume -d 'Go on with a restore that was cut off; with a part, those before it are not even compared' -r
@@ -2085,6 +3274,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from restore" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from restore" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from restore" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from restore" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from restore" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -2115,6 +3305,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -f -a "in" -d 'Input ports'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from io" -f -a "out" -d 'Output ports'
@@ -2150,6 +3341,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -f -a "get" -d 'Read counters 1 to 99'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from counter" -f -a "set" -d 'Set a counter'
@@ -2182,6 +3374,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from timer" -f -a "get" -d 'Read timers 1 to 9'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -2213,6 +3406,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -f -a "get" -d 'Read the override'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from override" -f -a "set" -d 'Write the override to the EEPROM; it counts while no program runs'
@@ -2245,6 +3439,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -f -a "get" -d 'Which task is the current one'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from task" -f -a "set" -d 'Choose the task whose program and points are read, written and cleared'
@@ -2277,6 +3472,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from offset" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -2307,6 +3503,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from coordinate" -f -a "set" -d 'Supply coordinates to an RSMV, which moves there'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -2338,6 +3535,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from bus" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -2368,6 +3566,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -f -a "read" -d 'Read everything from the card, over what the controller holds'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from card" -f -a "write" -d 'Write everything that the controller holds to the card'
@@ -2400,6 +3599,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from init" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -2430,6 +3630,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from robot-type" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -2460,6 +3661,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from info" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -2490,6 +3692,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from raw" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -2520,6 +3723,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from ports" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -2550,6 +3754,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subc
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand toyo; and __fish_seen_subcommand_from sim" -f -a "run" -d 'Run a program file and print what happens and when; takes no robot'
 complete -c armctl -n "__fish_armctl_using_subcommand status" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -2581,41 +3786,45 @@ complete -c armctl -n "__fish_armctl_using_subcommand status" -s q -l quiet -d '
 complete -c armctl -n "__fish_armctl_using_subcommand status" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand status" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand status" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand status" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand status" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
 json\t'One envelope, or an array of them'
 jsonl\t'An envelope a line, with the time'
 csv\t'Comma-separated values'"
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l jq -d 'Print what a jq filter makes of the JSON' -r
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
 always\t'Even into a file'
 never\t'Not at all'"
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
 leave\t'Disconnect only; the motion goes on'"
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l count -d 'Stop after so many reads' -r
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l for -d 'How long --until waits before it gives up with exit code 8' -r
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l sim -d 'Talk to the built-in simulator, in this process'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l all -d 'Talk to every robot of the inventory'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l json -d 'Print JSON (the same as -o json)'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s q -l quiet -d 'Only errors and questions on stderr'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s y -l yes -d 'Answer yes to the question before a motion'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -l dry-run -d 'Send nothing; print what would be sent'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -f -a "list" -d 'Every robot of the inventory'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -f -a "show" -d 'One robot with every setting in force'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -f -a "add" -d 'Add a robot'
-complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove" -f -a "remove" -d 'Remove a robot'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -f -a "list" -d 'Every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -f -a "show" -d 'One robot with every setting in force'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -f -a "add" -d 'Add a robot'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -f -a "remove" -d 'Remove a robot'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -f -a "check" -d 'What is wrong between this machine and a robot, and what to set'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and not __fish_seen_subcommand_from list show add remove check discover" -f -a "discover" -d 'Which EtherNet/IP boards answer on the network, and which serial ports are there'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
@@ -2645,6 +3854,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from list" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -2676,6 +3886,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from show" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l family -d 'Its family, where the URL does not tell' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l with-tag -d 'A word to choose it by (repeatable)' -r
@@ -2710,6 +3921,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from add" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -2740,7 +3952,204 @@ complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from remove" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from check" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l broadcast -d 'Ask everybody at this broadcast address, 255.255.255.255 unless given (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l bind -d 'Ask from this address of this machine' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l wait -d 'How long to wait for answers' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand robots; and __fish_seen_subcommand_from discover" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -f -a "open" -d 'Hold the link to a robot, for all commands that follow'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -f -a "list" -d 'Which links are held, and who uses them'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and not __fish_seen_subcommand_from open list close" -f -a "close" -d 'Let the link to a robot go'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l family -d 'The family, where the target does not tell' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l background -d 'Go on behind the terminal; return once the link is up'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l detached -d 'This is the process that `--background` has started'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from open" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from list" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l config -d 'The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -s o -l format -d 'How to print data' -r -f -a "table\t'Tables for people'
+json\t'One envelope, or an array of them'
+jsonl\t'An envelope a line, with the time'
+csv\t'Comma-separated values'"
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l jq -d 'Print what a jq filter makes of the JSON' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l color -d 'Colour' -r -f -a "auto\t'On a terminal that can, unless `NO_COLOR` is set'
+always\t'Even into a file'
+never\t'Not at all'"
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l trace -d 'Record the traffic: a .pcapng file for Wireshark, or - for text on stderr' -r -F
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l on-interrupt -d 'What Ctrl-C does to a motion' -r -f -a "stop\t'Stop the robot, then disconnect'
+leave\t'Disconnect only; the motion goes on'"
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l timeout -d 'Longest wait for an answer (ARMCTL_TIMEOUT)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l retries -d 'Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l encoding -d 'Encoding of names and texts on the controller (ARMCTL_ENCODING)' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l watch -d 'Repeat a read, every second or every INTERVAL' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l count -d 'Stop after so many reads' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l force -d 'Although a motion is under way, which a controller then breaks off'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l sim -d 'Talk to the built-in simulator, in this process'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l all -d 'Talk to every robot of the inventory'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l json -d 'Print JSON (the same as -o json)'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -s q -l quiet -d 'Only errors and questions on stderr'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -s y -l yes -d 'Answer yes to the question before a motion'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -l no-session -d 'Go to the robot directly, although a session holds its link'
+complete -c armctl -n "__fish_armctl_using_subcommand session; and __fish_seen_subcommand_from close" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
@@ -2770,6 +4179,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_s
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "yerc" -d 'An FS100 or DX200 on two UDP ports'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "yrcx" -d 'A YRCX as an adapter of EtherNet/IP'
@@ -2809,12 +4219,13 @@ complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subco
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l bind -d 'Address to listen on, with the TCP port of sessions; port 0 lets the system choose' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l io-port -d 'UDP port of images, 2222 unless given; any where the system chooses that of sessions' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l state -d 'Start state (TOML): robots, memory, programs, alarms, timed events' -r -F
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l fault -d 'Faults of images on their way, such as drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,seed=7' -r
-complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l mischief -d 'What the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, reset, mute, garbage' -r
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l mischief -d 'What the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, frozen, unreadable, reset, mute, garbage' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
@@ -2845,6 +4256,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subco
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from yrcx" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l bind -d 'Address to listen on, with the TCP port; port 0 lets the system choose' -r
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l link -d 'Name the pseudo-terminal by a symbolic link, which is removed at the end' -r -F
@@ -2883,6 +4295,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subco
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand sim; and __fish_seen_subcommand_from toyo" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -2913,6 +4326,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_see
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "yerc" -d 'Frames of the high-speed Ethernet server, as from a packet capture'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "yrcx" -d 'Words of remote commands and their answers'
@@ -2949,6 +4363,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l wi -d 'WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l wo -d 'WO0 to WO15, as in 0x4000,0x0002,0x014E' -r
@@ -2981,6 +4396,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -3011,6 +4427,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -3041,6 +4458,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_se
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "yerc" -d 'A status code (one byte) or added status code (two bytes) of an FS100 or DX200'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and not __fish_seen_subcommand_from yerc yrcx toyo" -f -a "yrcx" -d 'An alarm of a YRCX'
@@ -3074,6 +4492,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_s
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -3104,6 +4523,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_s
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from yrcx" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -3134,6 +4554,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_s
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand explain; and __fish_seen_subcommand_from toyo" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand completions" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand completions" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -3164,6 +4585,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand completions" -s q -l quiet
 complete -c armctl -n "__fish_armctl_using_subcommand completions" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand completions" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand completions" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand completions" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand completions" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand man" -l dir -d 'The folder, such as /usr/local/share/man/man1; it must exist' -r -F
 complete -c armctl -n "__fish_armctl_using_subcommand man" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
@@ -3195,6 +4617,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand man" -s q -l quiet -d 'Onl
 complete -c armctl -n "__fish_armctl_using_subcommand man" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand man" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand man" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand man" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand man" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand schema" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand schema" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -3225,6 +4648,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand schema" -s q -l quiet -d '
 complete -c armctl -n "__fish_armctl_using_subcommand schema" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand schema" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand schema" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand schema" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand schema" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand help" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand help" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
@@ -3255,4 +4679,5 @@ complete -c armctl -n "__fish_armctl_using_subcommand help" -s q -l quiet -d 'On
 complete -c armctl -n "__fish_armctl_using_subcommand help" -s v -l verbose -d 'Say more on stderr: -v a summary, -vv frames, -vvv bytes'
 complete -c armctl -n "__fish_armctl_using_subcommand help" -s y -l yes -d 'Answer yes to the question before a motion'
 complete -c armctl -n "__fish_armctl_using_subcommand help" -l dry-run -d 'Send nothing; print what would be sent'
+complete -c armctl -n "__fish_armctl_using_subcommand help" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand help" -s h -l help -d 'Print help (see more with \'--help\')'

@@ -24,8 +24,15 @@ const DOCUMENTED: [(&str, &str); 3] =
 /// Separates the commands of a block in the output of its shell.
 const MARK: &str = "\u{1}--next--";
 /// Pages with blocks.
-const PAGES: [&str; 6] =
-    ["README.md", "docs/yerc.md", "docs/toyo.md", "docs/yrcx.md", "docs/scripting.md", "docs/sessions.md"];
+const PAGES: [&str; 7] = [
+    "README.md",
+    "docs/yerc.md",
+    "docs/toyo.md",
+    "docs/yrcx.md",
+    "docs/scripting.md",
+    "docs/sessions.md",
+    "docs/safety.md",
+];
 
 #[test]
 fn console_blocks_print_what_they_show() {
