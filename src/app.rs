@@ -8,11 +8,11 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory as _, FromArgMatches as _};
 
 use crate::cli::{Cli, Globals, Top};
-use crate::command::Noun as _;
 use crate::command::common::Common;
 use crate::command::common::robots::Robots;
 use crate::command::common::robots::check::Check;
 use crate::command::run::{Repeat, Run, Stopped};
+use crate::command::{self, AnyCommand, Noun as _};
 use crate::failure::{Failure, Kind};
 use crate::gate::Gate;
 use crate::output::envelope::Envelope;
@@ -58,31 +58,44 @@ fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
 }
 
 fn run(cli: Cli) -> Result<(), Stopped> {
-    let need = match &cli.command {
-        Top::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
-        Top::Common(Common::Session(session)) if !session.opens() => Need::Names,
-        Top::Common(common) if !common.is_about_robots() => Need::Nothing,
+    match cli.command {
+        Top::Yerc(noun) => for_robots(cli.globals, &*noun.command()),
+        Top::Yrcx(noun) => for_robots(cli.globals, &*noun.command()),
+        Top::Toyo(noun) => for_robots(cli.globals, &*noun.command()),
+        Top::Common(common) => for_all_families(cli.globals, common),
+    }
+}
+
+fn for_robots<F: command::Family>(globals: Globals, command: &dyn AnyCommand<F>) -> Result<(), Stopped> {
+    let need = if command.takes_robot() { Need::Inventory } else { Need::Nothing };
+    let run = prepare(globals, need)?;
+    to_the_end(run.robots(command))
+}
+
+fn for_all_families(globals: Globals, common: Common) -> Result<(), Stopped> {
+    let need = match &common {
+        Common::Robots(Robots::Discover(_)) => Need::Nothing,
+        Common::Robots(robots) if robots.makes_inventory() => Need::InventoryOrNone,
+        Common::Session(session) if !session.opens() => Need::Names,
+        common if !common.is_about_robots() => Need::Nothing,
         _ => Need::Inventory,
     };
-    let mut run = prepare(cli.globals, need)?;
-    if let Top::Common(Common::Status(_)) = cli.command {
-        run.sources.widen();
+    let mut run = prepare(globals, need)?;
+    match &common {
+        Common::Status(_) => run.sources.widen(),
+        Common::Robots(Robots::Check(Check { name: Some(name) })) => run.sources.choose(name)?,
+        _ => {}
     }
-    if let Top::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) = &cli.command {
-        run.sources.choose(name)?;
-    }
+    to_the_end(common.run(&run))
+}
+
+/// Runs it on this thread.
+fn to_the_end(done: impl Future<Output = Result<(), Stopped>>) -> Result<(), Stopped> {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .build()
         .map_err(|error| Failure::io("start", &error))?;
-    let done = runtime.block_on(async {
-        match cli.command {
-            Top::Yerc(noun) => run.robots(&*noun.command()).await,
-            Top::Yrcx(noun) => run.robots(&*noun.command()).await,
-            Top::Toyo(noun) => run.robots(&*noun.command()).await,
-            Top::Common(common) => common.run(&run).await,
-        }
-    });
+    let done = runtime.block_on(done);
     // A thread that waits for stdin or a name server must not hold up the end.
     runtime.shutdown_background();
     done

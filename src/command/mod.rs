@@ -161,6 +161,10 @@ pub trait AnyCommand<F: Family> {
     fn intent(&self) -> String;
     /// See [`Command::demand`].
     fn demand(&self) -> Demand;
+    /// Whether it is for a robot.
+    fn takes_robot(&self) -> bool {
+        true
+    }
     /// What it reports, if it takes no robot to do it.
     fn without_robot(&self, screen: &Screen) -> Option<Outcome>;
     /// See [`Command::is_endless`].
@@ -275,6 +279,10 @@ impl<F: Family, C: Desk + clap::Args + 'static> AnyCommand<F> for AtDesk<C> {
 
     fn demand(&self) -> Demand {
         Demand::Usual
+    }
+
+    fn takes_robot(&self) -> bool {
+        false
     }
 
     fn without_robot(&self, screen: &Screen) -> Option<Outcome> {

@@ -181,7 +181,9 @@ fn pycomm3_asks_our_adapter() {
     assert_eq!(found["size"]["value"], "3000");
     assert_eq!(found["image"]["value"], "00".repeat(48));
     assert!(found["nothing"]["error"].as_str().unwrap().starts_with("Destination unknown"), "{found}");
-    assert_eq!(found["write"]["error"], "Attribute not settable");
+    assert_eq!(found["write"]["error"], serde_json::Value::Null, "{found}");
+    assert_eq!(server.with(|adapter, _| adapter.application().image.clone()), [b'Z'; 48], "nobody owns it");
+    assert_eq!(found["refused"]["error"], "Attribute not settable");
 }
 
 /// A whole exchange as a capture file, read by tshark.

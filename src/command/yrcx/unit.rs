@@ -64,6 +64,10 @@ impl AnyCommand<Family> for OfUnit {
         self.command.need()
     }
 
+    fn takes_robot(&self) -> bool {
+        self.command.takes_robot()
+    }
+
     fn without_robot(&self, screen: &Screen) -> Option<Outcome> {
         self.command.without_robot(screen)
     }

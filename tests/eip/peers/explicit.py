@@ -33,7 +33,8 @@ with CIPDriver(f"{host}:{port}") as driver:
                 "size": ask(driver, Services.get_attribute_single, 4, 150, 4),
                 "image": ask(driver, Services.get_attribute_single, 4, 100, 3),
                 "nothing": ask(driver, Services.get_attribute_single, 4, 99, 3),
-                "write": ask(driver, Services.set_attribute_single, 4, 150, 3, bytes(48)),
+                "write": ask(driver, Services.set_attribute_single, 4, 150, 3, b"Z" * 48),
+                "refused": ask(driver, Services.set_attribute_single, 4, 100, 3, bytes(48)),
             }
         )
     )
