@@ -2,6 +2,7 @@
 //!
 //! Nothing in here knows a controller's protocol, and no controller knows what is in here.
 
+pub mod capture;
 pub mod eip;
 pub mod fault;
 pub mod image;

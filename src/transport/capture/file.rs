@@ -1,0 +1,352 @@
+//! Packets of a pcap or pcapng file (draft-ietf-opsawg-pcap, draft-ietf-opsawg-pcapng).
+
+use std::time::Duration;
+
+use thiserror::Error;
+
+/// A packet, with what the file says of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Packet<'a> {
+    /// From 1.
+    pub number: u64,
+    /// Section of a pcapng file, from 1.
+    pub section: usize,
+    /// Since 1970; of a packet without a time, that of the packet before.
+    pub time: Duration,
+    /// `LINKTYPE_…`.
+    pub link_type: u16,
+    /// What was recorded of it.
+    pub bytes: &'a [u8],
+    /// There was more of it.
+    pub is_cut: bool,
+}
+
+/// Where a file stops to make sense.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{problem} at offset {offset}")]
+pub struct Damage {
+    /// From the start of the file, in bytes.
+    pub offset: usize,
+    /// What is wrong there.
+    pub problem: &'static str,
+}
+
+/// Bytes that are no capture file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum Unknown {
+    /// Compressed by gzip or zstd.
+    #[error("it is compressed")]
+    Compressed,
+    /// Nothing known.
+    #[error("it is no pcap or pcapng file")]
+    Other,
+}
+
+const SECTION_HEADER: u32 = 0x0A0D_0D0A;
+const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
+const INTERFACE: u32 = 1;
+/// The packet block that came before the enhanced one.
+const OLD_PACKET: u32 = 2;
+const SIMPLE_PACKET: u32 = 3;
+const ENHANCED_PACKET: u32 = 6;
+/// Options of an interface.
+const END_OF_OPTIONS: u16 = 0;
+const TIME_RESOLUTION: u16 = 9;
+const TIME_OFFSET: u16 = 14;
+/// Length of the header of a pcap file, and of those of its packets.
+const FILE_HEADER: usize = 24;
+const PACKET_HEADER: usize = 16;
+/// More than any packet has; what says more is no length.
+const MOST: usize = 16 << 20;
+
+/// Numbers in the byte order of the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Order {
+    Big,
+    Little,
+}
+
+impl Order {
+    fn short(self, bytes: &[u8], at: usize) -> Option<u16> {
+        let bytes = *bytes.get(at..)?.first_chunk()?;
+        Some(if self == Self::Big { u16::from_be_bytes(bytes) } else { u16::from_le_bytes(bytes) })
+    }
+
+    fn word(self, bytes: &[u8], at: usize) -> Option<u32> {
+        let bytes = *bytes.get(at..)?.first_chunk()?;
+        Some(if self == Self::Big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
+    }
+
+    fn size(self, bytes: &[u8], at: usize) -> Option<usize> {
+        usize::try_from(self.word(bytes, at)?).ok()
+    }
+
+    fn long(self, bytes: &[u8], at: usize) -> Option<u64> {
+        let bytes = *bytes.get(at..)?.first_chunk()?;
+        Some(if self == Self::Big { u64::from_be_bytes(bytes) } else { u64::from_le_bytes(bytes) })
+    }
+}
+
+/// What times of an interface count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Clock {
+    /// In a second.
+    ticks: u128,
+    /// Seconds to add.
+    offset: u64,
+}
+
+impl Clock {
+    const MICROS: Self = Self { ticks: 1_000_000, offset: 0 };
+    const NANOS: Self = Self { ticks: 1_000_000_000, offset: 0 };
+
+    /// `resolution` is a power of ten, or with its highest bit of two; what no clock can have counts as microseconds.
+    fn new(resolution: u8, offset: u64) -> Self {
+        let exponent = u32::from(resolution & 0x7F);
+        let base: u128 = if resolution & 0x80 == 0 { 10 } else { 2 };
+        Self { ticks: base.checked_pow(exponent).unwrap_or(Self::MICROS.ticks), offset }
+    }
+
+    fn time(self, count: u64) -> Duration {
+        let count = u128::from(count);
+        let seconds = u64::try_from(count / self.ticks).unwrap_or(u64::MAX);
+        let nanos = (count % self.ticks).saturating_mul(1_000_000_000) / self.ticks;
+        let nanos = u32::try_from(nanos).unwrap_or_default().min(999_999_999);
+        // The offset is signed; in two's complement the sum is the same.
+        Duration::new(seconds.wrapping_add(self.offset), nanos)
+    }
+}
+
+/// What a section says of the packets of an interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Interface {
+    link_type: u16,
+    /// Bytes of a packet that are recorded at most; 0 for all.
+    most: usize,
+    clock: Clock,
+}
+
+/// The kind of a file, and how far a section has got.
+#[derive(Debug)]
+enum Format {
+    Classic(Interface),
+    Blocks(Vec<Interface>),
+}
+
+/// The packets of a file, up to its end or to the damage.
+#[derive(Debug)]
+pub struct Packets<'a> {
+    file: &'a [u8],
+    at: usize,
+    order: Order,
+    format: Format,
+    number: u64,
+    section: usize,
+    time: Duration,
+    is_over: bool,
+}
+
+impl<'a> Packets<'a> {
+    /// Begins with a file that was loaded.
+    pub fn open(file: &'a [u8]) -> Result<Self, Unknown> {
+        let magic = file.first_chunk::<4>().map(|bytes| u32::from_be_bytes(*bytes)).ok_or(Unknown::Other)?;
+        let classic = |order: Order, clock| {
+            let most = order.size(file, 16)?;
+            // Above the link type, a word may say that packets end with a checksum.
+            let link_type = u16::try_from(order.word(file, 20)? & 0xFFFF).ok()?;
+            Some((order, Format::Classic(Interface { link_type, most, clock }), FILE_HEADER))
+        };
+        let opened = match magic {
+            SECTION_HEADER => Some((Order::Little, Format::Blocks(Vec::new()), 0)),
+            0xA1B2_C3D4 => classic(Order::Big, Clock::MICROS),
+            0xD4C3_B2A1 => classic(Order::Little, Clock::MICROS),
+            0xA1B2_3C4D => classic(Order::Big, Clock::NANOS),
+            0x4D3C_B2A1 => classic(Order::Little, Clock::NANOS),
+            0x1F8B_0000..=0x1F8B_FFFF | 0x28B5_2FFD => return Err(Unknown::Compressed),
+            _ => None,
+        };
+        let (order, format, at) = opened.ok_or(Unknown::Other)?;
+        Ok(Self { file, at, order, format, number: 0, section: 0, time: Duration::ZERO, is_over: false })
+    }
+
+    fn rest(&self) -> &'a [u8] {
+        self.file.get(self.at..).unwrap_or_default()
+    }
+
+    fn damage(&self, problem: &'static str) -> Damage {
+        Damage { offset: self.at, problem }
+    }
+
+    fn packet(&mut self, interface: Interface, time: Option<Duration>, bytes: &'a [u8], original: usize) -> Packet<'a> {
+        self.number += 1;
+        self.time = time.unwrap_or(self.time);
+        let (number, section, time) = (self.number, self.section, self.time);
+        Packet { number, section, time, link_type: interface.link_type, bytes, is_cut: bytes.len() < original }
+    }
+
+    /// The next packet of a pcap file.
+    fn record(&mut self, interface: Interface) -> Result<Packet<'a>, Damage> {
+        let (rest, order) = (self.rest(), self.order);
+        let header = || {
+            let seconds = u64::from(order.word(rest, 0)?);
+            let parts = u64::from(order.word(rest, 4)?);
+            Some((seconds, parts, order.size(rest, 8)?, order.size(rest, 12)?))
+        };
+        let (seconds, parts, len, original) =
+            header().ok_or_else(|| self.damage("the file ends inside the header of a packet"))?;
+        if len > MOST {
+            return Err(self.damage("a packet of an impossible length"));
+        }
+        let bytes = rest.get(PACKET_HEADER..PACKET_HEADER + len);
+        let bytes = bytes.ok_or_else(|| self.damage("the file ends inside a packet"))?;
+        let time = Clock { offset: seconds, ..interface.clock }.time(parts);
+        self.at += PACKET_HEADER + len;
+        Ok(self.packet(interface, Some(time), bytes, original))
+    }
+
+    /// The packet of the next block of a pcapng file, if it has one.
+    fn block(&mut self) -> Result<Option<Packet<'a>>, Damage> {
+        let rest = self.rest();
+        let short = "the file ends inside a block";
+        let kind = self.order.word(rest, 0).ok_or_else(|| self.damage(short))?;
+        if kind == SECTION_HEADER {
+            // The same in both byte orders, which this block decides.
+            let magic = Order::Big.word(rest, 8).ok_or_else(|| self.damage(short))?;
+            self.order = match magic {
+                BYTE_ORDER_MAGIC => Order::Big,
+                _ if magic.swap_bytes() == BYTE_ORDER_MAGIC => Order::Little,
+                _ => return Err(self.damage("a section without a byte order")),
+            };
+        }
+        let order = self.order;
+        let len = order.size(rest, 4).ok_or_else(|| self.damage(short))?;
+        if len < 12 || len % 4 != 0 || len > MOST {
+            return Err(self.damage("a block of an impossible length"));
+        }
+        let block = rest.get(..len).ok_or_else(|| self.damage(short))?;
+        if order.size(block, len - 4) != Some(len) {
+            return Err(self.damage("a block whose two lengths differ"));
+        }
+        let body = &block[8..len - 4];
+        let found = match kind {
+            SECTION_HEADER if order.short(body, 4) != Some(1) => {
+                return Err(self.damage("a section of an unknown version"));
+            }
+            SECTION_HEADER => {
+                self.section += 1;
+                self.format = Format::Blocks(Vec::new());
+                None
+            }
+            INTERFACE => {
+                let interface = interface(order, body).ok_or_else(|| self.damage("an interface that is too short"))?;
+                if let Format::Blocks(interfaces) = &mut self.format {
+                    interfaces.push(interface);
+                }
+                None
+            }
+            ENHANCED_PACKET | OLD_PACKET | SIMPLE_PACKET => Some(self.packet_of(kind, body)?),
+            _ => None,
+        };
+        self.at += len;
+        Ok(found)
+    }
+
+    /// The packet in the body of a block.
+    fn packet_of(&mut self, kind: u32, body: &'a [u8]) -> Result<Packet<'a>, Damage> {
+        let order = self.order;
+        let Format::Blocks(interfaces) = &self.format else { return Err(self.damage("a block outside a section")) };
+        let number = match kind {
+            ENHANCED_PACKET => order.size(body, 0),
+            OLD_PACKET => order.short(body, 0).map(usize::from),
+            _ => Some(0),
+        };
+        let interface = number.and_then(|number| interfaces.get(number).copied());
+        let interface = interface.ok_or_else(|| self.damage("a packet of an interface that is not there"))?;
+        let parts = || {
+            if kind == SIMPLE_PACKET {
+                let original = order.size(body, 0)?;
+                let most = if interface.most == 0 { usize::MAX } else { interface.most };
+                return Some((None, body.get(4..4 + original.min(most).min(MOST))?, original));
+            }
+            let count = u64::from(order.word(body, 4)?) << 32 | u64::from(order.word(body, 8)?);
+            let len = order.size(body, 12)?.min(MOST);
+            Some((Some(interface.clock.time(count)), body.get(20..20 + len)?, order.size(body, 16)?))
+        };
+        let (time, bytes, original) = parts().ok_or_else(|| self.damage("a packet that is longer than its block"))?;
+        Ok(self.packet(interface, time, bytes, original))
+    }
+}
+
+/// The interface that a block describes.
+fn interface(order: Order, body: &[u8]) -> Option<Interface> {
+    let (link_type, most) = (order.short(body, 0)?, order.size(body, 4)?);
+    let (mut resolution, mut offset, mut at) = (6, 0, 8);
+    while let (Some(code), Some(len)) = (order.short(body, at), order.short(body, at + 2)) {
+        let value = body.get(at + 4..).unwrap_or_default();
+        match (code, len) {
+            (END_OF_OPTIONS, _) => break,
+            (TIME_RESOLUTION, 1) => resolution = *value.first()?,
+            (TIME_OFFSET, 8) => offset = order.long(value, 0)?,
+            _ => {}
+        }
+        at += 4 + usize::from(len).next_multiple_of(4);
+    }
+    Some(Interface { link_type, most, clock: Clock::new(resolution, offset) })
+}
+
+impl<'a> Iterator for Packets<'a> {
+    type Item = Result<Packet<'a>, Damage>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        while !self.is_over && !self.rest().is_empty() {
+            let found = match self.format {
+                Format::Classic(interface) => self.record(interface).map(Some),
+                Format::Blocks(_) => self.block(),
+            };
+            self.is_over = found.is_err();
+            if let Some(found) = found.transpose() {
+                return Some(found);
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clocks_count_in_powers_of_ten_and_of_two() {
+        assert_eq!(Clock::new(6, 0).time(1_500_000), Duration::from_millis(1500));
+        assert_eq!(Clock::new(9, 10).time(1), Duration::new(10, 1));
+        assert_eq!(Clock::new(0x80 | 10, 0).time(1536), Duration::from_millis(1500));
+        assert_eq!(Clock::new(0, u64::MAX).time(3), Duration::from_secs(2), "an offset may be negative");
+        assert_eq!(Clock::new(0x7F, 0), Clock::MICROS);
+        assert_eq!(Clock::new(0xFF, 0).time(u64::MAX).as_secs(), 0);
+    }
+
+    #[test]
+    fn what_is_no_capture_is_told() {
+        assert_eq!(Packets::open(b"").unwrap_err(), Unknown::Other);
+        assert_eq!(Packets::open(b"YERC").unwrap_err(), Unknown::Other);
+        assert_eq!(Packets::open(&[0xA1, 0xB2, 0xC3, 0xD4, 0]).unwrap_err(), Unknown::Other, "a header that is cut");
+        assert_eq!(Packets::open(&[0x1F, 0x8B, 8, 0]).unwrap_err(), Unknown::Compressed);
+    }
+
+    #[test]
+    fn impossible_lengths_are_damage() {
+        let block =
+            |len: u32| [&SECTION_HEADER.to_be_bytes()[..], &len.to_be_bytes(), &[0x1A, 0x2B, 0x3C, 0x4D]].concat();
+        for (len, problem) in [
+            (0, "a block of an impossible length"),
+            (13, "a block of an impossible length"),
+            (u32::MAX, "a block of an impossible length"),
+            (28, "the file ends inside a block"),
+        ] {
+            let file = block(len);
+            let found: Vec<_> = Packets::open(&file).unwrap().collect();
+            assert_eq!(found, [Err(Damage { offset: 0, problem })]);
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! Reads capture files: pcap and pcapng, as [`tap`](super::tap), tcpdump and Wireshark write them.
+//!
+//! A reader of our own, because the formats are small, damage has to be told by its offset with all that came before
+//! it, and what is inside the packets (addresses, streams) would have to be written anyway. [`file`] finds packets,
+//! [`layers`] what they carry, [`stream`] puts TCP together. No bytes make any of it panic.
+
+mod file;
+mod layers;
+mod stream;
+
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use self::file::Packets;
+use self::layers::{Carried, Content, carried};
+use self::stream::{Arrived, Streams};
+use super::tap::Direction;
+
+pub use self::file::{Damage, Unknown};
+
+/// Something that was said, with where and when.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message<'a> {
+    /// Of the packet that it came with, from 1, as Wireshark counts them.
+    pub number: u64,
+    /// Since 1970, as the file has it.
+    pub time: Duration,
+    /// What it came by.
+    pub carrier: Carrier,
+    /// Its bytes; never empty.
+    pub bytes: &'a [u8],
+    /// The packet was longer than what was recorded of it.
+    pub is_cut: bool,
+}
+
+/// What a message came by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Carrier {
+    /// UDP: the message is whole.
+    Datagram {
+        /// Sender.
+        from: SocketAddr,
+        /// Receiver.
+        to: SocketAddr,
+    },
+    /// TCP: some bytes in their order.
+    Stream {
+        /// Sender.
+        from: SocketAddr,
+        /// Receiver.
+        to: SocketAddr,
+        /// Begins a connection that was opened in the file.
+        begins: bool,
+        /// Bytes before these that are not in the file.
+        lost: u32,
+    },
+    /// A serial line, or a simulator in the same process, recorded by armctl itself.
+    Line {
+        /// Which way.
+        direction: Direction,
+        /// Section of the file: one for each command that was recorded.
+        section: usize,
+    },
+}
+
+impl Carrier {
+    /// Sender and receiver, where they have addresses.
+    pub const fn ends(&self) -> Option<(SocketAddr, SocketAddr)> {
+        match *self {
+            Self::Datagram { from, to } | Self::Stream { from, to, .. } => Some((from, to)),
+            Self::Line { .. } => None,
+        }
+    }
+}
+
+/// What a file came to.
+#[derive(Debug, Default, Clone, PartialEq, Eq)]
+pub struct Summary {
+    /// Packets in it.
+    pub packets: u64,
+    /// Time of the first, since 1970.
+    pub first: Duration,
+    /// Fragments of IP packets, which are left out.
+    pub fragments: u64,
+    /// TCP segments that were there before.
+    pub repeated: u64,
+    /// Where the file is damaged; everything before was read.
+    pub damage: Option<Damage>,
+}
+
+/// Reads a file that was loaded, and hands over what was said in it. Messages of a TCP stream that overtook each other
+/// come when they are in order, so after later ones of other streams.
+pub fn read(file: &[u8], mut hear: impl FnMut(&Message<'_>)) -> Result<Summary, Unknown> {
+    let mut summary = Summary::default();
+    let mut streams = Streams::default();
+    for packet in Packets::open(file)? {
+        let packet = match packet {
+            Ok(packet) => packet,
+            Err(damage) => {
+                summary.damage = Some(damage);
+                break;
+            }
+        };
+        if summary.packets == 0 {
+            summary.first = packet.time;
+        }
+        summary.packets = packet.number;
+        let (number, time) = (packet.number, packet.time);
+        let mut say = |carrier, bytes, is_cut| hear(&Message { number, time, carrier, bytes, is_cut });
+        match carried(packet.link_type, packet.bytes) {
+            Carried::Line { direction, bytes } => {
+                let carrier = Carrier::Line { direction, section: packet.section };
+                if !bytes.is_empty() {
+                    say(carrier, bytes, packet.is_cut);
+                }
+            }
+            Carried::Packet { from, to, content: Content::Datagram(bytes), is_cut } if !bytes.is_empty() => {
+                say(Carrier::Datagram { from, to }, bytes, is_cut || packet.is_cut);
+            }
+            Carried::Packet { from, to, content: Content::Segment(segment), is_cut } => {
+                let place = (packet.section, from, to);
+                let is_cut = is_cut || packet.is_cut;
+                streams.take(place, &segment, (number, time, is_cut), &mut |arrived| pass_on(arrived, &mut hear));
+            }
+            Carried::Packet { .. } | Carried::Other => {}
+            Carried::Fragment => summary.fragments += 1,
+        }
+    }
+    streams.finish(&mut |arrived| pass_on(arrived, &mut hear));
+    summary.repeated = streams.repeated();
+    Ok(summary)
+}
+
+fn pass_on(arrived: &Arrived<'_>, hear: &mut impl FnMut(&Message<'_>)) {
+    let Arrived { place: (_, from, to), stamp: (number, time, is_cut), begins, lost, bytes } = *arrived;
+    let carrier = Carrier::Stream { from, to, begins, lost };
+    hear(&Message { number, time, carrier, bytes, is_cut });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transport::tap::Capture;
+
+    fn ends() -> (SocketAddr, SocketAddr) {
+        ("10.0.0.1:40000".parse().unwrap(), "[fe80::2]:10040".parse().unwrap())
+    }
+
+    /// A file of our own tap with all that it can write.
+    fn recorded() -> Vec<u8> {
+        let mut file = Vec::new();
+        let (from, to) = ends();
+        let mut capture = Capture::streams(&mut file).unwrap();
+        capture.datagram(Duration::from_micros(1_500_000), from, to, b"YERC").unwrap();
+        capture.segment(Duration::from_secs(2), from, to, b"@HSON\r\n").unwrap();
+        capture.segment(Duration::from_secs(3), to, from, b"@OK\r\n").unwrap();
+        capture.line(Duration::from_secs(4), Direction::Received, b"@NG\r\n").unwrap();
+        Capture::new(&mut file).unwrap().datagram(Duration::from_secs(5), to, from, b"last").unwrap();
+        file
+    }
+
+    fn heard(file: &[u8]) -> (Vec<(u64, Duration, Carrier, Vec<u8>)>, Summary) {
+        let mut all = Vec::new();
+        let summary = read(file, |message| {
+            assert!(!message.bytes.is_empty() && !message.is_cut);
+            all.push((message.number, message.time, message.carrier, message.bytes.to_vec()));
+        });
+        (all, summary.unwrap())
+    }
+
+    #[test]
+    fn what_the_tap_writes_is_read_back() {
+        let (from, to) = ends();
+        let from = SocketAddr::new(std::net::IpAddr::V6("::ffff:10.0.0.1".parse().unwrap()), from.port());
+        let (all, summary) = heard(&recorded());
+        let stream = |from, to| Carrier::Stream { from, to, begins: false, lost: 0 };
+        let line = Carrier::Line { direction: Direction::Received, section: 1 };
+        let secs = Duration::from_secs;
+        let expected: [(u64, Duration, Carrier, &[u8]); 5] = [
+            (1, Duration::from_micros(1_500_000), Carrier::Datagram { from, to }, b"YERC"),
+            (2, secs(2), stream(from, to), b"@HSON\r\n"),
+            (3, secs(3), stream(to, from), b"@OK\r\n"),
+            (4, secs(4), line, b"@NG\r\n"),
+            (5, secs(5), Carrier::Datagram { from: to, to: from }, b"last"),
+        ];
+        let expected: Vec<_> = expected.into_iter().map(|(n, time, by, bytes)| (n, time, by, bytes.to_vec())).collect();
+        assert_eq!(all, expected);
+        assert_eq!(summary, Summary { packets: 5, first: Duration::from_micros(1_500_000), ..Summary::default() });
+    }
+
+    #[test]
+    fn a_file_cut_anywhere_gives_what_came_before() {
+        let file = recorded();
+        let (all, _) = heard(&file);
+        for end in 12..file.len() {
+            let Ok(summary) = read(&file[..end], |_| ()) else { continue };
+            let (part, _) = heard(&file[..end]);
+            assert_eq!(part, all[..part.len()], "cut at {end}");
+            assert_eq!(summary.packets, u64::try_from(part.len()).unwrap());
+            if let Some(damage) = summary.damage {
+                assert!(damage.offset <= end, "{damage} in {end} bytes");
+            }
+        }
+    }
+}

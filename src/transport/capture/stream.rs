@@ -1,0 +1,178 @@
+//! TCP put together, for each direction on its own: bytes in their order, none twice, and gaps told.
+
+use std::collections::{BTreeMap, HashMap};
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use super::layers::Segment;
+
+/// Section of the file, sender and receiver: a section is a record of its own, whose numbers begin anew.
+pub type Place = (usize, SocketAddr, SocketAddr);
+/// Number of a packet, its time, and whether it was cut.
+pub type Stamp = (u64, Duration, bool);
+
+/// Bytes that are in order.
+#[derive(Debug, Clone, Copy)]
+pub struct Arrived<'a> {
+    /// Whose.
+    pub place: Place,
+    /// The packet they came with.
+    pub stamp: Stamp,
+    /// The first of a stream that was opened in the file.
+    pub begins: bool,
+    /// Bytes before them that never came.
+    pub lost: u32,
+    /// The bytes.
+    pub bytes: &'a [u8],
+}
+
+/// Segments of a direction that wait for one before them; with more, what is missing counts as lost.
+const MOST_WAITING: usize = 64;
+
+/// All directions of all streams.
+#[derive(Debug, Default)]
+pub struct Streams {
+    streams: HashMap<Place, Stream>,
+    repeated: u64,
+}
+
+/// One direction.
+#[derive(Debug, Default)]
+struct Stream {
+    /// Number of the byte that comes next.
+    next: Option<u32>,
+    begins: bool,
+    /// What came too early, by its place in the stream.
+    waiting: BTreeMap<u64, (Stamp, Vec<u8>)>,
+    /// Bytes that were handed over or given up: places are counted by them, because numbers wrap.
+    passed: u64,
+}
+
+impl Streams {
+    /// Takes a segment, and hands over what is in order then.
+    pub fn take(&mut self, place: Place, segment: &Segment<'_>, stamp: Stamp, give: &mut impl FnMut(&Arrived<'_>)) {
+        let stream = self.streams.entry(place).or_default();
+        if segment.opens {
+            stream.skip(place, give);
+            *stream = Stream { next: Some(segment.sequence.wrapping_add(1)), begins: true, ..Stream::default() };
+            return;
+        }
+        if segment.bytes.is_empty() {
+            return;
+        }
+        let next = *stream.next.get_or_insert(segment.sequence);
+        let ahead = segment.sequence.wrapping_sub(next);
+        if ahead == 0 || ahead > u32::MAX / 2 {
+            let known = usize::try_from(next.wrapping_sub(segment.sequence)).unwrap_or(usize::MAX);
+            match segment.bytes.get(known..).filter(|new| !new.is_empty()) {
+                Some(new) => stream.give((place, stamp), 0, new, give),
+                None => self.repeated += 1,
+            }
+            self.repeated += stream.drain(place, give);
+        } else {
+            let at = stream.passed + u64::from(ahead);
+            stream.waiting.entry(at).or_insert((stamp, segment.bytes.to_vec()));
+            if stream.waiting.len() > MOST_WAITING {
+                stream.jump(place, give);
+                self.repeated += stream.drain(place, give);
+            }
+        }
+    }
+
+    /// Hands over what still waits, with its gaps.
+    pub fn finish(&mut self, give: &mut impl FnMut(&Arrived<'_>)) {
+        let mut left: Vec<_> = self.streams.iter_mut().filter(|(_, stream)| !stream.waiting.is_empty()).collect();
+        left.sort_by_key(|(place, _)| **place);
+        for (place, stream) in left {
+            stream.skip(*place, give);
+        }
+    }
+
+    /// Segments that brought nothing new.
+    pub fn repeated(&self) -> u64 {
+        self.repeated
+    }
+}
+
+impl Stream {
+    fn give(&mut self, (place, stamp): (Place, Stamp), lost: u32, bytes: &[u8], give: &mut impl FnMut(&Arrived<'_>)) {
+        let len = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
+        self.next = self.next.map(|next| next.wrapping_add(lost).wrapping_add(len));
+        self.passed += u64::from(lost) + u64::from(len);
+        give(&Arrived { place, stamp, begins: std::mem::take(&mut self.begins), lost, bytes });
+    }
+
+    /// Hands over what waits without a gap; returns how many segments brought nothing new.
+    fn drain(&mut self, place: Place, give: &mut impl FnMut(&Arrived<'_>)) -> u64 {
+        let mut repeated = 0;
+        while let Some(first) = self.waiting.first_entry()
+            && *first.key() <= self.passed
+        {
+            let (at, (stamp, bytes)) = first.remove_entry();
+            let known = usize::try_from(self.passed - at).unwrap_or(usize::MAX);
+            match bytes.get(known..).filter(|new| !new.is_empty()) {
+                Some(new) => self.give((place, stamp), 0, new, give),
+                None => repeated += 1,
+            }
+        }
+        repeated
+    }
+
+    /// Gives up on what is missing before the first that waits.
+    fn jump(&mut self, place: Place, give: &mut impl FnMut(&Arrived<'_>)) {
+        if let Some((at, (stamp, bytes))) = self.waiting.pop_first() {
+            let lost = u32::try_from(at.saturating_sub(self.passed)).unwrap_or(u32::MAX);
+            self.give((place, stamp), lost, &bytes, give);
+        }
+    }
+
+    fn skip(&mut self, place: Place, give: &mut impl FnMut(&Arrived<'_>)) {
+        while !self.waiting.is_empty() {
+            self.jump(place, give);
+            self.drain(place, give);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place() -> Place {
+        (0, "10.0.0.1:1".parse().unwrap(), "10.0.0.2:2".parse().unwrap())
+    }
+
+    /// What arrives of segments, with what was lost before it.
+    fn arrived(segments: &[(u32, &[u8])]) -> (Vec<(u64, u32, String)>, u64) {
+        let mut streams = Streams::default();
+        let mut all = Vec::new();
+        let mut give = |arrived: &Arrived<'_>| {
+            all.push((arrived.stamp.0, arrived.lost, String::from_utf8_lossy(arrived.bytes).into_owned()));
+        };
+        for (number, (sequence, bytes)) in (1..).zip(segments) {
+            let segment = Segment { sequence: *sequence, opens: false, bytes };
+            streams.take(place(), &segment, (number, Duration::ZERO, false), &mut give);
+        }
+        streams.finish(&mut give);
+        (all, streams.repeated())
+    }
+
+    fn rows(rows: &[(u64, u32, &str)]) -> Vec<(u64, u32, String)> {
+        rows.iter().map(|(number, lost, text)| (*number, *lost, (*text).to_owned())).collect()
+    }
+
+    #[test]
+    fn segments_come_in_order_and_once() {
+        let near_wrap = u32::MAX - 2;
+        let (all, repeated) =
+            arrived(&[(near_wrap, b"abcd"), (3, b"gh"), (1, b"ef"), (near_wrap, b"abcd"), (1, b"efgh"), (3, b"ghi")]);
+        assert_eq!(all, rows(&[(1, 0, "abcd"), (3, 0, "ef"), (2, 0, "gh"), (6, 0, "i")]));
+        assert_eq!(repeated, 2);
+    }
+
+    #[test]
+    fn gaps_are_told() {
+        let (all, _) = arrived(&[(1, b"ab"), (5, b"ef"), (7, b"gh")]);
+        assert_eq!(all, rows(&[(1, 0, "ab"), (2, 2, "ef"), (3, 0, "gh")]));
+    }
+}
