@@ -84,9 +84,9 @@ const BORDERS: [(&str, &[&str]); 6] = [
     ("command/", &["crate::app", "tokio::net", "std::net::UdpSocket", "std::net::TcpStream", "std::process"]),
 ];
 
-/// Commands that touch a transport: the link of a family with its trace, sessions, the simulators' servers, the list of
-/// ports, and the peer of tests.
-const LINKS: [&str; 30] = [
+/// Commands that touch a transport: the link of a family with its trace, what reads captures, sessions, the simulators'
+/// servers, the list of ports, and the peer of tests.
+const LINKS: [&str; 35] = [
     "command/attach.rs",
     "command/trace.rs",
     "command/yerc/link.rs",
@@ -109,6 +109,11 @@ const LINKS: [&str; 30] = [
     "command/yrcx/simulated.rs",
     "command/yrcx/testing.rs",
     "command/yrcx/trace.rs",
+    "command/common/decode/capture/cip.rs",
+    "command/common/decode/capture/mod.rs",
+    "command/common/decode/capture/toyo.rs",
+    "command/common/decode/capture/yerc.rs",
+    "command/common/decode/capture/yrcx.rs",
     "command/common/robots/discover.rs",
     "command/common/session/close.rs",
     "command/common/session/list.rs",

@@ -26,6 +26,7 @@ macro_rules! transcripts {
 transcripts! {
     alarms
     backups
+    captures
     decode
     exit_codes
     explain

@@ -45,8 +45,11 @@ pub fn all() -> Vec<SchemaEntry> {
     all.extend(<Overview as Noun<Fleet>>::schemas());
     all.extend([
         SchemaEntry::of::<super::decode::toyo::Lines>("decode.toyo"),
+        SchemaEntry::of::<super::decode::capture::Capture<super::decode::toyo::FieldRow>>("decode.toyo.capture"),
         SchemaEntry::of::<super::decode::yerc::Frames>("decode.yerc"),
+        SchemaEntry::of::<super::decode::capture::Capture<super::decode::yerc::FieldRow>>("decode.yerc.capture"),
         SchemaEntry::of::<super::decode::yrcx::Explained>("decode.yrcx"),
+        SchemaEntry::of::<super::decode::capture::Capture<super::decode::yrcx::FieldRow>>("decode.yrcx.capture"),
         SchemaEntry::of::<Rehearsal>("dry-run"),
         SchemaEntry::of::<super::explain::ToyoCode>("explain.toyo"),
         SchemaEntry::of::<super::explain::Codes>("explain.yerc"),

@@ -10,10 +10,9 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use crate::command::{Access, trace};
 use crate::controller::text::hex;
-use crate::controller::yrcx::describe::{answer_summary, command_summary};
-use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Words};
-use crate::controller::yrcx::signal::{Side, Signal};
-use crate::controller::yrcx::table::STATUS_RESET;
+use crate::controller::yrcx::changes::changes;
+use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::signal::Side;
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::transport::eip::tap::{Passed, Tap};
@@ -44,27 +43,14 @@ impl Trace {
     pub fn sent(&mut self, image: &Image) {
         self.text.capture(|capture, time| capture.line(time, Direction::Sent, &image.to_bytes()));
         let before = self.sent.replace(*image);
-        if self.text.level() > 0 {
-            let words = image.command();
-            if words != before.map_or_else(Words::default, |before| before.command()) {
-                let is_early = words[0] == STATUS_RESET && words != Words::default();
-                let summary = if is_early { "data of the next command".to_owned() } else { command_summary(&words) };
-                self.words("->", "WI", &words, &summary);
-            }
-            self.bits("->", Side::Input, before.as_ref(), image);
-        }
+        self.changes("->", Side::Input, before.as_ref(), image);
     }
 
     /// The controller showed an image.
     pub fn received(&mut self, image: &Image) {
         self.text.capture(|capture, time| capture.line(time, Direction::Received, &image.to_bytes()));
         let before = self.received.replace(*image);
-        if self.text.level() > 0 {
-            if before.is_none_or(|before| before.command() != image.command()) {
-                self.words("<-", "WO", &image.command(), &answer_summary(&image.command()));
-            }
-            self.bits("<-", Side::Output, before.as_ref(), image);
-        }
+        self.changes("<-", Side::Output, before.as_ref(), image);
     }
 
     /// A message went to the network board, or came from it.
@@ -80,19 +66,10 @@ impl Trace {
         self.text.finish()
     }
 
-    fn words(&self, arrow: &str, name: &str, words: &Words, summary: &str) {
-        let used = words.iter().rposition(|word| *word != 0).map_or(1, |last| last + 1);
-        let all = if self.text.level() > 1 { COMMAND_WORDS } else { used };
-        let words: Vec<String> = words[..all].iter().map(|word| format!("{word:04X}")).collect();
-        self.text.line(&format!("{arrow} {name} {}  # {summary}", words.join(" ")));
-    }
-
-    fn bits(&self, arrow: &str, side: Side, before: Option<&Image>, image: &Image) {
-        for signal in Signal::all(side) {
-            let on = signal.is_on(image);
-            if before.map_or(on, |before| signal.is_on(before) != on) {
-                let name = signal.dedicated().map(|dedicated| format!("  # {}", dedicated.text)).unwrap_or_default();
-                self.text.line(&format!("{arrow} {signal} {}{name}", if on { "on" } else { "off" }));
+    fn changes(&self, arrow: &str, side: Side, before: Option<&Image>, image: &Image) {
+        if self.text.level() > 0 {
+            for change in changes(side, before, image) {
+                self.text.line(&format!("{arrow} {}", change.line(self.text.level() > 1)));
             }
         }
     }

@@ -8,6 +8,7 @@
 pub mod alarm;
 pub mod answer;
 pub mod bus;
+pub mod changes;
 pub mod codec;
 pub mod describe;
 pub mod image;

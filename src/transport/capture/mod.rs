@@ -151,7 +151,7 @@ mod tests {
         let mut file = Vec::new();
         let (from, to) = ends();
         let mut capture = Capture::streams(&mut file).unwrap();
-        capture.datagram(Duration::from_micros(1_500_000), from, to, b"YERC").unwrap();
+        capture.datagram(Duration::from_millis(1500), from, to, b"YERC").unwrap();
         capture.segment(Duration::from_secs(2), from, to, b"@HSON\r\n").unwrap();
         capture.segment(Duration::from_secs(3), to, from, b"@OK\r\n").unwrap();
         capture.line(Duration::from_secs(4), Direction::Received, b"@NG\r\n").unwrap();
@@ -159,7 +159,9 @@ mod tests {
         file
     }
 
-    fn heard(file: &[u8]) -> (Vec<(u64, Duration, Carrier, Vec<u8>)>, Summary) {
+    type Owned = (u64, Duration, Carrier, Vec<u8>);
+
+    fn heard(file: &[u8]) -> (Vec<Owned>, Summary) {
         let mut all = Vec::new();
         let summary = read(file, |message| {
             assert!(!message.bytes.is_empty() && !message.is_cut);
@@ -177,7 +179,7 @@ mod tests {
         let line = Carrier::Line { direction: Direction::Received, section: 1 };
         let secs = Duration::from_secs;
         let expected: [(u64, Duration, Carrier, &[u8]); 5] = [
-            (1, Duration::from_micros(1_500_000), Carrier::Datagram { from, to }, b"YERC"),
+            (1, Duration::from_millis(1500), Carrier::Datagram { from, to }, b"YERC"),
             (2, secs(2), stream(from, to), b"@HSON\r\n"),
             (3, secs(3), stream(to, from), b"@OK\r\n"),
             (4, secs(4), line, b"@NG\r\n"),
@@ -185,7 +187,7 @@ mod tests {
         ];
         let expected: Vec<_> = expected.into_iter().map(|(n, time, by, bytes)| (n, time, by, bytes.to_vec())).collect();
         assert_eq!(all, expected);
-        assert_eq!(summary, Summary { packets: 5, first: Duration::from_micros(1_500_000), ..Summary::default() });
+        assert_eq!(summary, Summary { packets: 5, first: Duration::from_millis(1500), ..Summary::default() });
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! `armctl decode FAMILY …`: what goes over the line, in words.
 
+pub mod capture;
 pub mod toyo;
 pub mod yerc;
 pub mod yrcx;

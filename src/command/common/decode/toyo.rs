@@ -4,6 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::capture::{self, Selection};
 use super::stdin;
 use crate::command::Report;
 use crate::command::run::{Run, Stopped};
@@ -17,12 +18,16 @@ use crate::output::view::{Section, Table, View};
 #[command(
     after_help = "Who sent a line is told by its form, or by -> or <- in front of it: `armctl decode toyo -` takes what \
                         `--trace -` writes. An answer is explained by the request before it. A damaged line is \
-                        explained up to the damage, and the exit code is 5."
+                        explained up to the damage, and the exit code is 5.\n\nOf a capture file, the lines are \
+                        listed in the words of --trace; NUMBER and TIME are those of Wireshark. Nothing found is no \
+                        failure. A file that is damaged is told up to there, and the exit code is 1."
 )]
 pub struct Toyo {
-    /// Such as '@STAS SNO=0' or '@STAS SNO=0 ST1=22 ST2=00', or - for stdin, one a line
+    /// Such as '@STAS SNO=0' or '@STAS SNO=0 ST1=22 ST2=00', - for stdin with one a line, or FILE.pcap or FILE.pcapng
     #[arg(required = true, value_name = "LINE")]
     lines: Vec<String>,
+    #[command(flatten)]
+    selection: Selection,
 }
 
 /// How traces mark who sent a line, and where their explanation of it begins.
@@ -31,6 +36,12 @@ const REMARK: &str = "  # ";
 
 impl Toyo {
     pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
+        if let Some(path) = capture::named(&self.lines) {
+            return capture::tell(run, "decode.toyo.capture", &path, &self.selection, capture::toyo::Lines::default());
+        }
+        if self.selection.is_given() {
+            return Err(capture::without_file().into());
+        }
         let lines = self.lines()?;
         run.local("decode.toyo", &explained(&lines))
     }
@@ -195,7 +206,8 @@ mod tests {
     use super::*;
 
     fn senders(lines: &[&str]) -> Vec<&'static str> {
-        let toyo = Toyo { lines: lines.iter().map(ToString::to_string).collect() };
+        let lines = lines.iter().map(ToString::to_string).collect();
+        let toyo = Toyo { lines, selection: Selection::default() };
         explained(&toyo.lines().unwrap()).lines.iter().map(|line| line.sender).collect()
     }
 
@@ -206,7 +218,7 @@ mod tests {
         assert_eq!(senders(&["->", "@TYPE", "AX1", "RTYP=000000", "<-", "@NG"]), ["host", "controller"]);
         assert_eq!(senders(&["@TYPE AX1 RTYP=000001", "@TYPE AX1 RTYP=000000"]), ["host", "controller"]);
         assert_eq!(senders(&["@HSON", "   40 48 53 4f 4e", "@HSOF"]), ["host", "host"]);
-        assert!(Toyo { lines: vec![" ".into()] }.lines().is_err());
+        assert!(Toyo { lines: vec![" ".into()], selection: Selection::default() }.lines().is_err());
     }
 
     #[test]

@@ -4,6 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::capture::{self, Selection};
 use super::stdin;
 use crate::command::Report;
 use crate::command::run::{Run, Stopped};
@@ -18,10 +19,13 @@ use crate::output::view::{Section, Table, View};
 #[derive(Debug, Args)]
 #[command(
     after_help = "An answer does not say what it answers: give the request before it, or --command. What is not a \
-                        whole frame is explained up to the damage, and the exit code is 5."
+                        whole frame is explained up to the damage, and the exit code is 5.\n\nOf a capture file, \
+                        the frames are listed in the words of --trace; NUMBER and TIME are those of Wireshark. \
+                        Nothing found is no failure. A file that is damaged is told up to there, and the exit code is 1."
 )]
 pub struct Yerc {
-    /// Frames in hexadecimal, or - for stdin, a frame a line; blanks, colons and 0x may stand between the bytes
+    /// Frames in hexadecimal (blanks, colons and 0x may stand between the bytes), - for stdin with a frame a line, or
+    /// FILE.pcap or FILE.pcapng
     #[arg(required = true, value_name = "HEX")]
     hex: Vec<String>,
     /// Command whose answer it is, such as 0x75
@@ -33,6 +37,8 @@ pub struct Yerc {
     /// Attribute that was asked for
     #[arg(long, value_name = "N", value_parser = number, requires = "command")]
     attribute: Option<u16>,
+    #[command(flatten)]
+    selection: Selection,
 }
 
 fn number(text: &str) -> Result<u16, String> {
@@ -46,6 +52,12 @@ fn number(text: &str) -> Result<u16, String> {
 
 impl Yerc {
     pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
+        if let Some(path) = capture::named(&self.hex) {
+            return capture::tell(run, "decode.yerc.capture", &path, &self.selection, capture::yerc::Frames::default());
+        }
+        if self.selection.is_given() {
+            return Err(capture::without_file().into());
+        }
         let frames = self.frames()?;
         run.local("decode.yerc", &self.explained(&frames))
     }
@@ -106,10 +118,11 @@ impl Yerc {
 }
 
 /// Offset of the request id.
-const ID_AT: usize = 11;
+pub const ID_AT: usize = 11;
 /// Offset of the service in an answer.
 const SERVICE_AT: usize = 24;
-const IDENTIFIER: &[u8] = b"YERC";
+/// How every frame begins.
+pub const IDENTIFIER: &[u8] = b"YERC";
 
 /// Bytes from hexadecimal digits, as tools print them: together or apart, with `0x`, colons, commas or dashes.
 pub fn parse_hex(text: &str) -> Result<Vec<u8>, String> {
@@ -270,7 +283,8 @@ mod tests {
     const STATUS: &str = "5945524320000000030100000000000039393939393939397200010000010000";
 
     fn yerc(hex: &[&str]) -> Yerc {
-        Yerc { hex: hex.iter().map(ToString::to_string).collect(), command: None, instance: None, attribute: None }
+        let hex = hex.iter().map(ToString::to_string).collect();
+        Yerc { hex, command: None, instance: None, attribute: None, selection: Selection::default() }
     }
 
     fn spaced(hex: &str, separator: &str) -> String {

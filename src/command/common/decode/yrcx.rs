@@ -1,9 +1,12 @@
 //! `armctl decode yrcx`: words of a remote command and its answer, in words.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::capture::{self, Selection};
 use crate::command::Report;
 use crate::command::run::{Run, Stopped};
 use crate::command::yrcx::words;
@@ -16,19 +19,36 @@ use crate::output::view::{Section, Table, View};
 #[derive(Debug, Args)]
 #[command(
     after_help = "Words that are left away are 0. An answer is explained by its command, where that is given. Words that \
-    must not be sent are explained as far as they go, and the exit code is 5."
+    must not be sent are explained as far as they go, and the exit code is 5.\n\nOf a capture file, what the images \
+    say is listed in the words of --trace when it is new, with the EtherNet/IP messages around it; NUMBER and TIME are \
+    those of Wireshark. Nothing found is no failure. A file that is damaged is told up to there, and the exit code is 1."
 )]
 pub struct Yrcx {
     /// WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013
-    #[arg(long, value_name = "WORDS", required_unless_present = "wo", value_parser = words)]
+    #[arg(long, value_name = "WORDS", required_unless_present_any = ["wo", "file"], value_parser = words)]
     wi: Option<Words>,
     /// WO0 to WO15, as in 0x4000,0x0002,0x014E
     #[arg(long, value_name = "WORDS", value_parser = words)]
     wo: Option<Words>,
+    /// A capture: FILE.pcap or FILE.pcapng
+    #[arg(conflicts_with_all = ["wi", "wo"])]
+    file: Option<PathBuf>,
+    #[command(flatten)]
+    selection: Selection,
+    /// Images that say nothing new, too
+    #[arg(long, help_heading = "Capture files")]
+    all: bool,
 }
 
 impl Yrcx {
     pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
+        if let Some(path) = &self.file {
+            let images = capture::yrcx::Images::new(self.all);
+            return capture::tell(run, "decode.yrcx.capture", path, &self.selection, images);
+        }
+        if self.all || self.selection.is_given() {
+            return Err(capture::without_file().into());
+        }
         run.local("decode.yrcx", &self.explained())
     }
 
@@ -70,7 +90,7 @@ impl Part {
 /// A field of words.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct FieldRow {
-    /// Word and bits, as in `WI1 bits 2-1`.
+    /// Word and bits, as in `WI1 bits 2-1`; `-` outside words.
     place: String,
     /// Its name for programs; null for the code, the status and what is not used.
     key: Option<&'static str>,
@@ -80,6 +100,13 @@ pub struct FieldRow {
     raw: String,
     /// What it says.
     meaning: String,
+}
+
+impl FieldRow {
+    /// A part of a message that is no field of a command.
+    pub fn of_message(place: &str, name: &str, raw: String, meaning: &str) -> Self {
+        Self { place: place.to_owned(), key: None, name: name.to_owned(), raw, meaning: meaning.to_owned() }
+    }
 }
 
 impl From<FieldNote> for FieldRow {
@@ -124,7 +151,8 @@ mod tests {
 
     fn explained(wi: Option<&str>, wo: Option<&str>) -> Explained {
         let read = |text: &str| words(text).unwrap();
-        Yrcx { wi: wi.map(read), wo: wo.map(read) }.explained()
+        let (selection, file) = (Selection::default(), None);
+        Yrcx { wi: wi.map(read), wo: wo.map(read), file, selection, all: false }.explained()
     }
 
     #[test]

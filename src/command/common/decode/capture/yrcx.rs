@@ -1,0 +1,264 @@
+//! Images and remote commands in a capture, with the EtherNet/IP messages around them.
+
+use std::collections::HashMap;
+use std::net::{IpAddr, SocketAddr};
+
+use super::super::yrcx::{FieldRow, field_table};
+use super::cip::{explain, may_be_message};
+use super::{Field, Heard, Listener, Told, cut};
+use crate::controller::text::hex;
+use crate::controller::yrcx::answer::Status;
+use crate::controller::yrcx::changes::{Change, changes};
+use crate::controller::yrcx::describe::{Description, answer, command};
+use crate::controller::yrcx::image::{Image, Words};
+use crate::controller::yrcx::signal::Side;
+use crate::output::view::Table;
+use crate::transport::capture::{Carrier, Message};
+use crate::transport::eip::PORT;
+use crate::transport::eip::wire::{Cyclic, Frames, RUN};
+use crate::transport::tap::Direction;
+
+/// Images, and the messages that open and close their connections.
+#[derive(Debug, Default)]
+pub struct Images {
+    told: Told<FieldRow>,
+    /// Whether images that say nothing new are told, too.
+    all: bool,
+    /// Directions of TCP streams, as long as they may be EtherNet/IP.
+    streams: HashMap<(SocketAddr, SocketAddr), Option<Frames>>,
+    /// Requests that were not answered yet, with the number of their packet, by client, controller and context.
+    asked: HashMap<(SocketAddr, SocketAddr, [u8; 8]), u64>,
+    /// Connections whose opening was seen: the controller and the id of a direction.
+    opened: HashMap<(IpAddr, u32), Direction>,
+    flows: HashMap<(SocketAddr, SocketAddr, u32), Flow>,
+    talks: HashMap<(String, String), Talk>,
+}
+
+/// One direction of a connection.
+#[derive(Debug, Clone, Copy)]
+struct Flow {
+    /// Of the last datagram.
+    sequence: u32,
+    lost: u64,
+    /// The run bit of the last header.
+    run: Option<bool>,
+}
+
+/// What both ends of a connection showed last.
+#[derive(Debug, Default)]
+struct Talk {
+    shown: [Option<Image>; 2],
+    /// The command that runs, or ran last.
+    command: Option<(u64, Words)>,
+}
+
+/// Bytes of an image behind a run/idle header.
+const WITH_HEADER: usize = Image::BYTES + 4;
+
+impl Images {
+    /// Begins; `all` tells every image.
+    pub fn new(all: bool) -> Self {
+        Self { all, ..Self::default() }
+    }
+
+    fn stream(&mut self, message: &Message<'_>, ends: (SocketAddr, SocketAddr), begins: bool, lost: u32) {
+        if begins || lost > 0 {
+            self.streams.remove(&ends);
+        }
+        if lost > 0 && self.streams.contains_key(&(ends.1, ends.0)) {
+            self.told.notes.push(format!("{lost} bytes before packet {} are not in the capture", message.number));
+        }
+        let fresh = || may_be_message(message.bytes).then(Frames::default);
+        let Some(frames) = self.streams.entry(ends).or_insert_with(fresh) else { return };
+        frames.push(message.bytes);
+        let mut whole = Vec::new();
+        while let Some(bytes) = frames.pop() {
+            whole.push(bytes);
+        }
+        self.told.packets += 1;
+        for bytes in whole {
+            if may_be_message(&bytes) {
+                self.encapsulated(message, ends, &bytes);
+            } else {
+                self.streams.insert(ends, None);
+                return;
+            }
+        }
+    }
+
+    /// A message of the encapsulation.
+    fn encapsulated(&mut self, message: &Message<'_>, ends: (SocketAddr, SocketAddr), bytes: &[u8]) {
+        let said = explain(bytes);
+        let (direction, client, controller) =
+            if said.is_answer { (Direction::Received, ends.1, ends.0) } else { (Direction::Sent, ends.0, ends.1) };
+        let context = bytes.get(12..20).and_then(|bytes| bytes.first_chunk().copied()).unwrap_or_default();
+        let key = (client, controller, context);
+        let answers = if said.is_answer { self.asked.remove(&key) } else { None };
+        if !said.is_answer {
+            self.asked.insert(key, message.number);
+        }
+        if let Some((o_t, t_o)) = said.opened {
+            self.opened.insert((controller.ip(), o_t), Direction::Sent);
+            self.opened.insert((controller.ip(), t_o), Direction::Received);
+        }
+        self.told.messages.push(Heard {
+            number: message.number,
+            time: message.time,
+            direction,
+            link: (client.ip().to_string(), controller.ip().to_string()),
+            text: said.text,
+            answers,
+            section: None,
+            raw: hex(bytes),
+            fields: said.fields,
+            problem: said.problem,
+        });
+    }
+
+    /// A cyclic datagram, if it is one.
+    fn cyclic(&mut self, message: &Message<'_>, from: SocketAddr, to: SocketAddr) {
+        let Ok(cyclic) = Cyclic::parse(message.bytes) else { return };
+        let known = self.opened.get(&(to.ip(), cyclic.id)).filter(|way| **way == Direction::Sent);
+        let known =
+            known.or_else(|| self.opened.get(&(from.ip(), cyclic.id)).filter(|way| **way == Direction::Received));
+        let (direction, header, image) = match (known.copied(), cyclic.body.split_first_chunk::<4>()) {
+            (known, Some((header, image))) if cyclic.body.len() == WITH_HEADER => {
+                (known.unwrap_or(Direction::Sent), Some(u32::from_le_bytes(*header) & RUN == RUN), image)
+            }
+            (known, _) if cyclic.body.len() == Image::BYTES => {
+                (known.unwrap_or(Direction::Received), None, cyclic.body)
+            }
+            // Heartbeats of a connection that was seen to open; all others are not ours.
+            (Some(_), _) => {
+                self.told.packets += 1;
+                return;
+            }
+            (None, _) => return,
+        };
+        let Some(image) = Image::from_bytes(image) else { return };
+        self.told.packets += 1;
+        let (client, controller) = if direction == Direction::Sent { (from, to) } else { (to, from) };
+        let link = (client.ip().to_string(), controller.ip().to_string());
+        let flow = Flow { sequence: cyclic.sequence.wrapping_sub(1), lost: 0, run: None };
+        let flow = self.flows.entry((from, to, cyclic.id)).or_insert(flow);
+        let missing = cyclic.sequence.wrapping_sub(flow.sequence).wrapping_sub(1);
+        if missing > u32::MAX / 2 {
+            // Older than what came before, or the same again.
+            return;
+        }
+        flow.lost += u64::from(missing);
+        flow.sequence = cyclic.sequence;
+        let before = flow.run;
+        flow.run = header.or(before);
+        if let Some(run) = header
+            && before != header
+            && (before.is_some() || !run)
+        {
+            let text = if run { "run: outputs count" } else { "idle: outputs do not count" };
+            let heard = heard(message, direction, link.clone(), text.to_owned());
+            self.told.messages.push(heard);
+        }
+        self.image(message, direction, &link, &image);
+    }
+
+    /// An image that one end showed.
+    fn image(&mut self, message: &Message<'_>, direction: Direction, link: &(String, String), image: &Image) {
+        let talk = self.talks.entry(link.clone()).or_default();
+        let (at, side) = match direction {
+            Direction::Sent => (0, Side::Input),
+            Direction::Received => (1, Side::Output),
+        };
+        let before = talk.shown[at].replace(*image);
+        let changes = changes(side, before.as_ref(), image);
+        if changes.is_empty() && self.all {
+            let heard = heard(message, direction, link.clone(), "image: nothing new".to_owned());
+            self.told.messages.push(Heard { raw: hex(&image.to_bytes()), ..heard });
+        }
+        for change in changes {
+            let mut heard = heard(message, direction, link.clone(), change.line(false));
+            match &change {
+                Change::Words { side: Side::Input, words, .. } => {
+                    let was = before.map_or(0, |before| before.0[0]);
+                    if words[0] != 0 && (words[0] != was || talk.command.is_none()) {
+                        talk.command = Some((message.number, *words));
+                    }
+                    // Without a command, words are data of the next one, and no problem yet.
+                    if words[0] != 0 {
+                        describe(&mut heard, command(words));
+                    }
+                }
+                Change::Words { words, .. } => {
+                    let answered = talk.command.filter(|_| Status::of(words[0]) != Status::Ready);
+                    heard.answers = answered.map(|(number, _)| number);
+                    describe(&mut heard, answer(words, answered.as_ref().map(|(_, words)| words)));
+                }
+                Change::Signal { signal, on } => {
+                    let side = if side == Side::Input { "WI" } else { "WO" };
+                    let place = format!("{side}{} bit {}", signal.word(), signal.bit());
+                    let meaning = signal.dedicated().map(|dedicated| dedicated.text).unwrap_or_default();
+                    heard.fields.push(FieldRow::of_message(
+                        &place,
+                        &signal.to_string(),
+                        u8::from(*on).to_string(),
+                        meaning,
+                    ));
+                }
+            }
+            self.told.messages.push(heard);
+        }
+    }
+}
+
+fn heard(message: &Message<'_>, direction: Direction, link: (String, String), text: String) -> Heard<FieldRow> {
+    let raw = text.split("  # ").next().unwrap_or_default().to_owned();
+    let (number, time) = (message.number, message.time);
+    let problem = message.is_cut.then(cut);
+    Heard { number, time, direction, link, text, answers: None, section: None, raw, fields: Vec::new(), problem }
+}
+
+fn describe(heard: &mut Heard<FieldRow>, description: Description) {
+    heard.section = description.section.map(str::to_owned);
+    heard.fields = description.fields.into_iter().map(FieldRow::from).collect();
+    if !description.problems.is_empty() {
+        heard.problem = Some(description.problems.join("; "));
+    }
+}
+
+impl Listener for Images {
+    type Field = FieldRow;
+
+    fn hear(&mut self, message: &Message<'_>) {
+        match message.carrier {
+            Carrier::Stream { from, to, begins, lost } => self.stream(message, (from, to), begins, lost),
+            Carrier::Datagram { from, to } if from.port() == PORT || to.port() == PORT => {
+                if may_be_message(message.bytes) {
+                    self.told.packets += 1;
+                    self.encapsulated(message, (from, to), message.bytes);
+                }
+            }
+            Carrier::Datagram { from, to } => self.cyclic(message, from, to),
+            Carrier::Line { direction, .. } => {
+                if let Some(image) = Image::from_bytes(message.bytes) {
+                    self.told.packets += 1;
+                    let link = ("host".to_owned(), "simulator".to_owned());
+                    self.image(message, direction, &link, &image);
+                }
+            }
+        }
+    }
+
+    fn finish(mut self) -> Told<FieldRow> {
+        let mut lost: Vec<_> = self.flows.into_iter().filter(|(_, flow)| flow.lost > 0).collect();
+        lost.sort_by_key(|(place, _)| *place);
+        for ((from, to, _), flow) in lost {
+            self.told.notes.push(format!("{} cyclic packets from {from} to {to} are missing", flow.lost));
+        }
+        self.told
+    }
+}
+
+impl Field for FieldRow {
+    fn table(fields: &[Self]) -> Table {
+        field_table(fields)
+    }
+}

@@ -1,0 +1,127 @@
+//! Capture files: any bytes, and the same as tshark where that is installed. The files in `tests/cli/files/` were put
+//! together by hand, field by field from the formats' specifications; the transcript `captures` has what they say.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use armctl::transport::capture::{Carrier, Unknown, read};
+use proptest::prelude::*;
+
+const FILES: [&str; 3] = ["vlan.pcap", "lines.pcapng", "speed.pcapng"];
+
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli/files").join(name)
+}
+
+fn file(name: &str) -> Vec<u8> {
+    std::fs::read(path(name)).expect("the file is in the repository")
+}
+
+/// Packet and bytes of all datagrams.
+fn datagrams(file: &[u8]) -> Vec<(u64, Vec<u8>)> {
+    let mut all = Vec::new();
+    let heard = read(file, |message| {
+        if let Carrier::Datagram { .. } = message.carrier {
+            all.push((message.number, message.bytes.to_vec()));
+        }
+    });
+    assert_eq!(heard.expect("it is a capture").damage, None);
+    all
+}
+
+#[test]
+fn times_come_from_any_clock() {
+    let mut times = Vec::new();
+    let summary = read(&file("lines.pcapng"), |message| times.push((message.number, message.time.as_secs_f64())));
+    let first = summary.expect("it is a capture").first.as_secs_f64();
+    times.sort_by_key(|(number, _)| *number);
+    // Nanoseconds, 1/1024 s, nanoseconds, microseconds, and a packet without a time.
+    let expected = [(3, 0.002), (5, 4.0 / 1024.0), (6, 0.006), (7, 0.005), (8, 1.0), (9, 1.01), (10, 1.01), (11, 1.03)];
+    for ((number, time), (expected_number, expected)) in times.iter().zip(expected) {
+        assert_eq!(*number, expected_number);
+        assert!((time - first - expected).abs() < 1e-6, "packet {number} at {}", time - first);
+    }
+    assert_eq!(times.len(), expected.len());
+}
+
+#[test]
+fn tshark_finds_the_same_datagrams() {
+    for name in FILES {
+        let fields = ["-T", "fields", "-e", "frame.number", "-e", "udp.payload"];
+        let Ok(output) = Command::new("tshark").arg("-r").arg(path(name)).args(fields).output() else {
+            return;
+        };
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8_lossy(&output.stdout);
+        let theirs: Vec<(u64, String)> = text
+            .lines()
+            .filter_map(|line| line.split_once('\t').filter(|(_, payload)| !payload.is_empty()))
+            .map(|(number, payload)| (number.parse().expect("a number"), payload.to_owned()))
+            .collect();
+        let hex = |bytes: Vec<u8>| bytes.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+        let ours: Vec<(u64, String)> =
+            datagrams(&file(name)).into_iter().map(|(number, bytes)| (number, hex(bytes))).collect();
+        assert_eq!(ours, theirs, "{name}");
+    }
+}
+
+#[test]
+fn a_file_cut_anywhere_gives_what_came_before() {
+    for name in FILES {
+        let whole = file(name);
+        let all = datagrams(&whole);
+        let mut problems = BTreeSet::new();
+        for end in 0..whole.len() {
+            let mut part = Vec::new();
+            let heard = read(&whole[..end], |message| {
+                if let Carrier::Datagram { .. } = message.carrier {
+                    part.push((message.number, message.bytes.to_vec()));
+                }
+            });
+            match heard {
+                Ok(summary) => {
+                    assert_eq!(part, all[..part.len()], "{name} cut at {end}");
+                    if let Some(damage) = summary.damage {
+                        assert!(damage.offset <= end, "{damage} in {end} bytes of {name}");
+                        problems.insert(damage.problem);
+                    }
+                }
+                Err(error) => assert!(end < 24 && error == Unknown::Other, "{name} cut at {end}: {error}"),
+            }
+        }
+        assert!(problems.iter().all(|problem| problem.starts_with("the file ends inside")), "{problems:?}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_make_the_reader_panic(
+        name in 0..FILES.len(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
+    ) {
+        let mut bytes = file(FILES[name]);
+        for (at, byte) in changes {
+            let at = at.index(bytes.len());
+            bytes[at] = byte;
+        }
+        let mut heard = 0;
+        // No packet is read twice: what is heard cannot be more than the file has.
+        let _ = read(&bytes, |message| heard += message.bytes.len());
+        prop_assert!(heard <= bytes.len());
+    }
+
+    #[test]
+    fn neither_do_bytes_behind_a_magic_number(magic in 0..6usize, rest in prop::collection::vec(any::<u8>(), 0..512)) {
+        let magics: [[u8; 4]; 6] = [
+            [0xA1, 0xB2, 0xC3, 0xD4],
+            [0xD4, 0xC3, 0xB2, 0xA1],
+            [0xA1, 0xB2, 0x3C, 0x4D],
+            [0x4D, 0x3C, 0xB2, 0xA1],
+            [0x0A, 0x0D, 0x0D, 0x0A],
+            [0x1F, 0x8B, 0x08, 0x00],
+        ];
+        let bytes = [&magics[magic][..], &rest].concat();
+        let _ = read(&bytes, |_| ());
+    }
+}
