@@ -37,16 +37,16 @@ pub struct Yrcx {
     selection: Selection,
     /// Images that say nothing new, too
     #[arg(long, help_heading = "Capture files")]
-    all: bool,
+    every_image: bool,
 }
 
 impl Yrcx {
     pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
         if let Some(path) = &self.file {
-            let images = capture::yrcx::Images::new(self.all);
+            let images = capture::yrcx::Images::new(self.every_image);
             return capture::tell(run, "decode.yrcx.capture", path, &self.selection, images);
         }
-        if self.all || self.selection.is_given() {
+        if self.every_image || self.selection.is_given() {
             return Err(capture::without_file().into());
         }
         run.local("decode.yrcx", &self.explained())
@@ -152,7 +152,7 @@ mod tests {
     fn explained(wi: Option<&str>, wo: Option<&str>) -> Explained {
         let read = |text: &str| words(text).unwrap();
         let (selection, file) = (Selection::default(), None);
-        Yrcx { wi: wi.map(read), wo: wo.map(read), file, selection, all: false }.explained()
+        Yrcx { wi: wi.map(read), wo: wo.map(read), file, selection, every_image: false }.explained()
     }
 
     #[test]

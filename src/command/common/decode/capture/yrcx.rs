@@ -1,6 +1,6 @@
 //! Images and remote commands in a capture, with the EtherNet/IP messages around them.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::net::{IpAddr, SocketAddr};
 
 use super::super::yrcx::{FieldRow, field_table};
@@ -28,8 +28,10 @@ pub struct Images {
     streams: HashMap<(SocketAddr, SocketAddr), Option<Frames>>,
     /// Requests that were not answered yet, with the number of their packet, by client, controller and context.
     asked: HashMap<(SocketAddr, SocketAddr, [u8; 8]), u64>,
-    /// Connections whose opening was seen: the controller and the id of a direction.
-    opened: HashMap<(IpAddr, u32), Direction>,
+    /// Connections whose opening was seen, by controller and id: those to the controller, and those back with their
+    /// client, because what comes back may be sent to a group. The ids of the two directions may be the same.
+    forth: HashSet<(IpAddr, u32)>,
+    back: HashMap<(IpAddr, u32), IpAddr>,
     flows: HashMap<(SocketAddr, SocketAddr, u32), Flow>,
     talks: HashMap<(String, String), Talk>,
 }
@@ -98,8 +100,8 @@ impl Images {
             self.asked.insert(key, message.number);
         }
         if let Some((o_t, t_o)) = said.opened {
-            self.opened.insert((controller.ip(), o_t), Direction::Sent);
-            self.opened.insert((controller.ip(), t_o), Direction::Received);
+            self.forth.insert((controller.ip(), o_t));
+            self.back.insert((controller.ip(), t_o), client.ip());
         }
         self.told.messages.push(Heard {
             number: message.number,
@@ -118,16 +120,20 @@ impl Images {
     /// A cyclic datagram, if it is one.
     fn cyclic(&mut self, message: &Message<'_>, from: SocketAddr, to: SocketAddr) {
         let Ok(cyclic) = Cyclic::parse(message.bytes) else { return };
-        let known = self.opened.get(&(to.ip(), cyclic.id)).filter(|way| **way == Direction::Sent);
-        let known =
-            known.or_else(|| self.opened.get(&(from.ip(), cyclic.id)).filter(|way| **way == Direction::Received));
-        let (direction, header, image) = match (known.copied(), cyclic.body.split_first_chunk::<4>()) {
-            (known, Some((header, image))) if cyclic.body.len() == WITH_HEADER => {
+        let client = self.back.get(&(from.ip(), cyclic.id)).copied();
+        let is_forth = self.forth.contains(&(to.ip(), cyclic.id));
+        let len = cyclic.body.len();
+        let known = match (is_forth, client) {
+            // On one machine, equal ids fit both ways; then the size tells, as without an opening.
+            (true, Some(_)) | (false, None) => None,
+            (true, None) => Some(Direction::Sent),
+            (false, Some(_)) => Some(Direction::Received),
+        };
+        let (direction, header, image) = match (known, cyclic.body.split_first_chunk::<4>()) {
+            (known, Some((header, image))) if len == WITH_HEADER => {
                 (known.unwrap_or(Direction::Sent), Some(u32::from_le_bytes(*header) & RUN == RUN), image)
             }
-            (known, _) if cyclic.body.len() == Image::BYTES => {
-                (known.unwrap_or(Direction::Received), None, cyclic.body)
-            }
+            (known, _) if len == Image::BYTES => (known.unwrap_or(Direction::Received), None, cyclic.body),
             // Heartbeats of a connection that was seen to open; all others are not ours.
             (Some(_), _) => {
                 self.told.packets += 1;
@@ -137,8 +143,11 @@ impl Images {
         };
         let Some(image) = Image::from_bytes(image) else { return };
         self.told.packets += 1;
-        let (client, controller) = if direction == Direction::Sent { (from, to) } else { (to, from) };
-        let link = (client.ip().to_string(), controller.ip().to_string());
+        let (client, controller) = match direction {
+            Direction::Sent => (from.ip(), to.ip()),
+            Direction::Received => (client.unwrap_or(to.ip()), from.ip()),
+        };
+        let link = (client.to_string(), controller.to_string());
         let flow = Flow { sequence: cyclic.sequence.wrapping_sub(1), lost: 0, run: None };
         let flow = self.flows.entry((from, to, cyclic.id)).or_insert(flow);
         let missing = cyclic.sequence.wrapping_sub(flow.sequence).wrapping_sub(1);
