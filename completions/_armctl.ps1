@@ -10339,6 +10339,9 @@ Register-ArgumentCompleter -Native -CommandName 'armctl' -ScriptBlock {
             [CompletionResult]::new('--command', '--command', [CompletionResultType]::ParameterName, 'Command whose answer it is, such as 0x75')
             [CompletionResult]::new('--instance', '--instance', [CompletionResultType]::ParameterName, 'Instance that was asked for')
             [CompletionResult]::new('--attribute', '--attribute', [CompletionResultType]::ParameterName, 'Attribute that was asked for')
+            [CompletionResult]::new('--frame', '--frame', [CompletionResultType]::ParameterName, 'Show the messages of one packet, field by field')
+            [CompletionResult]::new('--host', '--host', [CompletionResultType]::ParameterName, 'Only what comes from or goes to this address')
+            [CompletionResult]::new('--port', '--port', [CompletionResultType]::ParameterName, 'Only what comes from or goes to this port')
             [CompletionResult]::new('-t', '-t', [CompletionResultType]::ParameterName, 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)')
             [CompletionResult]::new('--target', '--target', [CompletionResultType]::ParameterName, 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)')
             [CompletionResult]::new('-r', '-r', [CompletionResultType]::ParameterName, 'Talk to a robot of the inventory, by name or pattern (repeatable)')
@@ -10376,6 +10379,9 @@ Register-ArgumentCompleter -Native -CommandName 'armctl' -ScriptBlock {
         'armctl;decode;yrcx' {
             [CompletionResult]::new('--wi', '--wi', [CompletionResultType]::ParameterName, 'WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013')
             [CompletionResult]::new('--wo', '--wo', [CompletionResultType]::ParameterName, 'WO0 to WO15, as in 0x4000,0x0002,0x014E')
+            [CompletionResult]::new('--frame', '--frame', [CompletionResultType]::ParameterName, 'Show the messages of one packet, field by field')
+            [CompletionResult]::new('--host', '--host', [CompletionResultType]::ParameterName, 'Only what comes from or goes to this address')
+            [CompletionResult]::new('--port', '--port', [CompletionResultType]::ParameterName, 'Only what comes from or goes to this port')
             [CompletionResult]::new('-t', '-t', [CompletionResultType]::ParameterName, 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)')
             [CompletionResult]::new('--target', '--target', [CompletionResultType]::ParameterName, 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)')
             [CompletionResult]::new('-r', '-r', [CompletionResultType]::ParameterName, 'Talk to a robot of the inventory, by name or pattern (repeatable)')
@@ -10395,6 +10401,7 @@ Register-ArgumentCompleter -Native -CommandName 'armctl' -ScriptBlock {
             [CompletionResult]::new('--count', '--count', [CompletionResultType]::ParameterName, 'Stop after so many reads')
             [CompletionResult]::new('--until', '--until', [CompletionResultType]::ParameterName, 'Repeat a read until a jq filter over its JSON is true')
             [CompletionResult]::new('--for', '--for', [CompletionResultType]::ParameterName, 'How long --until waits before it gives up with exit code 8')
+            [CompletionResult]::new('--every-image', '--every-image', [CompletionResultType]::ParameterName, 'Images that say nothing new, too')
             [CompletionResult]::new('--sim', '--sim', [CompletionResultType]::ParameterName, 'Talk to the built-in simulator, in this process')
             [CompletionResult]::new('--all', '--all', [CompletionResultType]::ParameterName, 'Talk to every robot of the inventory')
             [CompletionResult]::new('--json', '--json', [CompletionResultType]::ParameterName, 'Print JSON (the same as -o json)')
@@ -10411,6 +10418,9 @@ Register-ArgumentCompleter -Native -CommandName 'armctl' -ScriptBlock {
             break
         }
         'armctl;decode;toyo' {
+            [CompletionResult]::new('--frame', '--frame', [CompletionResultType]::ParameterName, 'Show the messages of one packet, field by field')
+            [CompletionResult]::new('--host', '--host', [CompletionResultType]::ParameterName, 'Only what comes from or goes to this address')
+            [CompletionResult]::new('--port', '--port', [CompletionResultType]::ParameterName, 'Only what comes from or goes to this port')
             [CompletionResult]::new('-t', '-t', [CompletionResultType]::ParameterName, 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)')
             [CompletionResult]::new('--target', '--target', [CompletionResultType]::ParameterName, 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)')
             [CompletionResult]::new('-r', '-r', [CompletionResultType]::ParameterName, 'Talk to a robot of the inventory, by name or pattern (repeatable)')

@@ -10063,6 +10063,9 @@ set edit:completion:arg-completer[armctl] = {|@words|
             cand --command 'Command whose answer it is, such as 0x75'
             cand --instance 'Instance that was asked for'
             cand --attribute 'Attribute that was asked for'
+            cand --frame 'Show the messages of one packet, field by field'
+            cand --host 'Only what comes from or goes to this address'
+            cand --port 'Only what comes from or goes to this port'
             cand -t 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)'
             cand --target 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)'
             cand -r 'Talk to a robot of the inventory, by name or pattern (repeatable)'
@@ -10099,6 +10102,9 @@ set edit:completion:arg-completer[armctl] = {|@words|
         &'armctl;decode;yrcx'= {
             cand --wi 'WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013'
             cand --wo 'WO0 to WO15, as in 0x4000,0x0002,0x014E'
+            cand --frame 'Show the messages of one packet, field by field'
+            cand --host 'Only what comes from or goes to this address'
+            cand --port 'Only what comes from or goes to this port'
             cand -t 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)'
             cand --target 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)'
             cand -r 'Talk to a robot of the inventory, by name or pattern (repeatable)'
@@ -10118,6 +10124,7 @@ set edit:completion:arg-completer[armctl] = {|@words|
             cand --count 'Stop after so many reads'
             cand --until 'Repeat a read until a jq filter over its JSON is true'
             cand --for 'How long --until waits before it gives up with exit code 8'
+            cand --every-image 'Images that say nothing new, too'
             cand --sim 'Talk to the built-in simulator, in this process'
             cand --all 'Talk to every robot of the inventory'
             cand --json 'Print JSON (the same as -o json)'
@@ -10133,6 +10140,9 @@ set edit:completion:arg-completer[armctl] = {|@words|
             cand --help 'Print help (see more with ''--help'')'
         }
         &'armctl;decode;toyo'= {
+            cand --frame 'Show the messages of one packet, field by field'
+            cand --host 'Only what comes from or goes to this address'
+            cand --port 'Only what comes from or goes to this port'
             cand -t 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)'
             cand --target 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)'
             cand -r 'Talk to a robot of the inventory, by name or pattern (repeatable)'

@@ -4334,6 +4334,9 @@ complete -c armctl -n "__fish_armctl_using_subcommand decode; and not __fish_see
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l command -d 'Command whose answer it is, such as 0x75' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l instance -d 'Instance that was asked for' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l attribute -d 'Attribute that was asked for' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l frame -d 'Show the messages of one packet, field by field' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l host -d 'Only what comes from or goes to this address' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l port -d 'Only what comes from or goes to this port' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
@@ -4367,6 +4370,9 @@ complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yerc" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l wi -d 'WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l wo -d 'WO0 to WO15, as in 0x4000,0x0002,0x014E' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l frame -d 'Show the messages of one packet, field by field' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l host -d 'Only what comes from or goes to this address' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l port -d 'Only what comes from or goes to this port' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
@@ -4389,6 +4395,7 @@ complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l count -d 'Stop after so many reads' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l until -d 'Repeat a read until a jq filter over its JSON is true' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l for -d 'How long --until waits before it gives up with exit code 8' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l every-image -d 'Images that say nothing new, too'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l sim -d 'Talk to the built-in simulator, in this process'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l all -d 'Talk to every robot of the inventory'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l json -d 'Print JSON (the same as -o json)'
@@ -4398,6 +4405,9 @@ complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_su
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l dry-run -d 'Send nothing; print what would be sent'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -l no-session -d 'Go to the robot directly, although a session holds its link'
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from yrcx" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l frame -d 'Show the messages of one packet, field by field' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l host -d 'Only what comes from or goes to this address' -r
+complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l port -d 'Only what comes from or goes to this port' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s t -l target -d 'Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -s r -l robot -d 'Talk to a robot of the inventory, by name or pattern (repeatable)' -r
 complete -c armctl -n "__fish_armctl_using_subcommand decode; and __fish_seen_subcommand_from toyo" -l tag -d 'Talk to the robots of the inventory with this tag (repeatable)' -r
