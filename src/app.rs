@@ -5,9 +5,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory as _, FromArgMatches as _};
+use clap::{CommandFactory as _, FromArgMatches as _, Subcommand};
 
-use crate::cli::{Cli, Globals, Top};
+use crate::cli::{Cli, Globals, OfToyo, OfYerc, OfYrcx, Top, Words};
 use crate::command::common::Common;
 use crate::command::common::robots::Robots;
 use crate::command::common::robots::check::Check;
@@ -37,15 +37,34 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     }
 }
 
+/// To lay out all commands takes longer than all the rest of a short one. So a line that names a family is tried on that
+/// family alone; what does not parse there is left to the whole.
 fn parse(args: &[OsString]) -> Result<Cli, clap::Error> {
-    let mut command = Cli::command();
+    let family = args.iter().skip(1).find_map(|word| word.to_str()?.parse::<Family>().ok());
+    let tried = match family {
+        Some(Family::Yerc) => {
+            words(args).map(|Words { globals, command }| Words { globals, command: Top::Yerc(command) })
+        }
+        Some(Family::Yrcx) => {
+            words(args).map(|Words { globals, command }| Words { globals, command: Top::Yrcx(command) })
+        }
+        Some(Family::Toyo) => {
+            words(args).map(|Words { globals, command }| Words { globals, command: Top::Toyo(command) })
+        }
+        None => return words(args),
+    };
+    tried.or_else(|_| words(args))
+}
+
+fn words<C: Subcommand>(args: &[OsString]) -> Result<Words<C>, clap::Error> {
+    let mut command = Words::<C>::command();
     let parsed = command.try_get_matches_from_mut(args);
-    let cli = parsed.and_then(|mut matches| Cli::from_arg_matches_mut(&mut matches));
-    let cli = cli.map_err(|error| error.format(&mut command));
+    let words = parsed.and_then(|mut matches| Words::from_arg_matches_mut(&mut matches));
+    let words = words.map_err(|error| error.format(&mut command));
     // It holds some thousand parts. The process is short, and their memory goes with it: taking them apart one by one
     // would be a quarter of all the work that a short command is.
     std::mem::forget(command);
-    cli
+    words
 }
 
 /// Started under the name of a family (a link to the binary), the program is that subcommand.
@@ -59,9 +78,9 @@ fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
 
 fn run(cli: Cli) -> Result<(), Stopped> {
     match cli.command {
-        Top::Yerc(noun) => for_robots(cli.globals, &*noun.command()),
-        Top::Yrcx(noun) => for_robots(cli.globals, &*noun.command()),
-        Top::Toyo(noun) => for_robots(cli.globals, &*noun.command()),
+        Top::Yerc(OfYerc::Yerc(noun)) => for_robots(cli.globals, &*noun.command()),
+        Top::Yrcx(OfYrcx::Yrcx(noun)) => for_robots(cli.globals, &*noun.command()),
+        Top::Toyo(OfToyo::Toyo(noun)) => for_robots(cli.globals, &*noun.command()),
         Top::Common(common) => for_all_families(cli.globals, common),
     }
 }

@@ -25,21 +25,46 @@ use crate::settings::target::Target;
     max_term_width = 100,
     after_help = "Exit codes, targets, output, safety and scripting: `armctl help TOPIC`."
 )]
-pub struct Cli {
+pub struct Words<C: Subcommand> {
     /// Flags of every command.
     #[command(flatten)]
     pub globals: Globals,
     /// The first word.
     #[command(subcommand)]
-    pub command: Top,
+    pub command: C,
 }
+
+/// The whole command line.
+pub type Cli = Words<Top>;
 
 /// The first word of a command line.
 #[derive(Debug, Subcommand)]
 pub enum Top {
+    /// The family `yerc`
+    #[command(flatten)]
+    Yerc(OfYerc),
+    /// The family `yrcx`
+    #[command(flatten)]
+    Yrcx(OfYrcx),
+    /// The family `toyo`
+    #[command(flatten)]
+    Toyo(OfToyo),
+    /// Commands that every family shares
+    #[command(flatten)]
+    Common(common::Common),
+}
+
+/// The first word of a line for `yerc`.
+#[derive(Debug, Subcommand)]
+pub enum OfYerc {
     /// Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)
     #[command(subcommand_required = true, arg_required_else_help = true)]
     Yerc(Verbs<yerc::Yerc>),
+}
+
+/// The first word of a line for `yrcx`.
+#[derive(Debug, Subcommand)]
+pub enum OfYrcx {
     /// OMRON / Yamaha YRCX over EtherNet/IP
     #[command(
         subcommand_required = true,
@@ -47,6 +72,11 @@ pub enum Top {
         after_help = "Settings and first contact: `armctl help yrcx-setup`."
     )]
     Yrcx(yrcx::Line),
+}
+
+/// The first word of a line for `toyo`.
+#[derive(Debug, Subcommand)]
+pub enum OfToyo {
     /// Toyo over RS-232C host communication
     #[command(
         subcommand_required = true,
@@ -54,9 +84,6 @@ pub enum Top {
         after_help = "Cable, settings and first contact: `armctl help toyo-setup`; the ports there are: `armctl toyo ports`."
     )]
     Toyo(Verbs<toyo::Toyo>),
-    /// Commands that every family shares
-    #[command(flatten)]
-    Common(common::Common),
 }
 
 /// Flags that every command takes, at any place of the line.
