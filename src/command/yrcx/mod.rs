@@ -1,6 +1,6 @@
 //! `yrcx`: OMRON / Yamaha YRCX over EtherNet/IP.
 //!
-//! A command that gives one remote command implements [`single::Single`]: which row of the table, its fields, the report.
+//! A command that gives one remote command implements `single::Single`: which row of the table, its fields, the report.
 //! `servo.rs` is the model of one that changes something, `info.rs` of those that read. What gives several implements
 //! `Command` itself, as `status.rs` does. The link has one driver for remote commands and signals; see `link.rs`.
 //!

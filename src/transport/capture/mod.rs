@@ -1,8 +1,8 @@
-//! Reads capture files: pcap and pcapng, as [`tap`](super::tap), tcpdump and Wireshark write them.
+//! Reads capture files: pcap and pcapng, as `tap`(super::tap), tcpdump and Wireshark write them.
 //!
 //! A reader of our own, because the formats are small, damage has to be told by its offset with all that came before
-//! it, and what is inside the packets (addresses, streams) would have to be written anyway. [`file`] finds packets,
-//! [`layers`] what they carry, [`stream`] puts TCP together. No bytes make any of it panic.
+//! it, and what is inside the packets (addresses, streams) would have to be written anyway. `file` finds packets,
+//! `layers` what they carry, `stream` puts TCP together. No bytes make any of it panic.
 
 mod file;
 mod layers;
