@@ -1,5 +1,7 @@
 //! Start states of simulators, as TOML: what all families have in common.
 
+use std::time::Duration;
+
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use toml::Spanned;
@@ -31,6 +33,23 @@ pub(super) struct At<'a> {
 impl At<'_> {
     pub(super) fn wrong<T>(&self, entry: &Spanned<T>, what: impl std::fmt::Display) -> String {
         format!("line {}: {what}", line(self.text, entry.span().start))
+    }
+
+    /// Events in the order of their times, each with what `read` makes of its line. The lines are read in the order of the
+    /// text, so that a mistake shows now and not in the middle of a run.
+    pub(super) fn events<T>(
+        &self,
+        entries: &[Spanned<Event>],
+        mut read: impl FnMut(&str) -> Result<T, String>,
+    ) -> Result<Vec<(Duration, String, T)>, String> {
+        let mut events = Vec::new();
+        for entry in entries {
+            let Event { at_ms, line } = entry.get_ref();
+            let content = read(line).map_err(|what| self.wrong(entry, what))?;
+            events.push((Duration::from_millis(*at_ms), line.clone(), content));
+        }
+        events.sort_by_key(|(at, ..)| *at);
+        Ok(events)
     }
 
     /// A value by its key, if that is a number from 1 to `most`.

@@ -261,7 +261,7 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
         world.card.fill(&content);
     }
     world.settle();
-    events(&mut world, &entries.events, &at)?;
+    world.events = at.events(&entries.events, console::Line::parse)?.into();
     let answer_delay = Duration::from_millis(entries.answer_delay_ms);
     Ok(Start { world, seed: entries.seed, answer_delay, busy })
 }
@@ -440,18 +440,6 @@ fn errors(world: &mut World, entries: &Entries, at: &At<'_>) -> Result<(), Strin
         let code = code(error.get_ref()).ok_or_else(|| at.wrong(error, "an error has a code from 01 to FF"))?;
         world.fail(code);
     }
-    Ok(())
-}
-
-fn events(world: &mut World, entries: &[Spanned<Event>], at: &At<'_>) -> Result<(), String> {
-    let mut events = Vec::new();
-    for entry in entries {
-        let event = entry.get_ref();
-        let line = console::Line::parse(&event.line).map_err(|what| at.wrong(entry, what))?;
-        events.push((Duration::from_millis(event.at_ms), event.line.clone(), line));
-    }
-    events.sort_by_key(|(at, ..)| *at);
-    world.events = events.into();
     Ok(())
 }
 

@@ -496,13 +496,9 @@ fn word(command: Command, key: Key, text: &str) -> Result<u16, String> {
 }
 
 fn events(world: &mut World, entries: &[Spanned<Event>], at: &At<'_>) -> Result<(), String> {
-    let mut sorted: Vec<Event> = entries.iter().map(Spanned::get_ref).cloned().collect();
-    sorted.sort_by_key(|event| event.at_ms);
-    // Carried out in order on a copy, so that a mistake shows now and not in the middle of a run.
+    // On a copy: the world is as it begins.
     let mut copy = world.clone();
-    for entry in entries {
-        console::execute(&mut copy, &entry.get_ref().line).map_err(|what| at.wrong(entry, what))?;
-    }
-    world.events = sorted.into_iter().map(|event| (Duration::from_millis(event.at_ms), event.line)).collect();
+    let events = at.events(entries, |line| console::execute(&mut copy, line))?;
+    world.events = events.into_iter().map(|(at, line, _)| (at, line)).collect();
     Ok(())
 }
