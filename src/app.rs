@@ -1,70 +1,42 @@
 //! From the words of a command line to an exit code.
 
+mod batch;
+mod parser;
+mod ready;
+mod repl;
+mod words;
+
 use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory as _, FromArgMatches as _, Subcommand};
 
-use crate::cli::{Cli, Globals, OfToyo, OfYerc, OfYrcx, Top, Words};
-use crate::command::common::Common;
-use crate::command::common::robots::Robots;
-use crate::command::common::robots::check::Check;
-use crate::command::run::{Repeat, Run, Stopped};
-use crate::command::{self, AnyCommand, Noun as _};
+use self::parser::Parser;
+use self::ready::{Ready, Wanted};
+use crate::cli::{Cli, Globals, Words};
+use crate::command::run::Stopped;
 use crate::failure::{Failure, Kind};
-use crate::gate::Gate;
 use crate::output::envelope::Envelope;
-use crate::output::jq::Filter;
 use crate::output::{ColorChoice, Format, Screen};
-use crate::settings::duration;
-use crate::settings::inventory::{Inventory, Location, Options};
-use crate::settings::target::{Family, Target};
-use crate::settings::{Selection, Sources};
+use crate::settings::target::Family;
 
 /// Runs a command line, the program's name included, and says how the process ends.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let args = with_family(args.into_iter().collect());
-    let cli = match parse(&args) {
+    let mut parser = Parser::default();
+    let parsed = parser.parse(&args);
+    parser.abandon();
+    let cli = match parsed {
         Ok(cli) => cli,
-        Err(error) => return refuse(&args, &error),
+        Err(error) => return exit(refuse(&args, &error, false)),
     };
     let screen = screen(&cli.globals);
-    match run(cli) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(stopped) => tell(&screen, stopped),
-    }
+    exit(on_this_thread(run(cli)).map_err(|stopped| tell(&screen, stopped)))
 }
 
-/// To lay out all commands takes longer than all the rest of a short one. So a line that names a family is tried on that
-/// family alone; what does not parse there is left to the whole.
-fn parse(args: &[OsString]) -> Result<Cli, clap::Error> {
-    let family = args.iter().skip(1).find_map(|word| word.to_str()?.parse::<Family>().ok());
-    let tried = match family {
-        Some(Family::Yerc) => {
-            words(args).map(|Words { globals, command }| Words { globals, command: Top::Yerc(command) })
-        }
-        Some(Family::Yrcx) => {
-            words(args).map(|Words { globals, command }| Words { globals, command: Top::Yrcx(command) })
-        }
-        Some(Family::Toyo) => {
-            words(args).map(|Words { globals, command }| Words { globals, command: Top::Toyo(command) })
-        }
-        None => return words(args),
-    };
-    tried.or_else(|_| words(args))
-}
-
-fn words<C: Subcommand>(args: &[OsString]) -> Result<Words<C>, clap::Error> {
-    let mut command = Words::<C>::command();
-    let parsed = command.try_get_matches_from_mut(args);
-    let words = parsed.and_then(|mut matches| Words::from_arg_matches_mut(&mut matches));
-    let words = words.map_err(|error| error.format(&mut command));
-    // It holds some thousand parts. The process is short, and their memory goes with it: taking them apart one by one
-    // would be a quarter of all the work that a short command is.
-    std::mem::forget(command);
-    words
+fn exit(done: Result<(), Kind>) -> ExitCode {
+    done.map_or_else(|kind| ExitCode::from(kind.exit()), |()| ExitCode::SUCCESS)
 }
 
 /// Started under the name of a family (a link to the binary), the program is that subcommand.
@@ -76,40 +48,19 @@ fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
     args
 }
 
-fn run(cli: Cli) -> Result<(), Stopped> {
-    match cli.command {
-        Top::Yerc(OfYerc::Yerc(noun)) => for_robots(cli.globals, &*noun.command()),
-        Top::Yrcx(OfYrcx::Yrcx(noun)) => for_robots(cli.globals, &*noun.command()),
-        Top::Toyo(OfToyo::Toyo(noun)) => for_robots(cli.globals, &*noun.command()),
-        Top::Common(common) => for_all_families(cli.globals, common),
+async fn run(cli: Cli) -> Result<(), Stopped> {
+    let Words { globals, command } = cli;
+    match Wanted::from(command) {
+        Wanted::Work(work) => Box::pin(Ready::new(globals, work, None)?.go()).await,
+        Wanted::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
+        Wanted::Prompt(prefix) => Box::pin(repl::run(globals, prefix)).await,
+        Wanted::Bare(prefix) if repl::can_type() => Box::pin(repl::run(globals, prefix)).await,
+        Wanted::Bare(prefix) => Err(repl::usage(&screen(&globals), &prefix)),
     }
-}
-
-fn for_robots<F: command::Family>(globals: Globals, command: &dyn AnyCommand<F>) -> Result<(), Stopped> {
-    let need = if command.takes_robot() { Need::Inventory } else { Need::Nothing };
-    let run = prepare(globals, need)?;
-    to_the_end(run.robots(command))
-}
-
-fn for_all_families(globals: Globals, common: Common) -> Result<(), Stopped> {
-    let need = match &common {
-        Common::Robots(Robots::Discover(_)) => Need::Nothing,
-        Common::Robots(robots) if robots.makes_inventory() => Need::InventoryOrNone,
-        Common::Session(session) if !session.opens() => Need::Names,
-        common if !common.is_about_robots() => Need::Nothing,
-        _ => Need::Inventory,
-    };
-    let mut run = prepare(globals, need)?;
-    match &common {
-        Common::Status(_) => run.sources.widen(),
-        Common::Robots(Robots::Check(Check { name: Some(name) })) => run.sources.choose(name)?,
-        _ => {}
-    }
-    to_the_end(common.run(&run))
 }
 
 /// Runs it on this thread.
-fn to_the_end(done: impl Future<Output = Result<(), Stopped>>) -> Result<(), Stopped> {
+fn on_this_thread(done: impl Future<Output = Result<(), Stopped>>) -> Result<(), Stopped> {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .build()
@@ -118,80 +69,6 @@ fn to_the_end(done: impl Future<Output = Result<(), Stopped>>) -> Result<(), Sto
     // A thread that waits for stdin or a name server must not hold up the end.
     runtime.shutdown_background();
     done
-}
-
-/// What a command wants of inventory and environment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Need {
-    /// Nothing: what is wrong in them is no matter, and `help` must tell how to set it right.
-    Nothing,
-    /// Which robots are named, whatever the inventory says of them.
-    Names,
-    /// The inventory; one that is named must be there.
-    Inventory,
-    /// The inventory, which is made if it is not there.
-    InventoryOrNone,
-}
-
-/// Flags, environment and inventory, read once.
-fn prepare(globals: Globals, need: Need) -> Result<Run, Failure> {
-    let screen = screen(&globals);
-    let filter = globals.jq.as_deref().map(Filter::new).transpose()?;
-    let until = globals.until.as_deref().map(Filter::new).transpose()?;
-    let gate = Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt };
-    let repeat = Repeat { every: globals.watch, count: globals.count, until, within: globals.within };
-    let trace = globals.trace.clone();
-    let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need)? };
-    Ok(Run { screen, sources, gate, repeat, filter, trace })
-}
-
-/// Which robots, and their settings.
-fn sources(globals: Globals, need: Need) -> Result<Sources, Failure> {
-    let selection = Selection {
-        sim: globals.sim,
-        target: globals.target,
-        robots: globals.robot,
-        tags: globals.tag,
-        all: globals.all,
-        environment: variable("ARMCTL_TARGET", |url| url.parse::<Target>().map_err(|failure| failure.message))?,
-        by_session: !globals.no_session,
-    };
-    // A robot that is told by flag needs no file; a broken file is an error for everybody else.
-    let mut location = Location::find(match globals.config {
-        Some(path) => Some(path),
-        None => variable("ARMCTL_CONFIG", |path| Ok(path.into()))?,
-    });
-    if let (Location::Named(path), Need::InventoryOrNone) = (&location, need) {
-        location = Location::Usual(path.clone());
-    }
-    let inventory = if selection.sim || selection.target.is_some() || need == Need::Names {
-        Inventory { path: location.path().map(Path::to_owned), ..Inventory::default() }
-    } else {
-        Inventory::load(&location)?
-    };
-    let flags = Options {
-        timeout: globals.timeout,
-        retries: globals.retries,
-        encoding: globals.encoding,
-        ..Options::default()
-    };
-    let environment = Options {
-        timeout: variable("ARMCTL_TIMEOUT", duration::parse_some)?,
-        retries: variable("ARMCTL_RETRIES", |number| {
-            number.parse().map_err(|_| format!("'{number}' is no number of repetitions"))
-        })?,
-        encoding: variable("ARMCTL_ENCODING", |name| name.parse().map_err(|error| format!("{error}")))?,
-        ..Options::default()
-    };
-    Ok(Sources { selection, flags, environment, inventory })
-}
-
-/// A variable of the environment; an empty one counts as not set, a wrong one is an error that names it.
-fn variable<T>(name: &str, parse: impl FnOnce(&str) -> Result<T, String>) -> Result<Option<T>, Failure> {
-    let Some(value) = std::env::var_os(name).filter(|value| !value.is_empty()) else { return Ok(None) };
-    let wrong = |why: String| Failure::usage(format!("{name}: {why}")).hint(format!("correct it, or unset {name}"));
-    let text = value.to_str().ok_or_else(|| wrong("it is not UTF-8".to_owned()))?;
-    parse(text).map(Some).map_err(wrong)
 }
 
 fn screen(globals: &Globals) -> Screen {
@@ -203,40 +80,50 @@ fn screen(globals: &Globals) -> Screen {
     Screen::new(format, globals.color, globals.quiet, globals.verbose)
 }
 
-/// Writes a failure once, in the form that was asked for.
-fn tell(screen: &Screen, Stopped { failure, envelope, told }: Stopped) -> ExitCode {
-    let exit = failure.kind.exit();
-    if !told && failure.kind != Kind::PipeClosed {
+/// Writes a failure once, in the form that was asked for, and says what kind it was.
+fn tell(screen: &Screen, Stopped { failure, envelope, told }: Stopped) -> Kind {
+    let kind = failure.kind;
+    if !told && kind != Kind::PipeClosed {
         if screen.is_json() {
             screen.failure_json(&envelope.unwrap_or_else(|| Box::new(Envelope::failed(None, failure))));
         } else {
             screen.failure(&failure);
         }
     }
-    ExitCode::from(exit)
+    kind
 }
 
-/// What the parser has to say: help and version on stdout, mistakes on stderr with exit code 2.
-fn refuse(args: &[OsString], error: &clap::Error) -> ExitCode {
-    let is_json = wants_json(args);
+/// What the parser has to say: help and version on stdout, mistakes on stderr, as JSON if the line asks for it.
+fn refuse(args: &[OsString], error: &clap::Error, is_json: bool) -> Result<(), Kind> {
+    let is_json = is_json || wants_json(args);
     let format = if is_json { Format::Json } else { Format::Table };
     let screen = Screen::new(format, ColorChoice::Auto, false, 0);
     let rendered = error.render();
-    if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
+    if is_text(error) {
         let text = if screen.stdout_color() { rendered.ansi().to_string() } else { rendered.to_string() };
-        return match screen.data(&text) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(failure) => tell(&screen, failure.into()),
-        };
+        return screen.data(&text).map_err(|failure| tell(&screen, failure.into()));
     }
     if is_json {
-        let text = rendered.to_string();
-        let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
-        let tip = text.lines().find_map(|line| line.trim().strip_prefix("tip: ")).unwrap_or("see --help");
-        return tell(&screen, Failure::usage(message).hint(tip).into());
+        return Err(tell(&screen, refusal(error).into()));
     }
     screen.usage(&rendered);
-    ExitCode::from(Kind::Usage.exit())
+    Err(Kind::Usage)
+}
+
+/// What the parser has to say, as a failure.
+fn refusal(error: &clap::Error) -> Failure {
+    if is_text(error) {
+        return Failure::usage("this prints a text to read").hint("type it at a terminal");
+    }
+    let text = error.render().to_string();
+    let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
+    let tip = text.lines().find_map(|line| line.trim().strip_prefix("tip: ")).unwrap_or("see --help");
+    Failure::usage(message).hint(tip)
+}
+
+/// Whether it is no mistake, but help or the version.
+fn is_text(error: &clap::Error) -> bool {
+    matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion)
 }
 
 /// Whether a command line that could not be parsed asks for JSON, in any of the forms that flags have.

@@ -5,7 +5,9 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::command::{Verbs, common, toyo, yerc, yrcx};
+use crate::command::common::batch::Batch;
+use crate::command::common::repl::Repl;
+use crate::command::{common, toyo, yerc, yrcx};
 use crate::controller::text::Encoding;
 use crate::gate::OnInterrupt;
 use crate::output::{ColorChoice, Format};
@@ -49,6 +51,10 @@ pub enum Top {
     /// The family `toyo`
     #[command(flatten)]
     Toyo(OfToyo),
+    /// Type commands one after the other, over one link
+    Repl(Repl),
+    /// Run the commands of a file, over one link
+    Batch(Batch),
     /// Commands that every family shares
     #[command(flatten)]
     Common(common::Common),
@@ -58,20 +64,26 @@ pub enum Top {
 #[derive(Debug, Subcommand)]
 pub enum OfYerc {
     /// Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)
-    #[command(subcommand_required = true, arg_required_else_help = true)]
-    Yerc(Verbs<yerc::Yerc>),
+    Yerc {
+        /// What follows.
+        #[command(subcommand)]
+        verb: Option<Verb<yerc::Yerc>>,
+    },
 }
 
 /// The first word of a line for `yrcx`.
 #[derive(Debug, Subcommand)]
 pub enum OfYrcx {
     /// OMRON / Yamaha YRCX over EtherNet/IP
-    #[command(
-        subcommand_required = true,
-        arg_required_else_help = true,
-        after_help = "Settings and first contact: `armctl help yrcx-setup`."
-    )]
-    Yrcx(yrcx::Line),
+    #[command(after_help = "Settings and first contact: `armctl help yrcx-setup`.")]
+    Yrcx {
+        /// Which robot of the controller.
+        #[command(flatten)]
+        unit: yrcx::Unit,
+        /// What follows.
+        #[command(subcommand)]
+        verb: Option<Verb<yrcx::Yrcx>>,
+    },
 }
 
 /// The first word of a line for `toyo`.
@@ -79,15 +91,27 @@ pub enum OfYrcx {
 pub enum OfToyo {
     /// Toyo over RS-232C host communication
     #[command(
-        subcommand_required = true,
-        arg_required_else_help = true,
         after_help = "Cable, settings and first contact: `armctl help toyo-setup`; the ports there are: `armctl toyo ports`."
     )]
-    Toyo(Verbs<toyo::Toyo>),
+    Toyo {
+        /// What follows.
+        #[command(subcommand)]
+        verb: Option<Verb<toyo::Toyo>>,
+    },
+}
+
+/// What follows the name of a family. Nothing at all is the prompt, too, where somebody can type.
+#[derive(Debug, Subcommand)]
+pub enum Verb<V: Subcommand> {
+    /// A command of the family
+    #[command(flatten)]
+    Command(V),
+    /// Type commands one after the other, over one link
+    Repl(Repl),
 }
 
 /// Flags that every command takes, at any place of the line.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 pub struct Globals {
     /// Talk to the built-in simulator, in this process
@@ -187,4 +211,47 @@ pub struct Globals {
     /// How long --until waits before it gives up with exit code 8
     #[arg(long = "for", global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse, requires = "until", help_heading = "Repeat")]
     pub within: Option<Duration>,
+}
+
+impl Globals {
+    /// The flags of a line within those that were given to all lines. What a line says of one thing replaces all that was
+    /// said of it: a robot, a format, how much to tell.
+    #[must_use]
+    pub fn within(self, all: &Self) -> Self {
+        let names_robot = self.sim || self.target.is_some() || !self.robot.is_empty() || self.all || !self.tag.is_empty();
+        let says_format = self.format.is_some() || self.json || self.jq.is_some();
+        let says_how_much = self.quiet || self.verbose > 0;
+        let (robot, format, how_much) = (
+            if names_robot { self.clone() } else { all.clone() },
+            if says_format { self.clone() } else { all.clone() },
+            if says_how_much { &self } else { all },
+        );
+        let (quiet, verbose) = (how_much.quiet, how_much.verbose);
+        Self {
+            sim: robot.sim,
+            target: robot.target,
+            robot: robot.robot,
+            all: robot.all,
+            tag: robot.tag,
+            config: self.config.or_else(|| all.config.clone()),
+            format: format.format,
+            json: format.json,
+            jq: format.jq,
+            quiet,
+            verbose,
+            color: if self.color == ColorChoice::Auto { all.color } else { self.color },
+            trace: self.trace.or_else(|| all.trace.clone()),
+            yes: self.yes || all.yes,
+            dry_run: self.dry_run || all.dry_run,
+            on_interrupt: if self.on_interrupt == OnInterrupt::Stop { all.on_interrupt } else { self.on_interrupt },
+            timeout: self.timeout.or(all.timeout),
+            retries: self.retries.or(all.retries),
+            encoding: self.encoding.or(all.encoding),
+            no_session: self.no_session || all.no_session,
+            watch: self.watch,
+            count: self.count,
+            until: self.until,
+            within: self.within,
+        }
+    }
 }

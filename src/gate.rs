@@ -49,8 +49,28 @@ impl Gate {
         demand: &Demand,
         intent: &str,
     ) -> Result<(), Failure> {
-        if risk == Risk::Read || self.dry_run {
+        if !self.must_ask(screen, robot, risk, demand, intent)? {
             return Ok(());
+        }
+        screen.ask_note(&format!("{}: a {} controller, not the built-in simulator", robot.label(), robot.family));
+        let agreed = match demand {
+            Demand::Word(word) => screen.confirm_word(&format!("This will {intent}."), word)?,
+            Demand::Usual | Demand::Flag(_) => screen.confirm(&format!("This will {intent}. Go on?"))?,
+        };
+        if agreed { Ok(()) } else { Err(Failure::new(Kind::RefusedHere, "not confirmed; nothing was sent")) }
+    }
+
+    /// Whether a person must be asked; an error if nobody can be, or if it is refused whatever anybody says.
+    pub fn must_ask(
+        &self,
+        screen: &Screen,
+        robot: &Robot,
+        risk: Risk,
+        demand: &Demand,
+        intent: &str,
+    ) -> Result<bool, Failure> {
+        if risk == Risk::Read || self.dry_run {
+            return Ok(false);
         }
         if robot.read_only.value {
             return Err(Failure::new(Kind::RefusedHere, format!("{} is read-only", robot.label()))
@@ -61,23 +81,18 @@ impl Gate {
             Demand::Flag(why) if !self.yes => {
                 return Err(refused(format!("not confirmed: {why}")).hint("add --yes if it is meant"));
             }
-            Demand::Usual if risk < Risk::Motion => return Ok(()),
+            Demand::Usual if risk < Risk::Motion => return Ok(false),
             _ => {}
         }
         if self.yes || robot.target.value.is_simulated() {
-            return Ok(());
+            return Ok(false);
         }
         if !screen.can_ask() {
             let when = if risk == Risk::Motion { "when nobody is in the cell" } else { "if it is meant" };
             return Err(refused(format!("not confirmed: on {} this would {intent}", robot.label()))
                 .hint(format!("add --yes {when}, or --dry-run to see what would be sent")));
         }
-        screen.ask_note(&format!("{}: a {} controller, not the built-in simulator", robot.label(), robot.family));
-        let agreed = match demand {
-            Demand::Word(word) => screen.confirm_word(&format!("This will {intent}."), word)?,
-            Demand::Usual | Demand::Flag(_) => screen.confirm(&format!("This will {intent}. Go on?"))?,
-        };
-        if agreed { Ok(()) } else { Err(refused("not confirmed; nothing was sent".to_owned())) }
+        Ok(true)
     }
 
     /// Refuses to move several robots that were not each named.

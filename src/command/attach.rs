@@ -9,17 +9,17 @@ use jiff::tz::TimeZone;
 use crate::command::Access;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
-use crate::settings::Robot;
+use crate::settings::{Robot, Sessions};
 use crate::transport::session::client::{self, AttachError, Attached, Found, Hindrance};
 use crate::transport::session::place::{PlaceError, key};
 use crate::transport::session::wire::Peer;
 
 /// The session that holds the robot's link, if there is one and `--no-session` does not go around it.
 pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
-    if !robot.by_session || access.dry_run {
+    if robot.sessions == Sessions::None || access.dry_run {
         return Ok(None);
     }
-    let attached = match client::attach(&key_of(robot), &command_line()).await {
+    let attached = match client::attach(&key_of(robot), &command_line(access)).await {
         Ok(Found::Session(attached)) => attached,
         Ok(Found::Nothing) => return Ok(None),
         Ok(Found::Dead) => {
@@ -57,16 +57,34 @@ pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<O
 
 /// What the robot's session is named by.
 pub fn key_of(robot: &Robot) -> String {
-    key(robot.family.name(), robot.target.value.url())
+    let (family, url) = (robot.family.name(), robot.target.value.url());
+    if robot.sessions == Sessions::OwnSimulators && robot.target.value.is_simulated() {
+        return key(family, &format!("{url} as {} in process {}", robot.name, std::process::id()));
+    }
+    key(family, url)
 }
 
 /// What was typed, for others who want the same robot.
-fn command_line() -> String {
+fn command_line(access: &Access) -> String {
+    if let Some(typed) = &access.typed {
+        return typed.to_string();
+    }
     let mut words = std::env::args_os();
     let program = words.next().unwrap_or_default();
     let program = Path::new(&program).file_name().unwrap_or(&program).to_string_lossy().into_owned();
     let words = words.map(|word| word.to_string_lossy().into_owned());
     std::iter::once(program).chain(words).collect::<Vec<_>>().join(" ")
+}
+
+/// There is no place for sessions.
+pub fn no_place(error: &PlaceError) -> Failure {
+    let failure = Failure::new(Kind::Local, format!("sessions: {error}"));
+    match error {
+        PlaceError::Unsafe { path, .. } => {
+            failure.hint(format!("remove {}, or set XDG_RUNTIME_DIR to a folder of your own", path.display()))
+        }
+        PlaceError::Io { .. } => failure.hint("XDG_RUNTIME_DIR names the folder that they are kept in"),
+    }
 }
 
 /// A session that is there and is not used.

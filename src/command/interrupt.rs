@@ -7,8 +7,10 @@ use tokio::sync::watch;
 
 use crate::failure::{Failure, Kind};
 
-/// What asked the process to end, once something has. It stays asked: nothing new begins after that.
-type Asked = watch::Receiver<Option<&'static str>>;
+/// What asked the process to end, once something has. It stays asked: nothing new begins after that, until [`again`].
+type Asked = watch::Sender<Option<&'static str>>;
+
+const KEYS: &str = "Ctrl-C";
 
 thread_local! {
     /// One listener for the process, so that a signal between two waits is not lost. Everything runs on one thread.
@@ -17,7 +19,7 @@ thread_local! {
 
 /// Waits for `work`, or for Ctrl-C or another request to end. Of two that nest, the inner one hears it first.
 pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failure> {
-    let mut asked = asked();
+    let asked = asked().subscribe();
     let before = *asked.borrow();
     if let Some(how) = before {
         return Err(Failure::new(Kind::Interrupted, how));
@@ -25,7 +27,7 @@ pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failur
     tokio::select! {
         biased;
         done = work => Ok(done),
-        how = wait(&mut asked) => Err(Failure::new(Kind::Interrupted, how)),
+        how = wait(asked, |_| true) => Err(Failure::new(Kind::Interrupted, how)),
     }
 }
 
@@ -34,24 +36,33 @@ pub fn catch_interrupts() {
     drop(asked());
 }
 
+/// Ctrl-C has ended one line of several, and the next one may begin. Says what else asked the process to end.
+pub fn again() -> Option<&'static str> {
+    let asked = asked();
+    asked.send_if_modified(|how| how.take_if(|how| *how == KEYS).is_some());
+    *asked.borrow()
+}
+
+/// Waits for a request to end that is no Ctrl-C.
+pub async fn asked_to_end() -> &'static str {
+    wait(asked().subscribe(), |how| how != KEYS).await
+}
+
 fn asked() -> Asked {
     ASKED.with(|asked| {
         let listen = || {
-            let (ask, asked) = watch::channel(None);
+            let ask = Asked::default();
             // Listens at once: work may send an order the first time it is polled.
-            let interrupt = interrupt();
-            tokio::spawn(async move {
-                // If nobody listens any more, nobody needs to know.
-                ask.send(Some(interrupt.await)).unwrap_or_default();
-            });
-            asked
+            tokio::spawn(listen(ask.clone()));
+            ask
         };
         asked.get_or_init(listen).clone()
     })
 }
 
-async fn wait(asked: &mut Asked) -> &'static str {
-    let how = asked.wait_for(Option::is_some).await.ok().and_then(|how| *how);
+/// Waits for a request to end that counts.
+async fn wait(mut asked: watch::Receiver<Option<&'static str>>, counts: impl Fn(&str) -> bool) -> &'static str {
+    let how = asked.wait_for(|how| how.is_some_and(&counts)).await.ok().and_then(|how| *how);
     match how {
         Some(how) => how,
         None => std::future::pending().await,
@@ -67,12 +78,12 @@ pub fn abandoned() -> impl Future<Output = &'static str> {
     /// SIGTSTP.
     const SUSPEND: i32 = if cfg!(target_os = "linux") { 20 } else { 18 };
 
-    let suspend = signal(SignalKind::from_raw(SUSPEND)).ok();
-    let quit = signal(SignalKind::quit()).ok();
-    async {
+    let mut suspend = signal(SignalKind::from_raw(SUSPEND)).ok();
+    let mut quit = signal(SignalKind::quit()).ok();
+    async move {
         tokio::select! {
-            () = heard(suspend) => "Ctrl-Z",
-            () = heard(quit) => "Ctrl-\\",
+            () = heard(&mut suspend) => "Ctrl-Z",
+            () = heard(&mut quit) => "Ctrl-\\",
         }
     }
 }
@@ -84,26 +95,36 @@ pub fn abandoned() -> impl Future<Output = &'static str> {
 }
 
 #[cfg(unix)]
-async fn heard(signal: Option<tokio::signal::unix::Signal>) {
+async fn heard(signal: &mut Option<tokio::signal::unix::Signal>) {
     match signal {
-        Some(mut signal) => _ = signal.recv().await,
+        Some(signal) => _ = signal.recv().await,
         None => std::future::pending().await,
     }
 }
 
-/// Ends at the first request to end; those that come from this call on count, also before it is polled.
+/// Passes on every request to end; those that come from this call on count, also before it is polled.
 #[cfg(unix)]
-fn interrupt() -> impl Future<Output = &'static str> {
+fn listen(ask: Asked) -> impl Future<Output = ()> {
     use tokio::signal::unix::{SignalKind, signal};
 
-    let keys = signal(SignalKind::interrupt()).ok();
-    let terminate = signal(SignalKind::terminate()).ok();
-    let hangup = if hangup_is_ignored() { None } else { signal(SignalKind::hangup()).ok() };
-    async {
-        tokio::select! {
-            () = heard(keys) => "Ctrl-C",
-            () = heard(terminate) => "asked to end (SIGTERM)",
-            () = heard(hangup) => "the terminal was closed (SIGHUP)",
+    let mut keys = signal(SignalKind::interrupt()).ok();
+    let mut terminate = signal(SignalKind::terminate()).ok();
+    let mut hangup = if hangup_is_ignored() { None } else { signal(SignalKind::hangup()).ok() };
+    async move {
+        loop {
+            let how = tokio::select! {
+                () = heard(&mut keys) => KEYS,
+                () = heard(&mut terminate) => "asked to end (SIGTERM)",
+                () = heard(&mut hangup) => "the terminal was closed (SIGHUP)",
+            };
+            // The first one counts, unless it was for one line only.
+            ask.send_if_modified(|asked| {
+                let is_first = asked.is_none_or(|asked| asked == KEYS);
+                if is_first {
+                    *asked = Some(how);
+                }
+                is_first
+            });
         }
     }
 }
@@ -117,9 +138,8 @@ fn hangup_is_ignored() -> bool {
 }
 
 #[cfg(not(unix))]
-async fn interrupt() -> &'static str {
-    match tokio::signal::ctrl_c().await {
-        Ok(()) => "Ctrl-C",
-        Err(_) => std::future::pending().await,
+async fn listen(ask: Asked) {
+    while tokio::signal::ctrl_c().await.is_ok() {
+        ask.send_replace(Some(KEYS));
     }
 }

@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 
+use etcetera::BaseStrategy as _;
 use tempfile::NamedTempFile;
 
 use crate::controller::text::{EncodeError, Encoding, unhex};
@@ -132,6 +133,12 @@ impl Target {
         let file = draft_in(&folder).map_err(|error| Failure::io(folder.display(), &error))?;
         Ok(Draft { file: BufWriter::with_capacity(BUFFER, file), target: self.clone() })
     }
+}
+
+/// The folder for what this program remembers of its user between two runs, if he has a home.
+pub fn state_folder() -> Option<PathBuf> {
+    let folders = etcetera::choose_base_strategy().ok()?;
+    Some(folders.state_dir().unwrap_or_else(|| folders.cache_dir()).join("armctl"))
 }
 
 /// A file that is being written beside its place; dropped, it is removed.

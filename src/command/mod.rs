@@ -7,7 +7,9 @@
 pub mod attach;
 pub mod checks;
 pub mod common;
+pub mod holding;
 pub mod interrupt;
+pub mod line;
 pub mod local;
 pub mod manifest;
 pub mod orders;
@@ -20,6 +22,7 @@ pub mod yrcx;
 
 use std::future::Future;
 use std::pin::Pin;
+use std::sync::Arc;
 
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
@@ -68,6 +71,8 @@ pub struct Access {
     pub trace: Option<std::path::PathBuf>,
     /// What the command wants of the connection.
     pub need: Need,
+    /// The command line, where it is not that of the process.
+    pub typed: Option<Arc<str>>,
 }
 
 /// What a command wants of the connection. Where a controller takes the end of a connection for a fault, as YRCX does,

@@ -5,7 +5,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 
+use super::line::Line;
 use super::{Access, Command, Context, Family, Need, Report, toyo, yerc, yrcx};
+use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::{Cell, Table, Tone, View};
@@ -101,6 +103,17 @@ impl Command for Overview {
             Err(failure) => Err(failure),
         }
     }
+}
+
+/// How a robot is, asked among other lines of this process.
+pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<OverviewReport, Failure> {
+    let overview = Overview {};
+    let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: overview.need(), typed: None };
+    let access = line.connecting(robot, access, screen).await?;
+    let mut link = Fleet::connect(robot, access, screen).await?;
+    let report = overview.run(Context { robot, link: &mut link, screen, several: false }).await;
+    Fleet::close(link, screen).await?;
+    report
 }
 
 /// The state of one robot in a line.

@@ -14,6 +14,7 @@ use serde_json::Value;
 use tokio::time::{Instant, timeout_at};
 
 use super::interrupt::{catch_interrupts, interruptible};
+use super::line::Line;
 use super::{Access, AnyCommand, AnyReport, Context, Family, Outcome, Report};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
@@ -39,6 +40,8 @@ pub struct Run {
     pub filter: Option<Filter>,
     /// `--trace`.
     pub trace: Option<PathBuf>,
+    /// What is around it, where it is one of several lines.
+    pub line: Option<Line>,
 }
 
 /// `--watch`, `--count`, `--until`, `--for`.
@@ -92,22 +95,11 @@ const PARALLEL: usize = 64;
 impl Run {
     /// Runs `command` on the robots it is for, and reports.
     pub async fn robots<F: Family>(&self, command: &dyn AnyCommand<F>) -> Result<(), Stopped> {
-        let risk = command.risk();
         if let Some(outcome) = command.without_robot(&self.screen) {
             return self.local(command.id(), &*outcome?);
         }
-        if risk > Risk::Read && self.repeat.is_wanted() {
-            return Err(Failure::usage("--watch, --count and --until repeat commands that only read")
-                .hint("run this command once, and watch `status` or `position`")
-                .into());
-        }
-        let robots = self.sources.robots(F::FAMILY)?;
-        if command.is_endless() && robots.len() > 1 {
-            return Err(Failure::usage("this watches one robot at a time").hint("name one with -r").into());
-        }
-        let selection = &self.sources.selection;
-        let each_named = robots.iter().all(|robot| selection.robots.contains(&robot.name));
-        Gate::pass_many(risk, &robots, each_named)?;
+        let risk = command.risk();
+        let robots = self.chosen(command)?;
         if risk == Risk::Motion || command.demand() != Demand::Usual {
             // From here on Ctrl-C, at a question too, ends in a message and an exit code instead of a killed process.
             catch_interrupts();
@@ -121,9 +113,36 @@ impl Run {
         }
         self.begin_trace()?;
         match &robots[..] {
-            [robot] if !selection.is_plural() => self.one(command, robot).await,
+            [robot] if !self.sources.selection.is_plural() => self.one(command, robot).await,
             robots => self.many(command, robots).await,
         }
+    }
+
+    /// The robots that a command is for, if it can be for these.
+    fn chosen<F: Family>(&self, command: &dyn AnyCommand<F>) -> Result<Vec<Robot>, Failure> {
+        let risk = command.risk();
+        if risk > Risk::Read && self.repeat.is_wanted() {
+            return Err(Failure::usage("--watch, --count and --until repeat commands that only read")
+                .hint("run this command once, and watch `status` or `position`"));
+        }
+        let robots = self.sources.robots(F::FAMILY)?;
+        if command.is_endless() && robots.len() > 1 {
+            return Err(Failure::usage("this watches one robot at a time").hint("name one with -r"));
+        }
+        let each_named = robots.iter().all(|robot| self.sources.selection.robots.contains(&robot.name));
+        Gate::pass_many(risk, &robots, each_named)?;
+        Ok(robots)
+    }
+
+    /// Finds what is refused without asking anybody: robots that are not there, a gate that stays closed.
+    pub fn foresee_gate<F: Family>(&self, command: &dyn AnyCommand<F>) -> Result<(), Failure> {
+        if !command.takes_robot() {
+            return Ok(());
+        }
+        let (risk, demand, intent) = (command.risk(), command.demand(), command.intent());
+        self.chosen(command)?.iter().try_for_each(|robot| {
+            self.gate.must_ask(&self.screen, robot, risk, &demand, &intent).map(|_| ())
+        })
     }
 
     /// Passes the gate. A question waits for its answer on a thread of its own, so that Ctrl-C is heard meanwhile.
@@ -144,6 +163,17 @@ impl Run {
         }
     }
 
+    /// Writes the envelope of a line that has failed in its place among those of the others; `false` for people, who
+    /// read of it elsewhere.
+    pub fn report_failure(&self, stopped: &Stopped) -> Result<bool, Failure> {
+        if self.is_for_people() {
+            return Ok(false);
+        }
+        let envelope = stopped.envelope.as_deref().cloned();
+        self.emit(&timed(envelope.unwrap_or_else(|| Envelope::failed(None, stopped.failure.clone()))))?;
+        Ok(true)
+    }
+
     /// Reports what a command without a robot has to say.
     pub fn local(&self, id: &str, report: &dyn AnyReport) -> Result<(), Stopped> {
         let failure = report.failure();
@@ -151,7 +181,8 @@ impl Run {
             self.show(&report.view(), Place::Alone)?;
         } else {
             let envelope = Envelope::local(id, report.data()?);
-            self.emit(&Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope })?;
+            let envelope = Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope };
+            self.emit(&if self.screen.format == Format::Jsonl { timed(envelope) } else { envelope })?;
         }
         failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: !self.is_for_people() }))
     }
@@ -372,8 +403,12 @@ impl Run {
     }
 
     async fn connect<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<F::Link, Failure> {
-        let access =
-            Access { granted: command.risk(), dry_run: false, trace: self.trace.clone(), need: command.need() };
+        let (granted, need) = (command.risk(), command.need());
+        let access = Access { granted, dry_run: false, trace: self.trace.clone(), need, typed: None };
+        let access = match &self.line {
+            Some(line) => line.connecting(robot, access, &self.screen).await?,
+            None => access,
+        };
         interruptible(Box::pin(F::connect(robot, access, &self.screen))).await?
     }
 
@@ -413,7 +448,7 @@ impl Run {
         robot: &Robot,
         screen: &Screen,
     ) -> Result<Vec<Value>, Failure> {
-        let access = Access { granted: command.risk(), dry_run: true, trace: self.trace.clone(), need: command.need() };
+        let access = Access { granted: command.risk(), dry_run: true, trace: self.trace.clone(), need: command.need(), typed: None };
         let mut link = F::connect(robot, access, screen).await?;
         let noted = {
             let several = self.sources.selection.is_plural();
@@ -435,14 +470,10 @@ impl Run {
         self.rehearse(command, robot, &self.screen.silenced()).await.map(|_| ())
     }
 
-    /// Empties the file of `--trace`, to which every connection of this command then appends.
+    /// Empties the file of `--trace`, to which every connection of this command then appends. Of several lines the first
+    /// one has done it.
     pub fn begin_trace(&self) -> Result<(), Failure> {
-        match self.trace.as_deref() {
-            Some(path) if path != Path::new("-") && !self.gate.dry_run => {
-                std::fs::File::create(path).map(|_| ()).map_err(|error| Failure::io(path.display(), &error))
-            }
-            _ => Ok(()),
-        }
+        begin_trace(self.trace.as_deref().filter(|_| !self.gate.dry_run && self.line.is_none()))
     }
 
     /// Tables of the same columns become one, with the robot in front; other views stand below each other.
@@ -472,8 +503,14 @@ impl Run {
 
     /// Writes JSON, or what the filter makes of it: strings as they are, the rest as JSON, a line each.
     fn emit(&self, value: &impl Serialize) -> Result<(), Failure> {
-        let Some(filter) = &self.filter else { return self.screen.json(value) };
-        for value in filter.apply(&as_value(value)?)? {
+        let value = match &self.line {
+            Some(line) => line.pass(as_value(value)?),
+            None if self.filter.is_none() => return self.screen.json(value),
+            None => Some(as_value(value)?),
+        };
+        let Some(value) = value else { return Ok(()) };
+        let Some(filter) = &self.filter else { return self.screen.json(&value) };
+        for value in filter.apply(&value)? {
             match value {
                 Value::String(text) => self.screen.data(&format!("{}\n", escape::lines(&text)))?,
                 value => self.screen.json(&value)?,
@@ -504,6 +541,14 @@ impl Run {
             }
         };
         screen.data(&text)
+    }
+}
+
+/// Empties the file of `--trace`; `-` is none.
+pub fn begin_trace(file: Option<&Path>) -> Result<(), Failure> {
+    match file.filter(|path| path.as_os_str() != "-") {
+        Some(path) => std::fs::File::create(path).map(|_| ()).map_err(|error| Failure::io(path.display(), &error)),
+        None => Ok(()),
     }
 }
 

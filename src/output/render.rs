@@ -100,7 +100,7 @@ fn styled(cell: &Cell) -> comfy_table::Cell {
 }
 
 /// A line as wide as it is.
-fn painted(line: &Cell, color: bool) -> String {
+pub fn painted(line: &Cell, color: bool) -> String {
     let text = escape::line(&line.text);
     let code = match line.tone {
         Tone::Plain => return text.into_owned(),

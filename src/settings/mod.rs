@@ -75,8 +75,8 @@ pub struct Robot {
     pub model: Setting<Model>,
     /// Free words to choose by.
     pub tags: Vec<String>,
-    /// Whether a session that holds its link is used.
-    pub by_session: bool,
+    /// Which sessions commands to it go through.
+    pub sessions: Sessions,
 }
 
 impl Robot {
@@ -107,11 +107,29 @@ pub struct Selection {
     pub all: bool,
     /// `ARMCTL_TARGET`.
     pub environment: Option<Target>,
-    /// Whether sessions are used: not with `--no-session`.
-    pub by_session: bool,
+    /// Which sessions commands go through.
+    pub sessions: Sessions,
+}
+
+/// Which sessions commands go through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sessions {
+    /// None (`--no-session`).
+    #[default]
+    None,
+    /// Those of this user.
+    Shared,
+    /// The same, but simulators are this process's own, where it runs several command lines.
+    OwnSimulators,
 }
 
 impl Selection {
+    /// Whether nothing was said about robots.
+    pub fn names_nobody(&self) -> bool {
+        let Self { sim, target, robots, tags, all, environment, sessions: _ } = self;
+        !(*sim || *all || target.is_some() || environment.is_some() || !robots.is_empty() || !tags.is_empty())
+    }
+
     /// Whether the command line can mean several robots, so that the answer is a list.
     pub fn is_plural(&self) -> bool {
         self.all
@@ -174,9 +192,7 @@ impl Sources {
 
     /// Where nothing is said about robots, takes all of the inventory instead of its default.
     pub fn widen(&mut self) {
-        let Selection { sim, target, robots, tags, all, environment, by_session: _ } = &mut self.selection;
-        let is_said = *sim || target.is_some() || environment.is_some() || !robots.is_empty() || !tags.is_empty();
-        *all |= !is_said && !self.inventory.robots.is_empty();
+        self.selection.all |= self.selection.names_nobody() && !self.inventory.robots.is_empty();
     }
 
     /// Takes a robot by its name, or by its URL.
@@ -289,7 +305,7 @@ impl Sources {
             read_only: setting!(read_only, false),
             model: url_model.unwrap_or_else(|| setting!(model, Model::Dx200)),
             tags,
-            by_session: self.selection.by_session,
+            sessions: self.selection.sessions,
         }
     }
 }

@@ -1,10 +1,12 @@
 //! Commands that are about no single controller.
 
+pub mod batch;
 pub mod completions;
 pub mod decode;
 mod explain;
 pub mod help;
 pub mod man;
+pub mod repl;
 pub mod robots;
 pub mod schema;
 pub mod session;
@@ -48,6 +50,16 @@ impl Common {
     /// Whether it asks or lists robots, and so needs the inventory.
     pub fn is_about_robots(&self) -> bool {
         matches!(self, Self::Status(_) | Self::Robots(_) | Self::Session(_))
+    }
+
+    /// Why it is nothing for a line of a file: it would never end, or writes something else than results.
+    pub fn why_not_in_batch(&self) -> Option<&'static str> {
+        match self {
+            Self::Session(session) if session.stays() => Some("it holds a link until it is ended; add --background"),
+            Self::Sim(_) => Some("it serves until it is ended"),
+            Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => Some("it prints a text to read"),
+            Self::Status(_) | Self::Robots(_) | Self::Session(_) | Self::Decode(_) | Self::Explain(_) => None,
+        }
     }
 
     /// Does it.

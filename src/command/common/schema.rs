@@ -7,7 +7,7 @@ use crate::command::overview::{Fleet, Overview};
 use crate::command::run::{Rehearsal, Run};
 use crate::command::toyo::{self, Toyo};
 use crate::command::yerc::{self, Yerc};
-use crate::command::yrcx;
+use crate::command::yrcx::{self, Yrcx};
 use crate::command::{Noun, SchemaEntry};
 use crate::failure::Failure;
 use crate::settings::inventory::nearest;
@@ -40,7 +40,7 @@ impl SchemaOf {
 /// The schemas of all reports.
 pub fn all() -> Vec<SchemaEntry> {
     let mut all = <Yerc as Noun<yerc::Family>>::schemas();
-    all.extend(<yrcx::Line as Noun<yrcx::Family>>::schemas());
+    all.extend(<Yrcx as Noun<yrcx::Family>>::schemas());
     all.extend(<Toyo as Noun<toyo::Family>>::schemas());
     all.extend(<Overview as Noun<Fleet>>::schemas());
     all.extend([

@@ -10,7 +10,7 @@ use super::simulated::{self, Simulated};
 use crate::command::{Access, Family as _};
 use crate::failure::{Failure, Kind, plain};
 use crate::output::Screen;
-use crate::settings::Robot;
+use crate::settings::{Robot, Sessions};
 use crate::settings::target::{self, Place};
 use crate::transport::fault::LineFaultSpec;
 use crate::transport::line::{InProcessLine, Pace};
@@ -93,7 +93,7 @@ impl Way<'_> {
 /// Opens it for a session to hold, which opens it again when it is gone. The controller is asked something first: a line
 /// says nothing by itself.
 pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<held::Line, Failure> {
-    let robot = Robot { by_session: false, ..robot.clone() };
+    let robot = Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Toyo::connect(&robot, access.clone(), screen).await?;
     overview(&mut link).await?;
     // Over the same connection: a device server may take another one only after a while.

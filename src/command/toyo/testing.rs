@@ -43,7 +43,7 @@ pub(super) fn blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
 /// All blocks that `armctl toyo WORDS…` would send.
 pub(super) fn all_blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
     let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
-    let access = Access { granted: command.risk(), dry_run: true, trace: None, need: command.need() };
+    let access = Access { granted: command.risk(), dry_run: true, trace: None, need: command.need(), typed: None };
     let mut link = Family::connect(&robot, access, &quiet()).now_or_never().expect("a dry run opens nothing")?;
     let context = Context { robot: &robot, link: &mut link, screen: &quiet(), several: false };
     if let Some(Err(failure)) = command.run(context).now_or_never() {
@@ -208,7 +208,7 @@ fn runtime() -> tokio::runtime::Runtime {
 }
 
 /// A link that may do anything.
-const EVERYTHING: Access = Access { granted: Risk::Motion, dry_run: false, trace: None, need: Need::Command };
+const EVERYTHING: Access = Access { granted: Risk::Motion, dry_run: false, trace: None, need: Need::Command, typed: None };
 
 fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
     Cli::try_parse_from([&["armctl", "-t", target, "toyo"], words].concat())

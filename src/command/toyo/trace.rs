@@ -126,7 +126,7 @@ mod tests {
     fn recorded(ends: Option<(SocketAddr, SocketAddr)>) -> Vec<u8> {
         let file = tempfile::NamedTempFile::new().unwrap();
         let access =
-            Access { granted: Risk::Read, dry_run: false, trace: Some(file.path().to_owned()), need: Need::Command };
+            Access { granted: Risk::Read, dry_run: false, trace: Some(file.path().to_owned()), need: Need::Command, typed: None };
         let mut trace = Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 0), ends).unwrap();
         trace.record(Direction::Sent, b"@HSON\r\n");
         trace.record(Direction::Received, b"");
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn text_waits_while_it_is_held() {
-        let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: Need::Command };
+        let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: Need::Command, typed: None };
         let mut trace = Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 2), None).unwrap();
         trace.hold();
         trace.record(Direction::Sent, b"@HSON\r\n");

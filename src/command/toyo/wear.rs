@@ -11,7 +11,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use etcetera::BaseStrategy as _;
+use crate::command::local::state_folder;
 
 /// Writes of one cell over one link that are no accident any more.
 const LOOP: u32 = 3;
@@ -42,11 +42,8 @@ struct Diary {
 impl Wear {
     /// Counts for a robot; with a diary where the user has a state folder.
     pub fn of(robot: &str) -> Self {
-        let path = etcetera::choose_base_strategy().ok().map(|folders| {
-            let folder = folders.state_dir().unwrap_or_else(|| folders.cache_dir());
-            folder.join("armctl").join("eeprom-writes")
-        });
-        Self { diary: path.map(|path| Diary { path, robot: robot.to_owned() }), ..Self::default() }
+        let diary = |folder: PathBuf| Diary { path: folder.join("eeprom-writes"), robot: robot.to_owned() };
+        Self { diary: state_folder().map(diary), ..Self::default() }
     }
 
     /// Counts for a link that lasts as long as what it writes to.

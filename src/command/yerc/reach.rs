@@ -15,7 +15,7 @@ use crate::controller::yerc::Model;
 use crate::controller::yerc::simulator::{Simulator, Start};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
-use crate::settings::Robot;
+use crate::settings::{Robot, Sessions};
 use crate::settings::target::{self, Place};
 use crate::transport::fault::{FaultSpec, Faults};
 use crate::transport::session::client::Attached;
@@ -79,7 +79,7 @@ pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<(Tr
 
 /// Opens it for a session to hold. The controller is asked something first: datagrams go out to nobody, too.
 pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<Datagrams, Failure> {
-    let robot = &Robot { by_session: false, ..robot.clone() };
+    let robot = &Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Yerc::connect(robot, access.clone(), screen).await?;
     overview(&mut link).await?;
     Yerc::close(link, screen).await?;

@@ -34,7 +34,7 @@ pub(super) fn intent(words: &str) -> String {
 /// fails with the parser's message.
 pub(super) fn rehearse(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
     let (robot, command) = resolved(target, words)?;
-    let access = Access { granted: command.risk(), dry_run: true, trace: None, need: command.need() };
+    let access = Access { granted: command.risk(), dry_run: true, trace: None, need: command.need(), typed: None };
     let mut link = Family::connect(&robot, access, &quiet()).now_or_never().expect("a dry run opens nothing")?;
     let context = Context { robot: &robot, link: &mut link, screen: &quiet(), several: false };
     if let Some(Err(failure)) = command.run(context).now_or_never() {
@@ -127,7 +127,7 @@ impl Bench {
 }
 
 /// A link that may do anything.
-const EVERYTHING: Access = Access { granted: Risk::Motion, dry_run: false, trace: None, need: Need::Command };
+const EVERYTHING: Access = Access { granted: Risk::Motion, dry_run: false, trace: None, need: Need::Command, typed: None };
 
 fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
     Cli::try_parse_from([&["armctl", "-t", target, "yerc"], words].concat())

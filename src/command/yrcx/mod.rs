@@ -59,7 +59,7 @@ pub use link::Yrcx as Family;
 pub use overview::overview;
 pub use raw::words;
 pub use trace::Recorder;
-pub use unit::Line;
+pub use unit::Unit;
 
 use self::motion::Moving;
 use crate::command::{Verbs, commands};

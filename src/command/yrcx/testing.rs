@@ -111,7 +111,7 @@ pub(super) fn words(words: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
 /// All that `armctl yrcx WORDS…` would send.
 pub(super) fn frames(words: &[&str]) -> Result<Vec<Value>, Failure> {
     let (robot, command) = resolved(DRY, words)?;
-    let access = Access { granted: command.risk(), dry_run: true, trace: None, need: command.need() };
+    let access = Access { granted: command.risk(), dry_run: true, trace: None, need: command.need(), typed: None };
     let mut link = Family::connect(&robot, access, &quiet()).now_or_never().expect("a dry run opens nothing")?;
     let context = Context { robot: &robot, link: &mut link, screen: &quiet(), several: false };
     if let Some(Err(failure)) = command.run(context).now_or_never() {
@@ -169,7 +169,7 @@ impl Bench {
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
         let peer = Shared::new(scripted.into());
-        let access = Access { granted, dry_run: false, trace: None, need: Need::Command };
+        let access = Access { granted, dry_run: false, trace: None, need: Need::Command, typed: None };
         let screen = quiet();
         let opening = Link::to_peer(&robot, &access, &screen, Box::new(Handle(Shared::clone(&peer))));
         let link = runtime.block_on(opening).expect("a link");

@@ -5,29 +5,29 @@ use std::pin::Pin;
 use clap::Args;
 
 use super::{Family, Yrcx};
-use crate::command::{AnyCommand, Context, Need, Noun, Outcome, SchemaEntry};
+use crate::command::{AnyCommand, Context, Need, Noun as _, Outcome};
 use crate::controller::Risk;
 use crate::gate::Demand;
 use crate::output::Screen;
 
-/// What follows the word `yrcx`.
+/// Which robot of the controller a command is for.
 #[derive(Debug, Args)]
-pub struct Line {
+pub struct Unit {
     /// Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all
     #[arg(long, global = true, value_name = "N", default_value_t = 0, hide_default_value = true, help_heading = "Which robot",
         value_parser = clap::value_parser!(u8).range(0..=4))]
     unit: u8,
-    #[command(subcommand)]
-    verb: Yrcx,
 }
 
-impl Noun<Family> for Line {
-    fn command(self) -> Box<dyn AnyCommand<Family>> {
-        Box::new(OfUnit { unit: self.unit, command: self.verb.command() })
+impl Unit {
+    /// The command for this robot.
+    pub fn of(&self, verb: Yrcx) -> Box<dyn AnyCommand<Family>> {
+        Box::new(OfUnit { unit: self.unit, command: verb.command() })
     }
 
-    fn schemas() -> Vec<SchemaEntry> {
-        Yrcx::schemas()
+    /// The words that say the same.
+    pub fn words(&self) -> Vec<String> {
+        if self.unit == 0 { Vec::new() } else { vec!["--unit".to_owned(), self.unit.to_string()] }
     }
 }
 

@@ -5,9 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::list::spots;
-use super::no_place;
 use crate::command::Report;
-use crate::command::attach::refused;
+use crate::command::attach::{no_place, refused};
 use crate::command::run::{Run, Stopped};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Table, View};

@@ -7,8 +7,8 @@ use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::no_place;
 use crate::command::Report;
+use crate::command::attach::no_place;
 use crate::command::run::{Run, Stopped};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};

@@ -11,8 +11,6 @@ pub use list::Sessions;
 pub use open::Opened;
 
 use crate::command::run::{Run, Stopped};
-use crate::failure::{Failure, Kind};
-use crate::transport::session::place::PlaceError;
 
 /// What can be done with sessions.
 #[derive(Debug, Subcommand)]
@@ -31,22 +29,16 @@ impl Session {
         matches!(self, Self::Open(_))
     }
 
+    /// Whether it goes on until somebody ends it.
+    pub fn stays(&self) -> bool {
+        matches!(self, Self::Open(open) if open.stays())
+    }
+
     pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
         match self {
             Self::Open(open) => open.run(run).await,
             Self::List(list) => list.run(run).await,
             Self::Close(close) => close.run(run).await,
         }
-    }
-}
-
-/// There is no place for sessions.
-fn no_place(error: &PlaceError) -> Failure {
-    let failure = Failure::new(Kind::Local, format!("sessions: {error}"));
-    match error {
-        PlaceError::Unsafe { path, .. } => {
-            failure.hint(format!("remove {}, or set XDG_RUNTIME_DIR to a folder of your own", path.display()))
-        }
-        PlaceError::Io { .. } => failure.hint("XDG_RUNTIME_DIR names the folder that they are kept in"),
     }
 }

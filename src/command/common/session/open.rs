@@ -1,8 +1,10 @@
 //! `armctl session open`: holds the link to a robot, in the foreground or behind it.
 
+use std::cell::RefCell;
 use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::PathBuf;
+use std::rc::Rc;
 
 use clap::Args;
 use jiff::Timestamp;
@@ -10,11 +12,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use tokio::task::spawn_blocking;
 
-use super::no_place;
-use crate::command::attach::{key_of, since};
+use crate::command::attach::{key_of, no_place, since};
+use crate::command::holding::{Attempt, Holding};
 use crate::command::interrupt::{catch_interrupts, interruptible};
 use crate::command::run::{Run, Stopped};
-use crate::command::{Access, Need, Report, toyo, yerc, yrcx};
+use crate::command::{Access, Need, Report};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -22,10 +24,7 @@ use crate::output::view::View;
 use crate::settings::Robot;
 use crate::settings::target::Family;
 use crate::transport::session::client::status;
-use crate::transport::session::host::Host;
-use crate::transport::session::host::held::Held;
 use crate::transport::session::place::{Place, Spot};
-use crate::transport::session::wire::Info;
 use crate::transport::session::{detach, leave_terminal, terminate};
 
 /// Arguments of `session open`.
@@ -72,6 +71,11 @@ impl Report for Opened {
 }
 
 impl Open {
+    /// Whether it holds the terminal, too.
+    pub fn stays(&self) -> bool {
+        !self.background
+    }
+
     pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
         let robots = run.sources.robots(self.family)?;
         let [robot] = &robots[..] else {
@@ -111,63 +115,40 @@ impl Open {
     }
 
     /// Opens the link, and lets clients in.
-    async fn open(run: &Run, robot: &Robot, background: bool) -> Result<(Holding, Opened), Failure> {
+    async fn open(run: &Run, robot: &Robot, background: bool) -> Result<(Box<Holding>, Opened), Failure> {
         let place = Place::make().map_err(|error| no_place(&error))?;
-        let key = key_of(robot);
-        let spot = place.spot(&key);
-        let info = Info::own(&robot.name, robot.family.name(), robot.target.value.url());
-        let Some(claim) = spot.claim(&info).map_err(|error| no_place(&error))? else {
-            return Err(taken(robot, &spot).await);
-        };
-        let (held, recorder) = interruptible(hold(run, robot)).await??;
+        let spot = place.spot(&key_of(robot));
         let log = background.then(|| spot.log());
+        let diary = Diary { screen: run.screen, label: robot.label(), file: log.clone() };
+        let diary = Rc::new(RefCell::new(diary));
+        let say = Rc::clone(&diary);
+        let access = Access { granted: Risk::Read, dry_run: false, trace: run.trace.clone(), need: Need::Command, typed: None };
+        let opening = Holding::open(robot, &access, &run.screen, move |text| say.borrow_mut().say(text));
+        let holding = match interruptible(opening).await?? {
+            Attempt::Held(holding) => holding,
+            Attempt::Taken => return Err(taken(robot, &spot).await),
+            Attempt::NoPlace(failure) => return Err(failure),
+        };
+        diary.borrow_mut().say("the link is open");
         let opened = Opened {
-            robot: info.robot.clone(),
-            family: info.family.clone(),
-            target: info.target.clone(),
-            pid: info.pid,
+            robot: robot.name.clone(),
+            family: robot.family.name().to_owned(),
+            target: robot.target.value.url().to_owned(),
+            pid: std::process::id(),
             background,
             log: log.as_ref().map(|log| log.display().to_string()),
         };
-        let mut diary = Diary { screen: run.screen, label: robot.label(), file: log };
-        diary.say("the link is open");
-        let host = Host::new(claim, key, info, held, move |text| diary.say(text))
-            .map_err(|error| Failure::io(spot.socket().display(), &error))?;
-        Ok((Holding { host, recorder, label: robot.label() }, opened))
+        Ok((holding, opened))
     }
-}
-
-/// A session and what belongs to it.
-struct Holding {
-    host: Host,
-    recorder: Option<yrcx::Recorder>,
-    label: String,
 }
 
 /// Serves until somebody wants it to end; that is no failure.
-async fn serve(run: &Run, mut holding: Holding) -> Result<(), Failure> {
-    let why = match interruptible(holding.host.serve()).await {
+async fn serve(run: &Run, mut holding: Box<Holding>) -> Result<(), Failure> {
+    let why = match interruptible(holding.serve()).await {
         Ok(()) => "the session was closed".to_owned(),
         Err(asked) => format!("the session has ended: {}", asked.message),
     };
-    if let Err(trouble) = holding.host.end(&why).await {
-        run.screen.note(&format!("{}: the connection was not closed properly: {trouble}", holding.label));
-    }
-    holding.recorder.map_or(Ok(()), yrcx::Recorder::finish)
-}
-
-/// The link of whichever family. A session that is open reaches its controller.
-async fn hold(run: &Run, robot: &Robot) -> Result<(Held, Option<yrcx::Recorder>), Failure> {
-    let screen = &run.screen;
-    let access = Access { granted: Risk::Read, dry_run: false, trace: run.trace.clone(), need: Need::Command };
-    match robot.family {
-        Family::Yrcx => {
-            let (images, recorder) = yrcx::hold(robot, &access, screen).await?;
-            Ok((Held::Images(images), recorder))
-        }
-        Family::Yerc => Ok((Held::Datagrams(yerc::hold(robot, &access, screen).await?), None)),
-        Family::Toyo => Ok((Held::Stream(toyo::hold(robot, &access, screen).await?), None)),
-    }
+    holding.end(&why, &run.screen).await
 }
 
 /// Somebody else holds the link already.

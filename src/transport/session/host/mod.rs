@@ -86,6 +86,11 @@ impl Host {
         }
     }
 
+    /// Whether the device shows that something is under way.
+    pub fn under_way(&mut self) -> bool {
+        self.held.images().is_some_and(|images| images.under_way())
+    }
+
     /// Ends it: nobody new comes, everybody is told, the link is closed.
     ///
     /// # Errors
@@ -295,7 +300,7 @@ impl Host {
                 .map(|client| client.peer(client.since))
                 .collect(),
             leftover: self.leftover(),
-            under_way: self.held.images().is_some_and(|images| images.under_way()),
+            under_way: self.under_way(),
         }
     }
 

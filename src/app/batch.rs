@@ -1,0 +1,191 @@
+//! `armctl batch`: the commands of a file, over links that stay open from one to the next.
+//!
+//! The whole file is read and understood before anything is sent: words, flags, robots, and whether the gate would stay
+//! closed. Then the lines run one after the other, up to the first that fails.
+
+use std::cell::RefCell;
+use std::ffi::OsString;
+use std::io::Read as _;
+use std::path::Path;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::parser::Parser;
+use super::ready::{Ready, Wanted};
+use super::{refusal, screen, words};
+use crate::cli::{Globals, Words};
+use crate::command::common::batch::Batch;
+use crate::command::holding::Holder;
+use crate::command::interrupt::catch_interrupts;
+use crate::command::line::{Line, Origin};
+use crate::command::run::{Stopped, begin_trace};
+use crate::failure::{Failure, Kind};
+use crate::output::{Format, Screen};
+
+/// Envelopes that are written all at once.
+type Results = Rc<RefCell<Vec<Value>>>;
+
+/// Runs the lines of a file.
+pub async fn run(globals: Globals, batch: Batch) -> Result<(), Stopped> {
+    refuse_repetition(&globals)?;
+    let text = read(&batch.file)?;
+    catch_interrupts();
+    // A filter is for each envelope as it comes.
+    let format = if globals.jq.is_some() { Some(Format::Jsonl) } else { globals.format };
+    let globals = Globals { format, json: globals.json && globals.jq.is_none(), ..globals };
+    let screen = screen(&globals);
+    let results: Option<Results> = (screen.format == Format::Json).then(Rc::default);
+    let (holder, thread) = Holder::start(move |text| screen.note(text))?;
+    let plan = Plan { globals: &globals, batch: &batch, screen, holder, results: results.clone() };
+    let lines = plan.lines(&text)?;
+    begin_trace(globals.trace.as_deref().filter(|_| !globals.dry_run))?;
+    let done = plan.go(lines).await;
+    thread.end().await;
+    if let Some(results) = results {
+        screen.json(&*results.borrow())?;
+    }
+    done
+}
+
+/// What is repeated is a line, not the file.
+pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
+    if globals.watch.is_some() || globals.count.is_some() || globals.until.is_some() {
+        return Err(Failure::usage("--watch, --count and --until are for a command").hint("write them into its line"));
+    }
+    Ok(())
+}
+
+fn read(path: &Path) -> Result<String, Failure> {
+    let bytes = if path.as_os_str() == "-" {
+        let mut bytes = Vec::new();
+        std::io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
+    } else {
+        std::fs::read(path)
+    };
+    let bytes = bytes.map_err(|error| Failure::io(path.display(), &error))?;
+    let text = String::from_utf8(bytes).map_err(|_| {
+        Failure::usage(format!("{}: this is not UTF-8", path.display())).hint("save the file as UTF-8")
+    })?;
+    Ok(text.strip_prefix('\u{FEFF}').map_or_else(|| text.clone(), ToOwned::to_owned))
+}
+
+struct Plan<'a> {
+    globals: &'a Globals,
+    batch: &'a Batch,
+    screen: Screen,
+    holder: Holder,
+    results: Option<Results>,
+}
+
+/// A line that can run.
+struct Planned {
+    ready: Ready,
+    origin: Origin,
+    typed: Arc<str>,
+}
+
+impl Plan<'_> {
+    /// All lines that are commands, or all that is wrong with them.
+    fn lines(&self, text: &str) -> Result<Vec<Planned>, Failure> {
+        let file: Arc<str> = self.batch.file.display().to_string().into();
+        let mut parser = Parser::default();
+        let mut planned = Vec::new();
+        let mut wrong = Vec::new();
+        for (index, line) in text.lines().enumerate() {
+            let origin = Origin { file: Arc::clone(&file), line: index + 1 };
+            match self.line(&mut parser, line, &origin) {
+                Ok(line) => planned.extend(line),
+                Err(failure) => wrong.push((origin, failure)),
+            }
+        }
+        let Some((_, first)) = wrong.first() else { return Ok(planned) };
+        let reasons: Vec<String> = wrong
+            .iter()
+            .map(|(origin, failure)| {
+                let hint = failure.hint.as_ref().filter(|_| wrong.len() > 1);
+                let hint = hint.map(|hint| format!(" ({hint})")).unwrap_or_default();
+                format!("{origin}: {}{hint}", failure.message)
+            })
+            .collect();
+        let hint = first.hint.clone().filter(|_| wrong.len() == 1).unwrap_or_else(|| "correct these lines".to_owned());
+        let failure = Failure::new(first.kind, reasons.join("\n"));
+        Err(failure.hint(format!("{hint}; nothing was sent: a file runs once all of it is understood")))
+    }
+
+    fn line(&self, parser: &mut Parser, line: &str, origin: &Origin) -> Result<Option<Planned>, Failure> {
+        let usage = |why: String| Failure::usage(why).hint("`armctl help batch` tells what a line can be");
+        let value = |name: &str| {
+            let set = self.batch.set.iter().rev().find(|(other, _)| other == name);
+            set.map(|(_, value)| value.as_str())
+        };
+        let words = words::split(line).map_err(usage)?;
+        let words: Vec<String> =
+            words.iter().map(|word| words::expanded(word, value)).collect::<Result<_, _>>().map_err(usage)?;
+        if words.is_empty() {
+            return Ok(None);
+        }
+        let args: Vec<OsString> = std::iter::once("armctl".to_owned()).chain(words).map(OsString::from).collect();
+        let Words { globals, command } = parser.parse(&args).map_err(|error| refusal(&error))?;
+        let says_format = globals.format.is_some() || globals.json || globals.jq.is_some();
+        if says_format && self.screen.is_json() {
+            return Err(Failure::usage("the format is that of the whole batch").hint("leave it away in the line"));
+        }
+        let typed: Arc<str> = line.trim().into();
+        let line = Line {
+            typed: Arc::clone(&typed),
+            holder: self.holder.clone(),
+            origin: Some(origin.clone()),
+            results: self.results.clone(),
+        };
+        let Wanted::Work(work) = command.into() else {
+            return Err(Failure::usage("this is no command for a line of a file").hint("`armctl help batch`"));
+        };
+        let ready = Ready::new(globals.within(self.globals), work, Some(line))?;
+        if let Some(why) = ready.why_not_in_batch() {
+            return Err(Failure::usage(format!("this is nothing for a line of a file: {why}"))
+                .hint("type it at a terminal of its own"));
+        }
+        ready.foresee()?;
+        Ok(Some(Planned { ready, origin: origin.clone(), typed }))
+    }
+
+    /// Runs them.
+    async fn go(&self, lines: Vec<Planned>) -> Result<(), Stopped> {
+        let all = lines.len();
+        let mut failed: Vec<(Origin, Failure)> = Vec::new();
+        let mut begun = 0;
+        for Planned { ready, origin, typed } in lines {
+            begun += 1;
+            if !self.screen.is_json() {
+                self.screen.note(&format!("{origin}: {typed}"));
+            }
+            let Ready { run, work } = ready;
+            let Err(stopped) = Box::pin(work.go(&run)).await else { continue };
+            if stopped.failure.kind == Kind::PipeClosed {
+                return Err(stopped);
+            }
+            if !stopped.told && !run.report_failure(&stopped)? {
+                let message = format!("{origin}: {}", stopped.failure.message);
+                run.screen.failure(&Failure { message, ..stopped.failure.clone() });
+            }
+            let ends = stopped.failure.kind == Kind::Interrupted || !self.batch.keep_going;
+            failed.push((origin, stopped.failure));
+            if ends {
+                break;
+            }
+        }
+        let Some((origin, first)) = failed.first() else { return Ok(()) };
+        let message = if self.batch.keep_going && begun == all {
+            let places: Vec<String> = failed.iter().map(|(origin, _)| origin.line.to_string()).collect();
+            format!("{} of {all} commands failed, in line {}", failed.len(), places.join(", "))
+        } else {
+            format!("stopped at {}; {} done before it, {} not begun", origin, begun - failed.len(), all - begun)
+        };
+        if !self.screen.is_json() {
+            self.screen.note(&message);
+        }
+        Err(Stopped { failure: Failure { message, ..first.clone() }, envelope: None, told: true })
+    }
+}

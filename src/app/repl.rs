@@ -1,0 +1,240 @@
+//! `armctl repl`: command lines one after the other, over a link that stays open.
+//!
+//! At a terminal there is a prompt; a line that fails is told, and the next one may be typed. What comes from a pipe is a
+//! script: it ends at the first line that fails, with its exit code. A line is parsed and run exactly as a process of its
+//! own would be; only the flags of the REPL stand before its own.
+
+mod editor;
+mod prompt;
+mod terminal;
+
+use std::ffi::OsString;
+use std::io::IsTerminal as _;
+use std::sync::Arc;
+
+use tokio::io::{AsyncBufReadExt as _, BufReader};
+
+use self::editor::{Editor, Typed};
+use self::prompt::{Prompt, look};
+use self::terminal::Terminal;
+use super::batch::{self, refuse_repetition};
+use super::parser::Parser;
+use super::ready::{Need, Ready, Wanted, sources};
+use super::{refuse, screen, tell, words};
+use crate::cli::{Globals, Words};
+use crate::command::holding::{Holder, HolderThread};
+use crate::command::interrupt::{again, asked_to_end, catch_interrupts, interruptible};
+use crate::command::line::Line;
+use crate::command::run::{Stopped, begin_trace};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::settings::Robot;
+use crate::settings::target::Family;
+
+/// Whether somebody sits at a terminal who can type.
+pub fn can_type() -> bool {
+    std::io::stdin().is_terminal()
+}
+
+/// Nothing but the name of a family was typed where nobody can type: what its commands are.
+pub fn usage(screen: &Screen, prefix: &[String]) -> Stopped {
+    let args: Vec<OsString> = ["armctl"].into_iter().map(OsString::from).chain(family_help(prefix)).collect();
+    if let Err(help) = Parser::default().parse(&args) {
+        screen.usage(&help.render());
+    }
+    Stopped { told: true, ..Failure::usage("a command is missing").into() }
+}
+
+fn family_help(prefix: &[String]) -> impl Iterator<Item = OsString> {
+    prefix.iter().map(OsString::from).chain(["-h".into()])
+}
+
+/// Runs lines until somebody leaves, or the script ends.
+pub async fn run(globals: Globals, prefix: Vec<String>) -> Result<(), Stopped> {
+    refuse_repetition(&globals)?;
+    catch_interrupts();
+    let repl = Repl::new(globals, prefix)?;
+    begin_trace(repl.globals.trace.as_deref().filter(|_| !repl.globals.dry_run))?;
+    if can_type() { repl.converse().await } else { repl.script().await }
+}
+
+/// What all lines have in common.
+struct Repl {
+    globals: Globals,
+    screen: Screen,
+    /// Words before each line that is a command of the family.
+    prefix: Vec<String>,
+    /// Whom lines are for that name nobody, if that is one robot of a known family.
+    robot: Option<Robot>,
+    parser: Parser,
+}
+
+/// What becomes of the lines after one.
+enum Next {
+    /// The next one.
+    Line,
+    /// This one has failed, and that has been told.
+    Failed(Kind),
+    /// It wants to leave.
+    Leave,
+}
+
+impl Repl {
+    fn new(globals: Globals, mut prefix: Vec<String>) -> Result<Self, Failure> {
+        let family = prefix.first().and_then(|family| family.parse::<Family>().ok());
+        let sources = sources(globals.clone(), Need::Inventory, true)?;
+        let names_nobody = sources.selection.names_nobody() && sources.inventory.default.is_none();
+        let robots = if names_nobody { Vec::new() } else { sources.robots(family)? };
+        // A bare simulator is one of every family, until a line says of which.
+        let is_any = family.is_none() && sources.selection.sim;
+        let robot = match &robots[..] {
+            [robot] if !sources.selection.is_plural() && !is_any => Some(robot.clone()),
+            _ => None,
+        };
+        if let (true, Some(robot)) = (prefix.is_empty(), &robot) {
+            prefix.push(robot.family.name().to_owned());
+        }
+        Ok(Self { screen: screen(&globals), globals, prefix, robot, parser: Parser::default() })
+    }
+
+    /// Lines from a terminal.
+    async fn converse(mut self) -> Result<(), Stopped> {
+        let terminal = Terminal::save();
+        let (mut editor, say) = Editor::start(&self.screen, self.prefix.clone())?;
+        let (holder, thread) = Holder::start(say)?;
+        let outcome = self.prompt(&mut editor, &holder).await;
+        // The editor may still wait for a key.
+        terminal.restore();
+        thread.end().await;
+        outcome
+    }
+
+    async fn prompt(&mut self, editor: &mut Editor, holder: &Holder) -> Result<(), Stopped> {
+        if let Some(robot) = &self.robot
+            && !self.globals.dry_run
+        {
+            self.line(holder, "repl").hold(robot, self.globals.trace.as_deref(), &self.screen).await?;
+        }
+        self.screen.note("Tab completes, `help` lists the commands, `exit` or Ctrl-D leaves.");
+        loop {
+            let seen = match &self.robot {
+                Some(robot) if !self.globals.dry_run => look(robot, &self.line(holder, "repl"), &self.screen).await,
+                _ => None,
+            };
+            let prompt = Prompt::new(&self.prefix, self.robot.as_ref(), seen.as_ref(), self.screen.stdout_color());
+            let typed = tokio::select! {
+                typed = editor.read(prompt) => typed,
+                how = asked_to_end() => return Err(ended(how)),
+            };
+            let text = match typed {
+                Typed::Line(text) => text,
+                Typed::Interrupted => continue,
+                Typed::End => return Ok(()),
+                Typed::Failed(failure) => return Err(failure.into()),
+            };
+            // What is pasted may be several lines.
+            for line in text.lines() {
+                match Box::pin(self.run_line(line, None, holder)).await {
+                    Next::Line => {}
+                    Next::Failed(_) => break,
+                    Next::Leave => return Ok(()),
+                }
+            }
+            if let Some(how) = again() {
+                return Err(ended(how));
+            }
+        }
+    }
+
+    /// Lines from a pipe or a file, up to the first that fails.
+    async fn script(mut self) -> Result<(), Stopped> {
+        let screen = self.screen;
+        let (holder, thread): (Holder, HolderThread) = Holder::start(move |text| screen.note(text))?;
+        let outcome = self.lines(&holder).await;
+        thread.end().await;
+        outcome
+    }
+
+    async fn lines(&mut self, holder: &Holder) -> Result<(), Stopped> {
+        let mut lines = BufReader::new(tokio::io::stdin()).lines();
+        let mut number = 0;
+        loop {
+            let line = interruptible(lines.next_line()).await?.map_err(|error| Failure::io("stdin", &error))?;
+            let Some(line) = line else { return Ok(()) };
+            number += 1;
+            match Box::pin(self.run_line(&line, Some(number), holder)).await {
+                Next::Line => {}
+                Next::Failed(kind) => {
+                    let failure = Failure::new(kind, format!("stopped at line {number}"));
+                    return Err(Stopped { told: true, ..failure.into() });
+                }
+                Next::Leave => return Ok(()),
+            }
+        }
+    }
+
+    /// Runs a line, and tells if it fails; with its number, where nobody has just typed it.
+    async fn run_line(&mut self, text: &str, number: Option<usize>, holder: &Holder) -> Next {
+        let words = match words::split(text) {
+            Ok(words) => words,
+            Err(why) => return failed(&self.screen, number, Failure::usage(why).hint("in quotes, everything is itself").into()),
+        };
+        match &words[..] {
+            [] => return Next::Line,
+            [word] if matches!(word.as_str(), "exit" | "quit") => return Next::Leave,
+            _ => {}
+        }
+        let args = self.args(&words);
+        let Words { globals, command } = match self.parser.parse(&args) {
+            Ok(words) => words,
+            Err(error) => {
+                return refuse(&args, &error, self.screen.is_json()).map_or_else(Next::Failed, |()| Next::Line);
+            }
+        };
+        let globals = globals.within(&self.globals);
+        let screen = screen(&globals);
+        let line = self.line(holder, text);
+        let done = match command.into() {
+            Wanted::Work(work) => match Ready::new(globals, work, Some(line)) {
+                Ok(ready) => ready.go().await,
+                Err(failure) => Err(failure.into()),
+            },
+            Wanted::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
+            Wanted::Prompt(_) => Err(Failure::usage("this is the prompt already").hint("`exit` leaves it").into()),
+            Wanted::Bare(prefix) => Err(usage(&screen, &prefix)),
+        };
+        done.map_or_else(|stopped| failed(&screen, number, stopped), |()| Next::Line)
+    }
+
+    /// The command line that a line stands for: with the family before it, where it is a command of the family.
+    fn args(&mut self, words: &[String]) -> Vec<OsString> {
+        let program = || std::iter::once(OsString::from("armctl"));
+        if let [word] = words
+            && matches!(word.as_str(), "help" | "?" | "-h" | "--help")
+        {
+            return program().chain(family_help(&self.prefix)).collect();
+        }
+        let family = self.prefix.first().and_then(|family| family.parse::<Family>().ok());
+        // Flags may stand before the command. What is neither of the family nor of all is the family's to refuse.
+        let owner = words.iter().find_map(|word| self.parser.owner(word, family));
+        let prefix = self.prefix.iter().filter(|_| owner.unwrap_or(family) == family);
+        program().chain(prefix.chain(words).map(OsString::from)).collect()
+    }
+
+    fn line(&self, holder: &Holder, typed: &str) -> Line {
+        Line { typed: Arc::from(typed.trim()), holder: holder.clone(), origin: None, results: None }
+    }
+}
+
+fn failed(screen: &Screen, number: Option<usize>, stopped: Stopped) -> Next {
+    let Stopped { failure, envelope, told } = stopped;
+    let message = match number {
+        Some(number) if !screen.is_json() => format!("line {number}: {}", failure.message),
+        _ => failure.message,
+    };
+    Next::Failed(tell(screen, Stopped { failure: Failure { message, ..failure }, envelope, told }))
+}
+
+fn ended(how: &str) -> Stopped {
+    Failure::new(Kind::Interrupted, how).into()
+}

@@ -1,0 +1,173 @@
+//! The line editor, on a thread of its own: links and signals are attended to while somebody thinks about what to type.
+
+use std::borrow::Cow;
+use std::path::PathBuf;
+use std::sync::mpsc as blocking;
+use std::sync::{Mutex, PoisonError};
+
+use rustyline::completion::{Completer, Pair};
+use rustyline::config::{BellStyle, Behavior, CompletionType};
+use rustyline::error::ReadlineError;
+use rustyline::highlight::Highlighter;
+use rustyline::hint::{Hinter, HistoryHinter};
+use rustyline::history::FileHistory;
+use rustyline::validate::Validator;
+use rustyline::{ColorMode, Config, Context, ExternalPrinter as _, Helper};
+use tokio::sync::mpsc;
+
+use super::prompt::Prompt;
+use crate::command::local::state_folder;
+use crate::failure::Failure;
+use crate::output::{Screen, escape};
+
+/// Lines that are remembered.
+const REMEMBERED: usize = 2000;
+
+/// What somebody typed.
+#[derive(Debug)]
+pub enum Typed {
+    /// A line; pasted, it may be several.
+    Line(String),
+    /// Ctrl-C: not this line.
+    Interrupted,
+    /// Ctrl-D, or the terminal is gone.
+    End,
+    /// The terminal cannot be used.
+    Failed(Failure),
+}
+
+/// Reads lines from the terminal.
+#[derive(Debug)]
+pub struct Editor {
+    prompts: blocking::Sender<Prompt>,
+    typed: mpsc::UnboundedReceiver<Typed>,
+}
+
+type LineEditor = rustyline::Editor<Assistant, FileHistory>;
+
+impl Editor {
+    /// Takes the terminal. Also what tells something meanwhile, above the line that is being typed.
+    pub fn start(screen: &Screen, prefix: Vec<String>) -> Result<(Self, impl Fn(&str) + Send + Sync + 'static), Failure> {
+        let (prompts, asked) = blocking::channel();
+        let (answer, typed) = mpsc::unbounded_channel();
+        let mut editor = editor(screen, prefix).map_err(|error| unusable(&error))?;
+        let history = History::find(&mut editor, screen);
+        let printer = Mutex::new(editor.create_external_printer().ok());
+        let screen = *screen;
+        let say = move |text: &str| {
+            let mut printer = printer.lock().unwrap_or_else(PoisonError::into_inner);
+            let told = printer.as_mut().filter(|_| !screen.quiet).map(|to| to.print(format!("{}\n", escape::lines(text))));
+            if !matches!(told, Some(Ok(()))) {
+                screen.note(text);
+            }
+        };
+        let work = move || {
+            while let Ok(prompt) = asked.recv() {
+                let typed = read(&mut editor, &prompt, history.as_ref());
+                if answer.send(typed).is_err() {
+                    return;
+                }
+            }
+        };
+        let thread = std::thread::Builder::new().name("editor".to_owned()).spawn(work);
+        thread.map_err(|error| Failure::io("start", &error))?;
+        Ok((Self { prompts, typed }, say))
+    }
+
+    /// Reads a line.
+    pub async fn read(&mut self, prompt: Prompt) -> Typed {
+        if self.prompts.send(prompt).is_err() {
+            return Typed::End;
+        }
+        self.typed.recv().await.unwrap_or(Typed::End)
+    }
+}
+
+fn read(editor: &mut LineEditor, prompt: &Prompt, history: Option<&History>) -> Typed {
+    match editor.readline(&(&prompt.plain, &prompt.styled)) {
+        Ok(line) => {
+            // What cannot be remembered is not worth a word at every line.
+            let is_new = editor.add_history_entry(line.trim()).unwrap_or(false);
+            if let Some(history) = history.filter(|_| is_new) {
+                let _ = editor.append_history(&history.0);
+            }
+            Typed::Line(line)
+        }
+        Err(ReadlineError::Interrupted) => Typed::Interrupted,
+        Err(ReadlineError::Eof) => Typed::End,
+        Err(error) => Typed::Failed(unusable(&error)),
+    }
+}
+
+fn unusable(error: &ReadlineError) -> Failure {
+    Failure::local(format!("the terminal: {error}")).hint("lines can also come from a pipe: `armctl repl < FILE`")
+}
+
+fn editor(screen: &Screen, prefix: Vec<String>) -> rustyline::Result<LineEditor> {
+    let colour = screen.stdout_color();
+    let config = Config::builder()
+        .max_history_size(REMEMBERED)?
+        .history_ignore_space(true)
+        .completion_type(CompletionType::List)
+        .bell_style(BellStyle::None)
+        .color_mode(if colour { ColorMode::Enabled } else { ColorMode::Disabled })
+        // Prompts are no data: stdout may be a file.
+        .behavior(Behavior::PreferTerm)
+        .build();
+    let mut editor = LineEditor::with_config(config)?;
+    editor.set_helper(Some(Assistant { prefix, hinter: HistoryHinter::new(), colour }));
+    Ok(editor)
+}
+
+/// The file that remembers lines from one time to the next.
+struct History(PathBuf);
+
+impl History {
+    fn find(editor: &mut LineEditor, screen: &Screen) -> Option<Self> {
+        let folder = state_folder()?;
+        let path = folder.join("history");
+        let found = std::fs::create_dir_all(&folder).map_err(ReadlineError::Io).and_then(|()| match path.exists() {
+            true => editor.load_history(&path),
+            false => Ok(()),
+        });
+        if let Err(error) = found {
+            screen.detail(1, &format!("{}: {error}; lines are remembered until you leave", path.display()));
+            return None;
+        }
+        Some(Self(path))
+    }
+}
+
+/// Completion, hints and colours.
+struct Assistant {
+    prefix: Vec<String>,
+    hinter: HistoryHinter,
+    colour: bool,
+}
+
+impl Helper for Assistant {}
+
+impl Validator for Assistant {}
+
+impl Completer for Assistant {
+    type Candidate = Pair;
+
+    fn complete(&self, line: &str, at: usize, _: &Context<'_>) -> rustyline::Result<(usize, Vec<Pair>)> {
+        let _ = (&self.prefix, line);
+        Ok((at, Vec::new()))
+    }
+}
+
+impl Hinter for Assistant {
+    type Hint = String;
+
+    fn hint(&self, line: &str, at: usize, context: &Context<'_>) -> Option<String> {
+        self.hinter.hint(line, at, context)
+    }
+}
+
+impl Highlighter for Assistant {
+    fn highlight_hint<'h>(&self, hint: &'h str) -> Cow<'h, str> {
+        if self.colour { Cow::Owned(format!("\x1b[2m{hint}\x1b[0m")) } else { Cow::Borrowed(hint) }
+    }
+}

@@ -1,0 +1,86 @@
+//! What stands before the line: whom it is for, and how that one is.
+
+use std::time::Duration;
+
+use tokio::time::timeout;
+
+use crate::command::line::Line;
+use crate::command::overview::{self, OverviewReport};
+use crate::output::render::painted;
+use crate::output::view::{Cell, Tone};
+use crate::output::{Screen, escape};
+use crate::settings::Robot;
+
+/// The prompt waits no longer than this for a robot.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// How the robot is, asked over the link that is held; none if that cannot be told at once.
+pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Option<OverviewReport> {
+    let screen = screen.silenced();
+    timeout(PATIENCE, overview::look(robot, line, &screen)).await.ok()?.ok()
+}
+
+/// A prompt, and the same with colours; both are as wide on the screen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Prompt {
+    /// Without colours.
+    pub plain: String,
+    /// With colours.
+    pub styled: String,
+}
+
+impl Prompt {
+    /// `cell3 [servo on, ALARM] yerc> `.
+    pub fn new(prefix: &[String], robot: Option<&Robot>, seen: Option<&OverviewReport>, colour: bool) -> Self {
+        let shown = |colour: bool| {
+            let mut parts = Vec::new();
+            if let Some(robot) = robot {
+                let states: Vec<String> = states(robot, seen).iter().map(|state| painted(state, colour)).collect();
+                parts.push(escape::line(&robot.name).into_owned());
+                parts.extend((!states.is_empty()).then(|| format!("[{}]", states.join(", "))));
+            }
+            parts.push(if prefix.is_empty() { "armctl".to_owned() } else { prefix.join(" ") });
+            parts.join(" ") + "> "
+        };
+        Self { plain: shown(false), styled: shown(colour) }
+    }
+}
+
+/// What is worth knowing before anything is typed.
+fn states(robot: &Robot, seen: Option<&OverviewReport>) -> Vec<Cell> {
+    let simulated = robot.target.value.is_simulated().then(|| Cell::from("simulated"));
+    let Some(seen) = seen else {
+        return simulated.into_iter().chain([Cell::from("no answer").tone(Tone::Bad)]).collect();
+    };
+    let servo = seen.servo_on.map(|on| if on { Cell::from("servo on").tone(Tone::Good) } else { "servo off".into() });
+    let state = match (seen.held, seen.running) {
+        (Some(true), _) => Some(Cell::from("hold").tone(Tone::Warning)),
+        (_, Some(true)) => Some(Cell::from("running").tone(Tone::Good)),
+        _ => None,
+    };
+    let wrong = |word: &str, is_so: Option<bool>| is_so.filter(|is_so| *is_so).map(|_| Cell::from(word).tone(Tone::Bad));
+    [simulated, servo, state, wrong("ALARM", seen.alarm), wrong("ERROR", seen.error)].into_iter().flatten().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::target::Family;
+    use crate::settings::{Selection, Sources};
+
+    fn simulated() -> Robot {
+        let selection = Selection { sim: true, ..Selection::default() };
+        Sources { selection, ..Sources::default() }.robots(Some(Family::Yerc)).unwrap().remove(0)
+    }
+
+    #[test]
+    fn it_tells_whom_a_line_is_for_and_how_that_one_is() {
+        let yerc = ["yerc".to_owned()];
+        let seen = OverviewReport { servo_on: Some(true), alarm: Some(true), ..OverviewReport::default() };
+        let prompt = Prompt::new(&yerc, Some(&simulated()), Some(&seen), true);
+        assert_eq!(prompt.plain, "sim [simulated, servo on, ALARM] yerc> ");
+        assert_eq!(prompt.styled, "sim [simulated, \u{1b}[32mservo on\u{1b}[0m, \u{1b}[31mALARM\u{1b}[0m] yerc> ");
+        assert_eq!(Prompt::new(&yerc, Some(&simulated()), None, false).styled, "sim [simulated, no answer] yerc> ");
+        assert_eq!(Prompt::new(&[], None, None, true).plain, "armctl> ");
+    }
+}
