@@ -124,7 +124,11 @@ impl Repl {
             let prompt = Prompt::new(&self.prefix, self.robot.as_ref(), seen.as_ref(), self.screen.stdout_color());
             let typed = tokio::select! {
                 typed = editor.read(prompt) => typed,
-                how = asked_to_end() => return Err(ended(how)),
+                how = asked_to_end() => {
+                    // The cursor still stands behind what was being typed.
+                    self.screen.ask_note("");
+                    return Err(ended(how));
+                }
             };
             let text = match typed {
                 Typed::Line(text) => text,
@@ -134,7 +138,7 @@ impl Repl {
             };
             // What is pasted may be several lines.
             for line in text.lines() {
-                match Box::pin(self.run_line(line, None, holder)).await {
+                match Box::pin(self.run_line(line, holder)).await {
                     Next::Line => {}
                     Next::Failed(_) => break,
                     Next::Leave => return Ok(()),
@@ -162,10 +166,13 @@ impl Repl {
             let line = interruptible(lines.next_line()).await?.map_err(|error| Failure::io("stdin", &error))?;
             let Some(line) = line else { return Ok(()) };
             number += 1;
-            match Box::pin(self.run_line(&line, Some(number), holder)).await {
+            match Box::pin(self.run_line(&line, holder)).await {
                 Next::Line => {}
                 Next::Failed(kind) => {
                     let failure = Failure::new(kind, format!("stopped at line {number}"));
+                    if !self.screen.is_json() {
+                        self.screen.note(&failure.message);
+                    }
                     return Err(Stopped { told: true, ..failure.into() });
                 }
                 Next::Leave => return Ok(()),
@@ -173,11 +180,11 @@ impl Repl {
         }
     }
 
-    /// Runs a line, and tells if it fails; with its number, where nobody has just typed it.
-    async fn run_line(&mut self, text: &str, number: Option<usize>, holder: &Holder) -> Next {
+    /// Runs a line, and tells if it fails.
+    async fn run_line(&mut self, text: &str, holder: &Holder) -> Next {
         let words = match words::split(text) {
             Ok(words) => words,
-            Err(why) => return failed(&self.screen, number, Failure::usage(why).hint("in quotes, everything is itself").into()),
+            Err(why) => return failed(&self.screen, Failure::usage(why).hint("in quotes, everything is itself").into()),
         };
         match &words[..] {
             [] => return Next::Line,
@@ -203,7 +210,7 @@ impl Repl {
             Wanted::Prompt(_) => Err(Failure::usage("this is the prompt already").hint("`exit` leaves it").into()),
             Wanted::Bare(prefix) => Err(usage(&screen, &prefix)),
         };
-        done.map_or_else(|stopped| failed(&screen, number, stopped), |()| Next::Line)
+        done.map_or_else(|stopped| failed(&screen, stopped), |()| Next::Line)
     }
 
     /// The command line that a line stands for: with the family before it, where it is a command of the family.
@@ -226,13 +233,8 @@ impl Repl {
     }
 }
 
-fn failed(screen: &Screen, number: Option<usize>, stopped: Stopped) -> Next {
-    let Stopped { failure, envelope, told } = stopped;
-    let message = match number {
-        Some(number) if !screen.is_json() => format!("line {number}: {}", failure.message),
-        _ => failure.message,
-    };
-    Next::Failed(tell(screen, Stopped { failure: Failure { message, ..failure }, envelope, told }))
+fn failed(screen: &Screen, stopped: Stopped) -> Next {
+    Next::Failed(tell(screen, stopped))
 }
 
 fn ended(how: &str) -> Stopped {
