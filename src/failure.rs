@@ -63,11 +63,13 @@ pub struct Failure {
     pub kind: Kind,
     /// The controller's own code, such as `0x2060`.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "String")]
     pub code: Option<String>,
     /// What happened, in a sentence without a full stop.
     pub message: String,
     /// What to do.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "String")]
     pub hint: Option<String>,
 }
 

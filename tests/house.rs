@@ -1,5 +1,6 @@
 //! Holds the house in order: who may use whom, who may print, how long a file may get, and that generated files are
-//! current. A failure names file and line. `ARMCTL_BLESS=1 cargo test --test house` rewrites `completions/` and `man/`.
+//! current. A failure names file and line. `ARMCTL_BLESS=1 cargo test --test house` rewrites `completions/`, `man/` and
+//! `docs/schemas/`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -233,6 +234,25 @@ fn completions_are_current() {
 fn man_pages_are_current() {
     let pages = armctl::command::common::man::pages().expect("the man pages render");
     is_current("man", &pages.into_iter().collect());
+}
+
+#[test]
+fn schemas_are_current() {
+    let made = armctl::command::common::schema::all().into_iter().map(|entry| {
+        let text = serde_json::to_string_pretty(&(entry.schema)()).expect("a schema is JSON");
+        (format!("{}.json", entry.id), format!("{text}\n").into_bytes())
+    });
+    is_current("docs/schemas", &made.collect());
+}
+
+#[test]
+fn schemas_are_schemas() {
+    for entry in armctl::command::common::schema::all() {
+        let schema = (entry.schema)().to_value();
+        if let Err(why) = jsonschema::draft202012::meta::validate(&schema) {
+            panic!("{}: {why}", entry.id);
+        }
+    }
 }
 
 #[test]

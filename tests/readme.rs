@@ -2,13 +2,17 @@
 //!
 //! The blocks below one `##` heading are one shell session, in a folder of its own, with a home of its own and no
 //! `ARMCTL_…` variables. `...` on a line of its own stands for any lines, `[..]` for any text within a line. A command
-//! may only fail where the next one is `echo $?`. Sections that speak of `udp://127.0.0.1:10040`,
-//! `tcp://127.0.0.1:4001` or `eip://127.0.0.1:44818` get a simulator of their own, on ports that the system chooses.
+//! may only fail where the next one is `echo $?`, and its envelopes follow their schemas. Sections that speak of
+//! `udp://127.0.0.1:10040`, `tcp://127.0.0.1:4001` or `eip://127.0.0.1:44818` get a simulator of their own, on ports
+//! that the system chooses.
 //! TOML blocks that begin with `# NAME.toml` lie in the folders of that page's sessions as files of that name. Blocks
 //! marked `sh` are not run: installation, real controllers.
 //!
 //! `ARMCTL_BLESS=1 cargo test --test readme` writes what was printed into the blocks that differ.
 #![cfg(unix)]
+
+#[path = "support/schemas.rs"]
+mod schemas;
 
 use std::fmt::Write as _;
 use std::io::{BufRead as _, BufReader};
@@ -57,6 +61,8 @@ fn console_blocks_print_what_they_show() {
                     continue;
                 }
             };
+            let broken = printed.iter().flat_map(|printed| printed.lines()).filter_map(|line| promise(line).err());
+            wrong.extend(broken.map(|why| format!("{page}, {heading}: {why}")));
             for ((range, shown), printed) in blocks.into_iter().zip(shown).zip(printed).rev() {
                 let assert = snapbox::Assert::new().normalize_paths(false);
                 match assert.try_eq(Some(&page), printed.as_str().into_data(), shown.as_str().into_data()) {
@@ -71,6 +77,17 @@ fn console_blocks_print_what_they_show() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Whether a line that is an envelope, or several, is what the schemas promise.
+fn promise(line: &str) -> Result<(), String> {
+    let envelopes = match serde_json::from_str(line) {
+        Ok(serde_json::Value::Array(several)) => several,
+        Ok(one) => vec![one],
+        Err(_) => return Ok(()),
+    };
+    let mut envelopes = envelopes.iter().filter(|value| value.get("ok").is_some());
+    envelopes.try_for_each(|envelope| schemas::check(envelope).map_err(|why| format!("{why} in\n{line}")))
 }
 
 #[test]

@@ -624,7 +624,18 @@ enum Place<'a> {
 /// What a dry run reports.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Rehearsal {
-    /// What would be sent, in order: `{"hex":…}` (yerc), `{"wi":[…]}` and `{"bits":[…]}` (yrcx), `{"text":…}` (toyo).
+    /// What would be sent, in order: each under the key of its family, beside what it is about where that is known.
+    #[schemars(extend("items" = {
+        "type": "object",
+        "properties": {
+            "hex": {"description": "The bytes (yerc; messages to the board of a yrcx).", "type": "string"},
+            "wi": {"description": "The 16 command words (yrcx).", "type": "array", "items": {"type": "string"}},
+            "bits": {"description": "The words of bits (yrcx).", "type": "array", "items": {"type": "string"}},
+            "text": {"description": "The line (toyo).", "type": "string"},
+            "about": {"description": "What it is for.", "type": "string"}
+        },
+        "oneOf": [{"required": ["hex"]}, {"required": ["wi"]}, {"required": ["bits"]}, {"required": ["text"]}]
+    }))]
     pub frames: Vec<Value>,
 }
 

@@ -1,28 +1,39 @@
 //! The one envelope of every JSON answer.
 
 use jiff::Timestamp;
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 
 use crate::failure::Failure;
 use crate::settings::Robot;
 
+/// What `--json` prints of a robot:
 /// `{"robot":…,"family":…,"target":…,"simulated":…,"command":…,"ok":…,"data"|"error":…}`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(extend("allOf" = [
+    {"if": {"properties": {"ok": {"const": true}}}, "then": {"required": ["data"], "not": {"required": ["error"]}}},
+    {"if": {"properties": {"ok": {"const": false}}}, "then": {"required": ["error"]}},
+    {"if": {"properties": {"robot": {"type": "string"}}}, "then": {"required": ["family", "target", "simulated"]}}
+]))]
 pub struct Envelope {
     /// When the answer was complete; in `jsonl` only.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "String", extend("format" = "date-time"))]
     pub time: Option<Timestamp>,
     /// Name of the robot.
     pub robot: Option<String>,
     /// Its family.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "String")]
     pub family: Option<&'static str>,
     /// Its URL.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "String")]
     pub target: Option<String>,
     /// Whether nothing real was talked to.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "bool")]
     pub simulated: Option<bool>,
     /// `yerc.status` and the like.
     pub command: Option<String>,
@@ -30,14 +41,16 @@ pub struct Envelope {
     pub ok: bool,
     /// The report.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Value")]
     pub data: Option<Value>,
     /// Why there is none, or why it is not whole.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "ErrorBody")]
     pub error: Option<ErrorBody>,
 }
 
-/// `{"kind":"refused","exit":3,"code":"0x2060","message":…,"hint":…}`.
-#[derive(Debug, Clone, Serialize)]
+/// Why a command failed: `{"kind":"refused","exit":3,"code":"0x2060","message":…,"hint":…}`.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct ErrorBody {
     /// Exit code that the kind stands for.
     exit: u8,

@@ -1,9 +1,8 @@
 //! JSON of the transcripts: easy to read, without what differs from run to run, and as envelope and schema promise.
 
-use std::collections::BTreeMap;
-use std::sync::OnceLock;
-
 use serde_json::Value;
+
+use crate::schemas::check;
 
 /// Widest line of indented JSON.
 const WIDTH: usize = 100;
@@ -73,132 +72,54 @@ fn pretty(value: &Value, indent: usize) -> String {
     format!("{open}\n{inner}{}\n{}{close}", items.join(&format!(",\n{inner}")), " ".repeat(indent))
 }
 
-/// Keys of an envelope, in their order, and whether every envelope has them.
-const KEYS: [(&str, bool); 9] = [
-    ("time", false),
-    ("robot", true),
-    ("family", false),
-    ("target", false),
-    ("simulated", false),
-    ("command", true),
-    ("ok", true),
-    ("data", false),
-    ("error", false),
-];
-
-/// An envelope has the keys of the contract in their order, and data that follows the schema of its command.
-fn check(envelope: &Value) -> Result<(), String> {
-    let keys: Vec<&str> = envelope.as_object().into_iter().flatten().map(|(key, _)| key.as_str()).collect();
-    let expected: Vec<&str> =
-        KEYS.iter().filter(|(key, always)| *always || keys.contains(key)).map(|(key, _)| *key).collect();
-    if keys != expected {
-        return Err(format!("keys {keys:?}, not {expected:?}"));
-    }
-    let is_ok = envelope["ok"] == Value::Bool(true);
-    if is_ok == keys.contains(&"error") || (is_ok && !keys.contains(&"data")) {
-        return Err("ok, data and error contradict each other".into());
-    }
-    if envelope["robot"].is_string() && !(envelope["target"].is_string() && envelope["simulated"].is_boolean()) {
-        return Err("a robot without target".into());
-    }
-    if let Some(error) = envelope.get("error") {
-        let whole = error["exit"].is_u64() && error["kind"].is_string() && error["message"].is_string();
-        whole.then_some(()).ok_or("an error without exit, kind or message")?;
-    }
-    let (Some(data), Some(command)) = (envelope.get("data"), envelope["command"].as_str()) else { return Ok(()) };
-    let id = if data.get("frames").is_some() && command != "decode.yerc" { "dry-run" } else { command };
-    let schema = schemas().get(id).ok_or_else(|| format!("`armctl schema` does not know {id}"))?;
-    conforms(data, schema, schema, "data")
-}
-
-/// The schemas of all reports by command.
-fn schemas() -> &'static BTreeMap<&'static str, Value> {
-    static SCHEMAS: OnceLock<BTreeMap<&'static str, Value>> = OnceLock::new();
-    SCHEMAS.get_or_init(|| {
-        let all = armctl::command::common::schema::all();
-        all.into_iter().map(|entry| (entry.id, (entry.schema)().to_value())).collect()
-    })
-}
-
-/// Holds a value against the part of JSON Schema that our schemas use; objects have no field that the schema lacks.
-fn conforms(value: &Value, schema: &Value, root: &Value, path: &str) -> Result<(), String> {
-    if let Some(name) = schema.get("$ref").and_then(Value::as_str) {
-        let found = root.pointer(name.trim_start_matches('#')).ok_or_else(|| format!("{path}: {name} is missing"))?;
-        conforms(value, found, root, path)?;
-    }
-    if let Some(all) = schema.get("allOf").and_then(Value::as_array) {
-        all.iter().try_for_each(|one| conforms(value, one, root, path))?;
-    }
-    for key in ["anyOf", "oneOf"] {
-        let Some(ways) = schema.get(key).and_then(Value::as_array) else { continue };
-        let reasons: Vec<String> = ways.iter().filter_map(|way| conforms(value, way, root, path).err()).collect();
-        if reasons.len() == ways.len() {
-            return Err(reasons.join("; "));
-        }
-    }
-    if let Some(types) = schema.get("type") {
-        let one = std::slice::from_ref(types);
-        let types = types.as_array().map_or(one, Vec::as_slice);
-        if !types.iter().any(|name| is_of(value, name.as_str().unwrap_or_default())) {
-            return Err(format!("{path}: {value} is no {types:?}"));
-        }
-    }
-    if schema.get("const").is_some_and(|only| only != value) {
-        return Err(format!("{path}: {value} is not {}", schema["const"]));
-    }
-    if schema.get("enum").and_then(Value::as_array).is_some_and(|values| !values.contains(value)) {
-        return Err(format!("{path}: {value} is none of {}", schema["enum"]));
-    }
-    if let (Some(items), Value::Array(values)) = (schema.get("items"), value) {
-        for (index, value) in values.iter().enumerate() {
-            conforms(value, items, root, &format!("{path}[{index}]"))?;
-        }
-    }
-    let (Some(properties), Value::Object(fields)) = (schema.get("properties").and_then(Value::as_object), value) else {
-        return Ok(());
-    };
-    let required = schema.get("required").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str);
-    for name in required {
-        fields.contains_key(name).then_some(()).ok_or_else(|| format!("{path}: {name} is missing"))?;
-    }
-    // A flattened enum has its own fields beside these.
-    let is_open = ["anyOf", "oneOf", "allOf", "$ref"].iter().any(|key| schema.get(key).is_some());
-    for (name, value) in fields {
-        match properties.get(name) {
-            Some(schema) => conforms(value, schema, root, &format!("{path}.{name}"))?,
-            None if is_open => {}
-            None if schema.get("additionalProperties").is_some_and(Value::is_object) => {
-                conforms(value, &schema["additionalProperties"], root, &format!("{path}.{name}"))?;
-            }
-            None => return Err(format!("{path}: the schema does not know {name}")),
-        }
-    }
-    Ok(())
-}
-
-fn is_of(value: &Value, name: &str) -> bool {
-    match name {
-        "object" => value.is_object(),
-        "array" => value.is_array(),
-        "string" => value.is_string(),
-        "integer" => value.is_i64() || value.is_u64(),
-        "number" => value.is_number(),
-        "boolean" => value.is_boolean(),
-        "null" => value.is_null(),
-        _ => false,
-    }
-}
-
 #[test]
 fn what_breaks_a_promise_is_found() {
-    let envelope = |data: Value| serde_json::json!({"robot": null, "command": "sim.yerc", "ok": true, "data": data});
-    let right = serde_json::json!({"family": "yerc", "model": "fs100", "target": "udp://127.0.0.1"});
-    assert_eq!(check(&envelope(right.clone())), Ok(()));
-    for (name, value) in [("model", Value::Null), ("more", Value::from(1))] {
-        let mut wrong = right.clone();
-        wrong[name] = value;
-        assert!(check(&envelope(wrong)).is_err(), "{name}");
+    let whole = serde_json::json!({
+        "time": "2026-11-21T09:00:00Z", "robot": "cell3", "family": "yerc", "target": "sim:", "simulated": true,
+        "command": "sim.yerc", "ok": true, "data": {"family": "yerc", "model": "fs100", "target": "udp://127.0.0.1"},
+    });
+    assert_eq!(check(&whole), Ok(()));
+    let spoilt = |spoil: &dyn Fn(&mut Value)| {
+        let mut envelope = whole.clone();
+        spoil(&mut envelope);
+        envelope
+    };
+    let failed = spoilt(&|envelope| {
+        take(envelope, "data");
+        envelope["ok"] = false.into();
+        envelope["error"] = serde_json::json!({"exit": 3, "kind": "refused", "message": "no"});
+    });
+    assert_eq!(check(&failed), Ok(()));
+    let rehearsed = spoilt(&|envelope| envelope["data"] = serde_json::json!({"frames": [{"hex": "5945"}]}));
+    assert_eq!(check(&rehearsed), Ok(()));
+
+    let wrong: [(&str, &dyn Fn(&mut Value)); 11] = [
+        ("a key too many", &|envelope| envelope["more"] = 1.into()),
+        ("no command", &|envelope| take(envelope, "command")),
+        ("no data", &|envelope| take(envelope, "data")),
+        ("another order", &|envelope| {
+            let robot = envelope.as_object_mut().expect("an object").remove("robot").expect("a robot");
+            envelope["robot"] = robot;
+        }),
+        ("a robot nowhere", &|envelope| take(envelope, "target")),
+        ("done, and an error", &|envelope| envelope["error"] = failed["error"].clone()),
+        ("failed without a reason", &|envelope| envelope["ok"] = false.into()),
+        ("data of the wrong kind", &|envelope| envelope["data"]["model"] = Value::Null),
+        ("data too much", &|envelope| envelope["data"]["more"] = 1.into()),
+        ("data too little", &|envelope| take(&mut envelope["data"], "target")),
+        ("a frame of no family", &|envelope| envelope["data"] = serde_json::json!({"frames": [{"hax": "5945"}]})),
+    ];
+    for (what, spoil) in wrong {
+        assert!(check(&spoilt(spoil)).is_err(), "{what} is not found");
     }
-    assert!(check(&serde_json::json!({"robot": null, "command": "sim.yerc", "ok": false})).is_err());
-    assert!(check(&serde_json::json!({"command": "sim.yerc", "robot": null, "ok": true, "data": right})).is_err());
+    for (key, value) in [("exit", Value::from(4)), ("kind", "no_such_kind".into()), ("message", Value::Null)] {
+        let mut envelope = failed.clone();
+        envelope["error"][key] = value;
+        assert!(check(&envelope).is_err(), "a wrong {key} of an error is not found");
+    }
+}
+
+fn take(value: &mut Value, key: &str) {
+    // The order of the rest stays.
+    value.as_object_mut().expect("an object").shift_remove(key).expect("it is there");
 }

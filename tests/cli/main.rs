@@ -6,6 +6,8 @@
 
 mod exits;
 mod json;
+#[path = "../support/schemas.rs"]
+mod schemas;
 mod transcript;
 
 use std::collections::BTreeSet;

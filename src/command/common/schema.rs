@@ -10,9 +10,13 @@ use crate::command::yerc::{self, Yerc};
 use crate::command::yrcx::{self, Yrcx};
 use crate::command::{Noun, SchemaEntry};
 use crate::failure::Failure;
+use crate::output::envelope::{Envelope, ErrorBody};
 use crate::settings::inventory::nearest;
 
 /// Prints the schema of `data` in the envelope, or the names of all reports.
+///
+/// Beside those of the commands there are `envelope`, what `--json` prints around them; `failure`, its `error`; and
+/// `dry-run`, the data of every command under --dry-run.
 #[derive(Debug, Args)]
 pub struct SchemaOf {
     /// The command, such as yerc.status; without it, all names
@@ -37,7 +41,7 @@ impl SchemaOf {
     }
 }
 
-/// The schemas of all reports.
+/// The schemas of all reports, of the envelope and of what it holds when there is none.
 pub fn all() -> Vec<SchemaEntry> {
     let mut all = <Yerc as Noun<yerc::Family>>::schemas();
     all.extend(<Yrcx as Noun<yrcx::Family>>::schemas());
@@ -51,9 +55,11 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<super::decode::yrcx::Explained>("decode.yrcx"),
         SchemaEntry::of::<super::decode::capture::Capture<super::decode::yrcx::FieldRow>>("decode.yrcx.capture"),
         SchemaEntry::of::<Rehearsal>("dry-run"),
+        SchemaEntry::of::<Envelope>("envelope"),
         SchemaEntry::of::<super::explain::ToyoCode>("explain.toyo"),
         SchemaEntry::of::<super::explain::Codes>("explain.yerc"),
         SchemaEntry::of::<super::explain::YrcxAlarm>("explain.yrcx"),
+        SchemaEntry::of::<ErrorBody>("failure"),
         SchemaEntry::of::<super::robots::Changed>("robots.add"),
         SchemaEntry::of::<super::robots::check::CheckReport>("robots.check"),
         SchemaEntry::of::<super::robots::discover::Discovered>("robots.discover"),

@@ -1,0 +1,78 @@
+//! Holds JSON documents against the schemas that `armctl schema` prints, with a validator that others wrote.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
+
+use armctl::failure::Kind;
+use jsonschema::Validator;
+use serde_json::Value;
+
+/// What an envelope promises: its own schema, its keys in the order of the contract, an exit code that is that of its
+/// kind, and data that follows the schema of its command, or that of a dry run.
+pub fn check(envelope: &Value) -> Result<(), String> {
+    follows(envelope, "envelope")?;
+    let schema = schema("envelope")?;
+    let known = schema["properties"].as_object().into_iter().flatten().map(|(key, _)| key);
+    let in_order: Vec<&String> = known.filter(|key| envelope.get(key.as_str()).is_some()).collect();
+    let keys: Vec<&String> = envelope.as_object().into_iter().flatten().map(|(key, _)| key).collect();
+    if keys != in_order {
+        return Err(format!("keys {keys:?}, not {in_order:?}"));
+    }
+    if let Some(error) = envelope.get("error") {
+        let kind: Kind = serde_json::from_value(error["kind"].clone()).map_err(|error| error.to_string())?;
+        if error["exit"] != kind.exit() {
+            return Err(format!("exit {} is not that of {kind:?}", error["exit"]));
+        }
+    }
+    let (Some(data), Some(command)) = (envelope.get("data"), envelope["command"].as_str()) else { return Ok(()) };
+    let is_rehearsal = data.get("frames").is_some() && !command.starts_with("decode.");
+    follows(data, if is_rehearsal { "dry-run" } else { command })
+}
+
+/// Whether a value follows the schema of this name, and has no field that it does not know.
+fn follows(value: &Value, id: &str) -> Result<(), String> {
+    let wrong: Vec<String> =
+        validator(id)?.iter_errors(value).map(|error| format!("{}: {error}", error.instance_path())).collect();
+    if wrong.is_empty() { Ok(()) } else { Err(format!("not as the schema of {id} says: {}", wrong.join("; "))) }
+}
+
+/// The validator of a schema, made once: there are many schemas, and a transcript needs a few.
+fn validator(id: &str) -> Result<Arc<Validator>, String> {
+    static MADE: Mutex<Option<HashMap<String, Arc<Validator>>>> = Mutex::new(None);
+    let mut made = MADE.lock().expect("nobody panics with it");
+    let made = made.get_or_insert_default();
+    if let Some(validator) = made.get(id) {
+        return Ok(Arc::clone(validator));
+    }
+    let mut schema = schema(id)?;
+    close(&mut schema);
+    let validator = jsonschema::draft202012::new(&schema).map_err(|error| format!("the schema of {id}: {error}"))?;
+    Ok(Arc::clone(made.entry(id.to_owned()).or_insert(Arc::new(validator))))
+}
+
+fn schema(id: &str) -> Result<Value, String> {
+    let entry = armctl::command::common::schema::all().into_iter().find(|entry| entry.id == id);
+    Ok((entry.ok_or_else(|| format!("`armctl schema` does not know {id}"))?.schema)().to_value())
+}
+
+/// A schema leaves room for fields to come; what is written today must have none that it does not name.
+fn close(schema: &mut Value) {
+    match schema {
+        Value::Object(keys) => {
+            let is_object = keys.get("properties").is_some_and(Value::is_object);
+            if is_object && !keys.contains_key("additionalProperties") {
+                keys.insert("unevaluatedProperties".into(), false.into());
+            }
+            for (key, inner) in keys {
+                // Conditions and the ways of a flattened enum name some of the fields; the rest stand beside them.
+                let is_part = matches!(key.as_str(), "if" | "then" | "else" | "not" | "allOf");
+                let is_way = is_object && matches!(key.as_str(), "anyOf" | "oneOf");
+                if !(is_part || is_way) {
+                    close(inner);
+                }
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(close),
+        _ => {}
+    }
+}
