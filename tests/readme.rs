@@ -79,6 +79,64 @@ fn console_blocks_print_what_they_show() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+#[test]
+fn recipes_work_with_jq_itself() {
+    const PAGE: &str = "docs/scripting.md";
+    if Command::new("jq").arg("--version").stdout(Stdio::null()).status().is_err() {
+        // `.ci/run` installs it; elsewhere the recipes run with --jq alone.
+        return;
+    }
+    let text = std::fs::read_to_string(root().join(PAGE)).expect("the page is there");
+    let files = files(&text);
+    let mut recipes = 0;
+    for section in sections(&text) {
+        let section = &text[section];
+        let typed = blocks(section, "console").into_iter().map(|block| section[block].to_owned());
+        let with_jq: Vec<String> = typed
+            .clone()
+            .map(|block| {
+                let (block, found) = piped(&block);
+                recipes += found;
+                block
+            })
+            .collect();
+        let ours: Vec<String> = typed.collect();
+        let outputs = |blocks| run(blocks, &files).map(|pages| pages.iter().map(|page| printed(page)).collect());
+        let (ours, theirs): (Result<Vec<_>, _>, Result<Vec<_>, _>) = (outputs(&ours), outputs(&with_jq));
+        assert_eq!(theirs, ours, "{PAGE}, {}", section.lines().next().unwrap_or_default());
+    }
+    assert!(recipes > 10, "{PAGE} has only {recipes} recipes");
+}
+
+/// A block with `--json | jq -rc FILTER` wherever it has `--jq FILTER`, and how often that is.
+fn piped(block: &str) -> (String, usize) {
+    let mut parts = block.split(" --jq ");
+    let mut made = parts.next().unwrap_or_default().to_owned();
+    let mut found = 0;
+    for part in parts {
+        // Where the filter is quoted it ends with its quote, else with the word.
+        let end = match part.strip_prefix('\'') {
+            Some(quoted) => quoted.find('\'').map(|end| end + 2),
+            None => part.find(|c: char| c.is_whitespace() || c == ')'),
+        };
+        let (filter, rest) = part.split_at(end.unwrap_or(part.len()));
+        write!(made, " --json | jq -rc {filter}{rest}").expect("strings take text");
+        found += 1;
+    }
+    (made, found)
+}
+
+/// What the commands of a page printed, with numbers as every jq writes them, and without times.
+fn printed(page: &str) -> String {
+    let lines = page.lines().filter(|line| !line.starts_with("$ ") && !line.starts_with("> "));
+    let mut printed: String = lines.flat_map(|line| [line, "\n"]).collect();
+    for end in [",", " ", "\n"] {
+        printed = printed.replace(&format!(".0{end}"), end);
+    }
+    let untimed = printed.lines().map(|line| line.split_once("Z\",").map_or(line, |(_, rest)| rest));
+    untimed.flat_map(|line| [line, "\n"]).collect()
+}
+
 /// Whether a line that is an envelope, or several, is what the schemas promise.
 fn promise(line: &str) -> Result<(), String> {
     let envelopes = match serde_json::from_str(line) {

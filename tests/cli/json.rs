@@ -79,7 +79,8 @@ fn what_breaks_a_promise_is_found() {
         "command": "sim.yerc", "ok": true, "data": {"family": "yerc", "model": "fs100", "target": "udp://127.0.0.1"},
     });
     assert_eq!(check(&whole), Ok(()));
-    let spoilt = |spoil: &dyn Fn(&mut Value)| {
+    type Spoil<'a> = &'a dyn Fn(&mut Value);
+    let spoilt = |spoil: Spoil<'_>| {
         let mut envelope = whole.clone();
         spoil(&mut envelope);
         envelope
@@ -93,7 +94,7 @@ fn what_breaks_a_promise_is_found() {
     let rehearsed = spoilt(&|envelope| envelope["data"] = serde_json::json!({"frames": [{"hex": "5945"}]}));
     assert_eq!(check(&rehearsed), Ok(()));
 
-    let wrong: [(&str, &dyn Fn(&mut Value)); 11] = [
+    let wrong: [(&str, Spoil<'_>); 11] = [
         ("a key too many", &|envelope| envelope["more"] = 1.into()),
         ("no command", &|envelope| take(envelope, "command")),
         ("no data", &|envelope| take(envelope, "data")),
