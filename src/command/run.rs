@@ -89,8 +89,9 @@ impl Stopped {
 
 /// Pause between runs where only a condition or a count is given.
 const EVERY: Duration = Duration::from_secs(1);
-/// Robots talked to at the same time.
-const PARALLEL: usize = 64;
+/// Robots talked to at the same time: enough that a plant of which half is switched off takes one wait for an answer, and
+/// no more than the files that a process may have open where that is least, 256.
+const PARALLEL: usize = 128;
 
 impl Run {
     /// Runs `command` on the robots it is for, and reports.
@@ -282,14 +283,12 @@ impl Run {
 
     /// Runs on several robots at a time, over a connection each, and reports in the order they were named.
     async fn many<F: Family>(&self, command: &dyn AnyCommand<F>, robots: &[Robot]) -> Result<(), Stopped> {
-        if self.gate.dry_run {
-            let rehearsals = stream::iter(robots).map(|robot| self.once(command, robot)).buffered(PARALLEL);
-            let outcomes: Vec<Outcome> = rehearsals.collect().await;
+        if self.gate.dry_run || !self.repeat.is_wanted() {
+            let outcomes = at_a_time(robots.iter().map(|robot| self.once(command, robot))).await;
             self.print_many(command.id(), robots, &outcomes, Place::First)?;
             return self.verdict(&outcomes);
         }
-        let connected = stream::iter(robots).map(|robot| self.connect(command, robot)).buffered(PARALLEL);
-        let mut links: Vec<Result<F::Link, Failure>> = connected.collect().await;
+        let mut links = at_a_time(robots.iter().map(|robot| self.connect(command, robot))).await;
         let verdict = self.many_over(command, robots, &mut links).await;
         let mut closed = Ok(());
         for link in links.into_iter().flatten() {
@@ -307,18 +306,15 @@ impl Run {
     ) -> Result<(), Stopped> {
         let mut rounds = Rounds::new(&self.repeat, EVERY);
         loop {
-            let attempts = stream::iter(robots.iter().zip(&mut *links)).map(|(robot, link)| async move {
+            let attempts = robots.iter().zip(&mut *links).map(|(robot, link)| async move {
                 match link {
                     Ok(link) => self.attempt(command, robot, link).await,
                     Err(failure) => Err(failure.clone()),
                 }
             });
-            let outcomes: Vec<Outcome> = attempts.buffered(PARALLEL).collect().await;
+            let outcomes = at_a_time(attempts).await;
             let place = if rounds.is_first() { Place::First } else { Place::Next };
             let envelopes = self.print_many(command.id(), robots, &outcomes, place)?;
-            if !self.repeat.is_wanted() {
-                return self.verdict(&outcomes);
-            }
             if rounds.is_met(&envelopes)? {
                 return Ok(());
             }
@@ -658,6 +654,15 @@ impl Report for Rehearsal {
     }
 }
 
+/// Does the work of all robots, of so many at the same time, and gives what came of it in their order. One that waits long
+/// holds up nobody but itself.
+async fn at_a_time<T>(work: impl Iterator<Item = impl Future<Output = T>>) -> Vec<T> {
+    let numbered = work.enumerate().map(|(number, work)| async move { (number, work.await) });
+    let mut done: Vec<(usize, T)> = stream::iter(numbered).buffer_unordered(PARALLEL).collect().await;
+    done.sort_unstable_by_key(|(number, _)| *number);
+    done.into_iter().map(|(_, came)| came).collect()
+}
+
 fn enveloped(robot: &Robot, id: &str, outcome: Result<&dyn AnyReport, Failure>) -> Result<Envelope, Failure> {
     let report = match outcome {
         Err(failure) => return Ok(Envelope::of(robot, id, Err(failure))),
@@ -674,4 +679,23 @@ fn timed(envelope: Envelope) -> Envelope {
 
 fn as_value(value: &impl Serialize) -> Result<Value, Failure> {
     serde_json::to_value(value).map_err(|error| Failure::local(format!("report as JSON: {error}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test(start_paused = true)]
+    async fn a_fleet_takes_as_long_as_its_slowest() {
+        // As many as half a plant that is switched off do not answer, here and there among the others.
+        let silent = |robot: usize| robot.is_multiple_of(2);
+        let ask = |robot| async move {
+            tokio::time::sleep(Duration::from_millis(if silent(robot) { 2000 } else { 10 })).await;
+            robot
+        };
+        let start = Instant::now();
+        let robots = at_a_time((0..200).map(ask)).await;
+        assert!(robots.is_sorted() && robots.len() == 200);
+        assert!(start.elapsed() < Duration::from_millis(2100), "{:?}", start.elapsed());
+    }
 }

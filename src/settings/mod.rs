@@ -264,11 +264,11 @@ impl Sources {
             chosen = self.inventory.robots.iter().collect();
         }
         chosen.retain(|robot| selection.tags.iter().all(|tag| robot.tags.contains(tag)));
-        // A family's command over a mixed fleet is for its own robots.
+        // A family's command over a mixed fleet is for its own robots; that one was named in vain is an error below.
         if selection.is_plural()
             && let Some(family) = family
         {
-            chosen.retain(|robot| robot.family == family);
+            chosen.retain(|robot| robot.family == family || selection.robots.contains(&robot.name));
         }
         if chosen.is_empty() {
             return Err(

@@ -33,6 +33,7 @@ transcripts! {
     exit_codes
     explain
     files
+    fleets
     help
     information
     jobs

@@ -9,8 +9,8 @@
 //!
 //! JSON stands indented; that it came as a single line, in the envelope and as the schema says, is checked here. What
 //! differs from run to run stands as `[…]`. `udp://127.0.0.1:10040` is a yerc simulator of the transcript's own,
-//! `eip://127.0.0.1:44818` a yrcx one and `tcp://127.0.0.1:4001` a toyo one, elsewhere in truth; its start state is `NAME.toml` beside `NAME.console`, if there
-//! is one. What is in `files/` lies in the folder.
+//! `eip://127.0.0.1:44818` a yrcx one and `tcp://127.0.0.1:4001` a toyo one, elsewhere in truth; its start state is
+//! `NAME.toml` beside `NAME.console`, if there is one. What is in `files/` lies in the folder.
 
 use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
@@ -29,11 +29,13 @@ pub fn check(name: &str) {
     let path = folder().join(format!("{name}.console"));
     let text = std::fs::read_to_string(&path).expect("the transcript is there");
     let desk = Desk::new();
-    let family = DOCUMENTED.iter().find(|(_, target)| text.contains(target)).map(|(family, _)| *family);
-    let simulator = family.map(|family| {
-        let state = folder().join(format!("{name}.toml"));
-        Simulator::start(family, state.exists().then_some(state.as_path()))
-    });
+    let families = DOCUMENTED.iter().filter(|(_, target)| text.contains(target));
+    let simulators: Vec<Simulator> = families
+        .map(|(family, _)| {
+            let state = folder().join(format!("{name}.toml"));
+            Simulator::start(family, state.exists().then_some(state.as_path()))
+        })
+        .collect();
     let mut printed = String::new();
     for line in text.lines() {
         if line.starts_with("## ") {
@@ -45,7 +47,7 @@ pub fn check(name: &str) {
             if !printed.is_empty() && !printed.lines().last().is_some_and(|last| last.starts_with("## ")) {
                 printed.push('\n');
             }
-            printed.push_str(&format!("{line}\n{}", desk.typed(command, simulator.as_ref())));
+            printed.push_str(&format!("{line}\n{}", desk.typed(command, &simulators)));
         }
     }
     let expected = snapbox::Data::read_from(&path, Some(snapbox::data::DataFormat::Text)).raw();
@@ -117,12 +119,12 @@ impl Desk {
     }
 
     /// What stands in the transcript after a command.
-    fn typed(&self, line: &str, simulator: Option<&Simulator>) -> String {
-        let reached = simulator.map_or_else(|| line.to_owned(), |simulator| simulator.reached(line));
+    fn typed(&self, line: &str, simulators: &[Simulator]) -> String {
+        let reached = simulators.iter().fold(line.to_owned(), |line, simulator| simulator.reached(&line));
         let output = self.command("sh").args(["-c", &reached]).output().expect("sh runs");
         let shown = |bytes: Vec<u8>| {
             let text = String::from_utf8(bytes).expect("what is shown is UTF-8");
-            let text = simulator.map_or_else(|| text.clone(), |simulator| simulator.documented(&text));
+            let text = simulators.iter().fold(text, |text, simulator| simulator.documented(&text));
             text.replace(&self.path().display().to_string(), "[FOLDER]")
         };
         let stdout = shown(output.stdout);
