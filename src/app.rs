@@ -1,6 +1,7 @@
 //! From the words of a command line to an exit code.
 
 mod batch;
+mod complete;
 mod parser;
 mod ready;
 mod repl;

@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::command::common::batch::Batch;
 use crate::command::common::repl::Repl;
-use crate::command::{common, toyo, yerc, yrcx};
+use crate::command::{ValueKind, common, toyo, yerc, yrcx};
 use crate::controller::text::Encoding;
 use crate::gate::OnInterrupt;
 use crate::output::{ColorChoice, Format};
@@ -118,16 +118,16 @@ pub struct Globals {
     #[arg(long, global = true, help_heading = "Which robot", conflicts_with_all = ["target", "robot", "all", "tag"])]
     pub sim: bool,
     /// Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)
-    #[arg(short, long, global = true, value_name = "URL", help_heading = "Which robot", conflicts_with_all = ["robot", "all", "tag"])]
+    #[arg(short, long, global = true, value_name = "URL", add = ValueKind::Url, help_heading = "Which robot", conflicts_with_all = ["robot", "all", "tag"])]
     pub target: Option<Target>,
     /// Talk to a robot of the inventory, by name or pattern (repeatable)
-    #[arg(short, long, global = true, value_name = "NAME", help_heading = "Which robot")]
+    #[arg(short, long, global = true, value_name = "NAME", add = ValueKind::Robot, help_heading = "Which robot")]
     pub robot: Vec<String>,
     /// Talk to every robot of the inventory
     #[arg(long, global = true, hide_short_help = true, help_heading = "Which robot")]
     pub all: bool,
     /// Talk to the robots of the inventory with this tag (repeatable)
-    #[arg(long, global = true, hide_short_help = true, value_name = "TAG", help_heading = "Which robot")]
+    #[arg(long, global = true, hide_short_help = true, value_name = "TAG", add = ValueKind::Tag, help_heading = "Which robot")]
     pub tag: Vec<String>,
     /// The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)
     #[arg(long, global = true, hide_short_help = true, value_name = "FILE", help_heading = "Which robot")]
@@ -218,7 +218,8 @@ impl Globals {
     /// said of it: a robot, a format, how much to tell.
     #[must_use]
     pub fn within(self, all: &Self) -> Self {
-        let names_robot = self.sim || self.target.is_some() || !self.robot.is_empty() || self.all || !self.tag.is_empty();
+        let names_robot =
+            self.sim || self.target.is_some() || !self.robot.is_empty() || self.all || !self.tag.is_empty();
         let says_format = self.format.is_some() || self.json || self.jq.is_some();
         let says_how_much = self.quiet || self.verbose > 0;
         let (robot, format, how_much) = (

@@ -65,9 +65,8 @@ fn read(path: &Path) -> Result<String, Failure> {
         std::fs::read(path)
     };
     let bytes = bytes.map_err(|error| Failure::io(path.display(), &error))?;
-    let text = String::from_utf8(bytes).map_err(|_| {
-        Failure::usage(format!("{}: this is not UTF-8", path.display())).hint("save the file as UTF-8")
-    })?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| Failure::usage(format!("{}: this is not UTF-8", path.display())).hint("save the file as UTF-8"))?;
     Ok(text.strip_prefix('\u{FEFF}').map_or_else(|| text.clone(), ToOwned::to_owned))
 }
 

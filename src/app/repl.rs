@@ -184,7 +184,9 @@ impl Repl {
     async fn run_line(&mut self, text: &str, holder: &Holder) -> Next {
         let words = match words::split(text) {
             Ok(words) => words,
-            Err(why) => return failed(&self.screen, Failure::usage(why).hint("in quotes, everything is itself").into()),
+            Err(why) => {
+                return failed(&self.screen, Failure::usage(why).hint("in quotes, everything is itself").into());
+            }
         };
         match &words[..] {
             [] => return Next::Line,

@@ -217,9 +217,8 @@ async fn hold(
         move |text: &str| say(&format!("{label}: {text}"))
     };
     let is_held = held.borrow().contains(&key);
-    let attempt = async {
-        if is_held { Ok(None) } else { Holding::open(&robot, &access, &screen, tell).await.map(Some) }
-    };
+    let attempt =
+        async { if is_held { Ok(None) } else { Holding::open(&robot, &access, &screen, tell).await.map(Some) } };
     let attempt = tokio::select! {
         attempt = attempt => attempt,
         () = done.closed() => return,

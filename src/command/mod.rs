@@ -9,6 +9,7 @@ pub mod checks;
 pub mod common;
 pub mod holding;
 pub mod interrupt;
+mod kind;
 pub mod line;
 pub mod local;
 pub mod manifest;
@@ -23,6 +24,8 @@ pub mod yrcx;
 use std::future::Future;
 use std::pin::Pin;
 use std::sync::Arc;
+
+pub use kind::ValueKind;
 
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};

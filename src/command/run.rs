@@ -141,9 +141,9 @@ impl Run {
             return Ok(());
         }
         let (risk, demand, intent) = (command.risk(), command.demand(), command.intent());
-        self.chosen(command)?.iter().try_for_each(|robot| {
-            self.gate.must_ask(&self.screen, robot, risk, &demand, &intent).map(|_| ())
-        })
+        self.chosen(command)?
+            .iter()
+            .try_for_each(|robot| self.gate.must_ask(&self.screen, robot, risk, &demand, &intent).map(|_| ()))
     }
 
     /// Passes the gate. A question waits for its answer on a thread of its own, so that Ctrl-C is heard meanwhile.
@@ -444,7 +444,13 @@ impl Run {
         robot: &Robot,
         screen: &Screen,
     ) -> Result<Vec<Value>, Failure> {
-        let access = Access { granted: command.risk(), dry_run: true, trace: self.trace.clone(), need: command.need(), typed: None };
+        let access = Access {
+            granted: command.risk(),
+            dry_run: true,
+            trace: self.trace.clone(),
+            need: command.need(),
+            typed: None,
+        };
         let mut link = F::connect(robot, access, screen).await?;
         let noted = {
             let several = self.sources.selection.is_plural();

@@ -6,7 +6,7 @@ use std::sync::mpsc as blocking;
 use std::sync::{Mutex, PoisonError};
 
 use rustyline::completion::{Completer, Pair};
-use rustyline::config::{BellStyle, Behavior, CompletionType};
+use rustyline::config::{Behavior, BellStyle, CompletionType};
 use rustyline::error::ReadlineError;
 use rustyline::highlight::Highlighter;
 use rustyline::hint::{Hinter, HistoryHinter};
@@ -47,7 +47,10 @@ type LineEditor = rustyline::Editor<Assistant, FileHistory>;
 
 impl Editor {
     /// Takes the terminal. Also what tells something meanwhile, above the line that is being typed.
-    pub fn start(screen: &Screen, prefix: Vec<String>) -> Result<(Self, impl Fn(&str) + Send + Sync + 'static), Failure> {
+    pub fn start(
+        screen: &Screen,
+        prefix: Vec<String>,
+    ) -> Result<(Self, impl Fn(&str) + Send + Sync + 'static), Failure> {
         let (prompts, asked) = blocking::channel();
         let (answer, typed) = mpsc::unbounded_channel();
         let mut editor = editor(screen, prefix).map_err(|error| unusable(&error))?;
@@ -56,7 +59,8 @@ impl Editor {
         let screen = *screen;
         let say = move |text: &str| {
             let mut printer = printer.lock().unwrap_or_else(PoisonError::into_inner);
-            let told = printer.as_mut().filter(|_| !screen.quiet).map(|to| to.print(format!("{}\n", escape::lines(text))));
+            let told =
+                printer.as_mut().filter(|_| !screen.quiet).map(|to| to.print(format!("{}\n", escape::lines(text))));
             if !matches!(told, Some(Ok(()))) {
                 screen.note(text);
             }

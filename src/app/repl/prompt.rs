@@ -58,7 +58,8 @@ fn states(robot: &Robot, seen: Option<&OverviewReport>) -> Vec<Cell> {
         (_, Some(true)) => Some(Cell::from("running").tone(Tone::Good)),
         _ => None,
     };
-    let wrong = |word: &str, is_so: Option<bool>| is_so.filter(|is_so| *is_so).map(|_| Cell::from(word).tone(Tone::Bad));
+    let wrong =
+        |word: &str, is_so: Option<bool>| is_so.filter(|is_so| *is_so).map(|_| Cell::from(word).tone(Tone::Bad));
     [simulated, servo, state, wrong("ALARM", seen.alarm), wrong("ERROR", seen.error)].into_iter().flatten().collect()
 }
 

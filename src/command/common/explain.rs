@@ -5,12 +5,14 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
+use crate::command::ValueKind;
 use crate::command::run::{Run, Stopped};
 use crate::controller::toyo::errors;
 use crate::controller::yerc::status;
 use crate::controller::yrcx::alarm::Alarm;
 use crate::failure::Failure;
 use crate::output::view::{Section, View};
+use crate::settings::target::Family;
 
 /// Families whose codes are known.
 #[derive(Debug, Subcommand)]
@@ -18,18 +20,19 @@ pub enum Explain {
     /// A status code (one byte) or added status code (two bytes) of an FS100 or DX200
     Yerc {
         /// The code in hexadecimal, as in 0x2060, 2060 or 1F
+        #[arg(add = ValueKind::Code(Family::Yerc))]
         code: String,
     },
     /// An alarm of a YRCX
     Yrcx {
         /// Group and category, as in 12.600
-        #[arg(value_parser = alarm)]
+        #[arg(value_parser = alarm, add = ValueKind::Code(Family::Yrcx))]
         code: Alarm,
     },
     /// An error code of a Toyo controller
     Toyo {
         /// The code in hexadecimal, as in 28 or 0xA1
-        #[arg(value_parser = toyo_code)]
+        #[arg(value_parser = toyo_code, add = ValueKind::Code(Family::Toyo))]
         code: u8,
     },
 }

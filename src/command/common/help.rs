@@ -3,6 +3,7 @@
 use clap::{Args, CommandFactory as _};
 
 use crate::cli::Cli;
+use crate::command::ValueKind;
 use crate::command::run::Run;
 use crate::controller::{toyo, yerc, yrcx};
 use crate::failure::{Failure, Kind};
@@ -13,6 +14,7 @@ use crate::settings::inventory::nearest;
 pub struct Help {
     /// A topic (exit-codes, targets, inventory, output, safety, scripting, sessions, simulator,
     /// toyo-setup, yerc-setup, yrcx-setup), or a command
+    #[arg(add = ValueKind::HelpWord)]
     words: Vec<String>,
 }
 
@@ -42,6 +44,12 @@ impl Help {
     }
 }
 
+/// Every topic with a line about it.
+pub fn topics() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let exit = (EXIT_CODES, "what the exit codes mean");
+    std::iter::once(exit).chain(TOPICS.iter().map(|(name, about, _)| (*name, *about)))
+}
+
 /// The help on some words; on none, that of the whole tool and the list of topics.
 pub fn text(words: &[String], color: bool) -> Result<String, Failure> {
     if let [word] = words {
@@ -60,7 +68,7 @@ pub fn text(words: &[String], color: bool) -> Result<String, Failure> {
         let known: Vec<String> = command.get_subcommands().map(|sub| sub.get_name().to_owned()).collect();
         let Some(sub) = command.find_subcommand_mut(word) else {
             let failure = Failure::usage(format!("there is no topic or command '{word}'"));
-            let topics = TOPICS.iter().map(|(name, ..)| *name).chain([EXIT_CODES]);
+            let topics = topics().map(|(name, _)| name);
             return Err(match nearest(word, known.iter().map(String::as_str).chain(topics)) {
                 Some(near) => failure.hint(format!("did you mean '{near}'?")),
                 None => failure.hint("`armctl help` lists topics and commands"),
@@ -72,8 +80,7 @@ pub fn text(words: &[String], color: bool) -> Result<String, Failure> {
     let mut text = if color { help.ansi().to_string() } else { help.to_string() };
     if words.is_empty() {
         text.push_str("\nTopics (armctl help TOPIC):\n");
-        let exit = (EXIT_CODES, "what the exit codes mean");
-        for (name, about) in std::iter::once(exit).chain(TOPICS.iter().map(|(name, about, _)| (*name, *about))) {
+        for (name, about) in topics() {
             text.push_str(&format!("  {name:<12} {about}\n"));
         }
     }

@@ -11,6 +11,7 @@ use serde::Serialize;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, value};
 
 use crate::command::Report;
+use crate::command::ValueKind;
 use crate::command::run::{Run, Stopped};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Table, View};
@@ -39,6 +40,7 @@ pub enum Robots {
 #[derive(Debug, Args)]
 pub struct Show {
     /// Its name
+    #[arg(add = ValueKind::Robot)]
     name: String,
     /// Say where each value came from
     #[arg(long)]
@@ -51,15 +53,16 @@ pub struct Add {
     /// Its name
     name: String,
     /// Where it is, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
+    #[arg(add = ValueKind::Url)]
     url: Target,
     /// Its family, where the URL does not tell
-    #[arg(long)]
+    #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
     /// Take read commands only
     #[arg(long)]
     read_only: bool,
     /// A word to choose it by (repeatable)
-    #[arg(long = "with-tag", value_name = "TAG")]
+    #[arg(long = "with-tag", value_name = "TAG", add = ValueKind::Tag)]
     tags: Vec<String>,
     /// Make it the robot that is taken when none is named
     #[arg(long)]
@@ -70,6 +73,7 @@ pub struct Add {
 #[derive(Debug, Args)]
 pub struct Remove {
     /// Its name
+    #[arg(add = ValueKind::Robot)]
     name: String,
 }
 

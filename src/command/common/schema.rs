@@ -3,6 +3,7 @@
 use clap::Args;
 use serde_json::json;
 
+use crate::command::ValueKind;
 use crate::command::overview::{Fleet, Overview};
 use crate::command::run::{Rehearsal, Run};
 use crate::command::toyo::{self, Toyo};
@@ -20,6 +21,7 @@ use crate::settings::inventory::nearest;
 #[derive(Debug, Args)]
 pub struct SchemaOf {
     /// The command, such as yerc.status; without it, all names
+    #[arg(add = ValueKind::Schema)]
     id: Option<String>,
 }
 

@@ -125,8 +125,13 @@ mod tests {
     /// What a capture file holds of a request and its answer.
     fn recorded(ends: Option<(SocketAddr, SocketAddr)>) -> Vec<u8> {
         let file = tempfile::NamedTempFile::new().unwrap();
-        let access =
-            Access { granted: Risk::Read, dry_run: false, trace: Some(file.path().to_owned()), need: Need::Command, typed: None };
+        let access = Access {
+            granted: Risk::Read,
+            dry_run: false,
+            trace: Some(file.path().to_owned()),
+            need: Need::Command,
+            typed: None,
+        };
         let mut trace = Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 0), ends).unwrap();
         trace.record(Direction::Sent, b"@HSON\r\n");
         trace.record(Direction::Received, b"");

@@ -127,7 +127,8 @@ impl Bench {
 }
 
 /// A link that may do anything.
-const EVERYTHING: Access = Access { granted: Risk::Motion, dry_run: false, trace: None, need: Need::Command, typed: None };
+const EVERYTHING: Access =
+    Access { granted: Risk::Motion, dry_run: false, trace: None, need: Need::Command, typed: None };
 
 fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
     Cli::try_parse_from([&["armctl", "-t", target, "yerc"], words].concat())

@@ -8,6 +8,7 @@ use super::numbers::single;
 use super::several::ask_all;
 use super::single::Single;
 use super::{Family, link};
+use crate::command::ValueKind;
 use crate::command::orders::Done;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::{Draft, Order};
@@ -50,7 +51,7 @@ fn parameter(text: &str) -> Result<&'static Parameter, String> {
 #[command(after_help = listing())]
 pub struct Get {
     /// Parameters by name or number, as in TOLE or 259
-    #[arg(required = true, value_name = "PARAMETER", value_delimiter = ',', value_parser = parameter)]
+    #[arg(required = true, value_name = "PARAMETER", value_delimiter = ',', value_parser = parameter, add = ValueKind::YrcxParameter)]
     parameters: Vec<&'static Parameter>,
     /// Axes, 1 to 4: 3, or 1,2,3,4; for parameters of an axis
     #[arg(long, value_name = "AXES", value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=4))]
@@ -122,7 +123,7 @@ impl Report for Parameters {
 #[command(after_help = listing())]
 pub struct Set {
     /// Parameter by name or number, as in TOLE or 259
-    #[arg(value_name = "PARAMETER", value_parser = parameter)]
+    #[arg(value_name = "PARAMETER", value_parser = parameter, add = ValueKind::YrcxParameter)]
     parameter: &'static Parameter,
     /// A whole number in the unit of the parameter
     #[arg(value_name = "VALUE", allow_negative_numbers = true)]

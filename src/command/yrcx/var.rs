@@ -9,6 +9,7 @@ use super::numbers::{Numbers, named, single};
 use super::several::ask_all;
 use super::single::Single;
 use super::{Family, link};
+use crate::command::ValueKind;
 use crate::command::orders::Done;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::{Draft, Order};
@@ -40,7 +41,7 @@ commands! {
 pub struct Get {
     /// Variables: SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real ones; SGI0..SGI5 is a range
     #[arg(required = true, value_name = "VARIABLE", value_delimiter = ',',
-        value_parser = |text: &str| Numbers::parse(table::Command::VarGet, Key::Variable, text))]
+        value_parser = |text: &str| Numbers::parse(table::Command::VarGet, Key::Variable, text), add = ValueKind::YrcxVariable)]
     variables: Vec<Numbers>,
 }
 
@@ -163,10 +164,10 @@ macro_rules! changes {
             #[derive(Debug, Args)]
             pub struct $name {
                 /// Variable that changes: SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real ones
-                #[arg(value_name = "VARIABLE", value_parser = variable)]
+                #[arg(value_name = "VARIABLE", value_parser = variable, add = ValueKind::YrcxVariable)]
                 variable: i32,
                 /// A number, or a variable such as SGI2
-                #[arg(value_name = "VALUE", allow_negative_numbers = true, value_parser = $operand)]
+                #[arg(value_name = "VALUE", allow_negative_numbers = true, value_parser = $operand, add = ValueKind::YrcxVariable)]
                 operand: Operand,
             }
 

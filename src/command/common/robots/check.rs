@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 
+use crate::command::ValueKind;
 use crate::command::checks::{self, Layer};
 use crate::command::{Access, Command, Context, Family, Need, Report, toyo, yerc, yrcx};
 use crate::failure::{Failure, Kind};
@@ -17,7 +18,7 @@ use crate::settings::{Robot, target};
 #[derive(Debug, Args)]
 pub struct Check {
     /// A robot of the inventory or a target URL; without it, what -r, -t and the like say
-    #[arg(value_name = "NAME|URL")]
+    #[arg(value_name = "NAME|URL", add = ValueKind::RobotOrUrl)]
     pub name: Option<String>,
 }
 

@@ -67,7 +67,8 @@ impl Discover {
         if is_everybody {
             targets.push(SocketAddrV4::new(Ipv4Addr::BROADCAST, PORT));
         }
-        let access = Access { granted: Risk::Read, dry_run: false, trace: run.trace.clone(), need: Need::Messages, typed: None };
+        let access =
+            Access { granted: Risk::Read, dry_run: false, trace: run.trace.clone(), need: Need::Messages, typed: None };
         run.begin_trace()?;
         let (recorder, tap) = Recorder::start(&access, &run.screen)?.unzip();
         let asked = list_identity(self.bind, &targets, self.wait, &tap.unwrap_or_default()).await;

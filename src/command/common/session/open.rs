@@ -12,6 +12,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use tokio::task::spawn_blocking;
 
+use crate::command::ValueKind;
 use crate::command::attach::{key_of, no_place, since};
 use crate::command::holding::{Attempt, Holding};
 use crate::command::interrupt::{catch_interrupts, interruptible};
@@ -34,7 +35,7 @@ pub struct Open {
     #[arg(long)]
     background: bool,
     /// The family, where the target does not tell
-    #[arg(long)]
+    #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
     /// This is the process that `--background` has started.
     #[arg(long, hide = true, conflicts_with = "background")]
@@ -122,7 +123,8 @@ impl Open {
         let diary = Diary { screen: run.screen, label: robot.label(), file: log.clone() };
         let diary = Rc::new(RefCell::new(diary));
         let say = Rc::clone(&diary);
-        let access = Access { granted: Risk::Read, dry_run: false, trace: run.trace.clone(), need: Need::Command, typed: None };
+        let access =
+            Access { granted: Risk::Read, dry_run: false, trace: run.trace.clone(), need: Need::Command, typed: None };
         let opening = Holding::open(robot, &access, &run.screen, move |text| say.borrow_mut().say(text));
         let holding = match interruptible(opening).await?? {
             Attempt::Held(holding) => holding,

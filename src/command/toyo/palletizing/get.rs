@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Entry, parse_program, parse_record, reads};
+use crate::command::ValueKind;
 use crate::command::toyo::numbers::read_contents;
 use crate::command::toyo::{Family, files};
 use crate::command::{Command, Context, Report};
@@ -24,7 +25,7 @@ pub struct Get {
     #[arg(value_parser = parse_program)]
     program: i32,
     /// Records by name or number: start source-p0 6; without any, all 16
-    #[arg(value_name = "RECORD", value_parser = parse_record)]
+    #[arg(value_name = "RECORD", value_parser = parse_record, add = ValueKind::ToyoRecord)]
     records: Vec<&'static Pallet>,
     /// Write them into this new file
     #[arg(long, value_name = "FILE")]

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Entry, parse_program, parse_record};
+use crate::command::ValueKind;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::link::wrong;
 use crate::command::toyo::stores::{self, Fate, Work};
@@ -32,7 +33,7 @@ pub struct Set {
     #[arg(value_parser = parse_program)]
     program: i32,
     /// Record by name or number: source-p1, 3
-    #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "RECORD", value_parser = parse_record)]
+    #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "RECORD", value_parser = parse_record, add = ValueKind::ToyoRecord)]
     record: Option<&'static Pallet>,
     /// All values in their order, or some as name=value
     #[arg(

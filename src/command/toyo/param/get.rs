@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::entry::{self, Entry};
 use super::parse_name;
+use crate::command::ValueKind;
 use crate::command::toyo::Family;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::table::Parameter;
@@ -18,7 +19,7 @@ use crate::output::view::View;
                         beside what it means.")]
 pub struct Get {
     /// Names or ids in any case: soft-limit-plus, P01
-    #[arg(required = true, value_name = "NAME", value_parser = parse_name)]
+    #[arg(required = true, value_name = "NAME", value_parser = parse_name, add = ValueKind::ToyoParameter)]
     names: Vec<&'static Parameter>,
 }
 

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{machine, parse_name};
+use crate::command::ValueKind;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::stores::parameter_cell;
 use crate::command::toyo::values::{self, Changes, Shown};
@@ -29,7 +30,7 @@ use crate::output::view::View;
 )]
 pub struct Set {
     /// Name or id in any case: soft-limit-plus, P01
-    #[arg(value_name = "NAME", value_parser = parse_name)]
+    #[arg(value_name = "NAME", value_parser = parse_name, add = ValueKind::ToyoParameter)]
     parameter: &'static Parameter,
     /// All values in their order, or some as name=value
     #[arg(required = true, value_name = "VALUE", allow_negative_numbers = true)]

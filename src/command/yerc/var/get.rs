@@ -8,6 +8,7 @@ use super::super::Family;
 use super::entry::Entry;
 use super::in_form;
 use super::read::{once, read_all};
+use crate::command::ValueKind;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::variables::{Reference, parse_references};
 use crate::failure::Failure;
@@ -21,7 +22,7 @@ use crate::output::view::{Cell, Table, View};
                         say so.")]
 pub struct Get {
     /// Such as B0, I1..I20, D5, R3, S2, P10, BP1, EX1
-    #[arg(required = true, value_name = "REF", value_parser = Named::parse)]
+    #[arg(required = true, value_name = "REF", value_parser = Named::parse, add = ValueKind::YercVariable)]
     variables: Vec<Named>,
     /// Read strings by the 16-byte commands, also from a DX200
     #[arg(long)]

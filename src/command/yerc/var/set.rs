@@ -14,6 +14,7 @@ use super::super::orders::usage;
 use super::super::writes::{Order, write_all};
 use super::entry::{Entry, Reading, position_in};
 use super::{in_form, listed};
+use crate::command::ValueKind;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -35,7 +36,7 @@ use crate::output::view::{Cell, Table, View};
 )]
 pub struct Set {
     /// Such as B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE
-    #[arg(required = true, value_name = "REF=VALUE")]
+    #[arg(required = true, value_name = "REF=VALUE", add = ValueKind::YercVariable)]
     assignments: Vec<Assignment>,
     /// Write strings by the 16-byte commands, also on a DX200
     #[arg(long)]

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Family, State, readable, table};
+use crate::command::ValueKind;
 use crate::command::{Command, Context, Need, Report};
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
@@ -15,7 +16,7 @@ use crate::output::view::View;
 pub struct Get {
     /// Names or numbers, as in servo-on, 20 or SO(157); SI20 for what the controller is shown. All dedicated outputs, and
     /// the general-purpose ones that are on, unless given
-    #[arg(value_name = "SIGNAL", value_parser = readable)]
+    #[arg(value_name = "SIGNAL", value_parser = readable, add = ValueKind::YrcxOutput)]
     signals: Vec<Signal>,
 }
 

@@ -3,6 +3,7 @@
 use clap::Args;
 
 use super::{Family, input, named};
+use crate::command::ValueKind;
 use crate::command::orders::Done;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -15,7 +16,7 @@ use crate::failure::Failure;
 #[command(after_help = "Inputs go back to rest when the connection ends. Two edges have 100 ms and more between them.")]
 pub struct Set {
     /// Name or number and state, as in servo-on=on or 20=off
-    #[arg(value_name = "SIGNAL=STATE", required = true, value_parser = change)]
+    #[arg(value_name = "SIGNAL=STATE", required = true, value_parser = change, add = ValueKind::YrcxInputState)]
     changes: Vec<Change>,
 }
 
@@ -71,7 +72,7 @@ fn told(changes: &[Change]) -> String {
 #[derive(Debug, Args)]
 pub struct Pulse {
     /// Name or number, as in alarm-reset or 20
-    #[arg(value_name = "SIGNAL", value_parser = input)]
+    #[arg(value_name = "SIGNAL", value_parser = input, add = ValueKind::YrcxInput)]
     signal: Signal,
 }
 

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Family, State, table};
+use crate::command::ValueKind;
 use crate::command::{Command, Context, Need, Report};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::{Side, Signal};
@@ -15,7 +16,7 @@ use crate::output::view::View;
 #[derive(Debug, Args)]
 pub struct Watch {
     /// Names or numbers of outputs of the controller, as in servo-on or 20; all unless given
-    #[arg(value_name = "SIGNAL", value_parser = output)]
+    #[arg(value_name = "SIGNAL", value_parser = output, add = ValueKind::YrcxOutput)]
     signals: Vec<Signal>,
 }
 

@@ -1,0 +1,110 @@
+//! The only place that knows clap's completion engine, whose interface is not stable yet.
+//!
+//! The engine builds all of a command tree before it looks at the line, and takes any word before the cursor for a
+//! subcommand. So clap's own parser finds first which command the line names, and the engine is handed that one alone.
+
+use std::ffi::{OsStr, OsString};
+use std::sync::Arc;
+
+use clap::builder::ArgExt;
+use clap::{Arg, ArgAction, ArgMatches, Command, CommandFactory as _};
+use clap_complete::engine::{ArgValueCompleter, CompletionCandidate};
+
+use super::Candidate;
+use super::values::{self, Context};
+use crate::cli::Cli;
+use crate::command::ValueKind;
+
+/// So that arguments can name their kind: `#[arg(add = ValueKind::Robot)]`.
+impl ArgExt for ValueKind {}
+
+/// What could stand behind `before`, where `current` was typed; `None` where that cannot be told.
+pub(super) fn complete(mut before: Vec<OsString>, current: &OsStr) -> Option<Vec<Candidate>> {
+    let mut root = Cli::command().ignore_errors(true);
+    let matches = root.try_get_matches_from_mut(&before).ok()?;
+    let path = path(&matches);
+    let context = Arc::new(Context::new(&matches));
+    let mut narrowed = narrow(&root, &path, &context)?;
+    // They are many, and the process ends: see `words` of app.rs.
+    std::mem::forget(root);
+    for word in &mut before {
+        // The engine would take it for a flag.
+        if word.to_str().is_some_and(is_negative) {
+            *word = "0".into();
+        }
+    }
+    let own = own_flags(&narrowed, &path);
+    before.push(current.to_owned());
+    let index = before.len() - 1;
+    let found = clap_complete::engine::complete(&mut narrowed, before, index, None).ok()?;
+    let mut found: Vec<Candidate> = found.iter().filter_map(candidate).collect();
+    if current.is_empty() {
+        // Forty flags that every command takes are no answer to an empty word.
+        let is_flag = |candidate: &Candidate| candidate.value.starts_with('-') && candidate.value != "-";
+        let has_others = found.iter().any(|candidate| !is_flag(candidate));
+        found.retain(|candidate| if has_others { !is_flag(candidate) } else { own.contains(&candidate.value) });
+    }
+    Some(found)
+}
+
+fn candidate(found: &CompletionCandidate) -> Option<Candidate> {
+    let help = found.get_help().map(|help| help.to_string().lines().next().unwrap_or_default().to_owned());
+    Some(Candidate { value: found.get_value().to_str()?.to_owned(), help })
+}
+
+/// The subcommands that a line names.
+fn path(matches: &ArgMatches) -> Vec<String> {
+    let mut path = Vec::new();
+    let mut next = matches.subcommand();
+    while let Some((name, matches)) = next {
+        path.push(name.to_owned());
+        next = matches.subcommand();
+    }
+    path
+}
+
+/// `command` with nothing but what leads to the end of `path`, and what can follow there.
+fn narrow(command: &Command, path: &[String], context: &Arc<Context>) -> Option<Command> {
+    let narrowed = Command::new(command.get_name().to_owned())
+        .disable_help_flag(true)
+        .disable_version_flag(true)
+        .disable_help_subcommand(true)
+        .groups(command.get_groups().cloned())
+        .args(command.get_arguments().map(|argument| with_values(argument, context)));
+    Some(match path.split_first() {
+        Some((name, rest)) => narrowed.subcommand(narrow(command.find_subcommand(name)?, rest, context)?),
+        None => narrowed.subcommands(command.get_subcommands().map(|verb| {
+            let about = verb.get_about().cloned().unwrap_or_default();
+            Command::new(verb.get_name().to_owned()).about(about).hide(verb.is_hide_set()).disable_help_flag(true)
+        })),
+    })
+}
+
+/// The argument with the candidates of its kind.
+fn with_values(argument: &Arg, context: &Arc<Context>) -> Arg {
+    let argument = argument.clone();
+    // The engine panics at flags that it does not know before such an argument.
+    let argument = if argument.is_positional() { argument.allow_hyphen_values(false) } else { argument };
+    let shows = matches!(argument.get_action(), ArgAction::Help | ArgAction::HelpShort | ArgAction::Version);
+    let argument = if shows { argument.action(ArgAction::SetTrue) } else { argument };
+    let Some(kind) = argument.get::<ValueKind>().copied() else { return argument };
+    let context = Arc::clone(context);
+    argument.add(ArgValueCompleter::new(move |current: &OsStr| {
+        let found = current.to_str().map_or_else(Vec::new, |current| values::of(kind, current, &context));
+        let found = found.into_iter().enumerate().map(|(order, Candidate { value, help })| {
+            CompletionCandidate::new(value).help(help.map(Into::into)).display_order(Some(order))
+        });
+        found.collect()
+    }))
+}
+
+/// The flags that only the command at the end of `path` takes.
+fn own_flags(root: &Command, path: &[String]) -> Vec<String> {
+    let command = path.iter().fold(root, |command, name| command.find_subcommand(name).unwrap_or(command));
+    let own = command.get_arguments().filter(|argument| !argument.is_global_set());
+    own.filter_map(Arg::get_long).filter(|long| *long != "help").map(|long| format!("--{long}")).collect()
+}
+
+fn is_negative(word: &str) -> bool {
+    word.strip_prefix('-').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit() || c == '.'))
+}

@@ -1,0 +1,49 @@
+//! Completion: what could stand at the cursor of a command line, with live values.
+//!
+//! ```text
+//! complete(words: &[OsString], index: usize) -> Vec<Candidate { value, help }>
+//! ```
+//!
+//! `words[0]` is the program (`armctl`, or `yerc` where it was started under that name), `words[index]` the word at the
+//! cursor as far as it was typed, maybe empty. The shells' scripts (`shell.rs`) and the line editor of `armctl repl` call
+//! the same function. It prints nothing and fails at nothing: where nothing is known there are no candidates.
+//!
+//! Arguments only name the [`ValueKind`] of their values: `#[arg(add = ValueKind::Robot)]`. Which values a kind has is in
+//! `values.rs`; the library that knows words and flags is unstable and stays in `engine.rs`.
+
+mod engine;
+mod values;
+
+use std::ffi::OsString;
+
+use super::with_family;
+
+/// Something that could stand at the cursor.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Candidate {
+    /// The whole word.
+    pub value: String,
+    /// What it is, in a line.
+    pub help: Option<String>,
+}
+
+impl Candidate {
+    fn new(value: impl Into<String>, help: impl Into<String>) -> Self {
+        let help = Some(help.into()).filter(|help| !help.is_empty());
+        Self { value: value.into(), help }
+    }
+}
+
+/// What could stand at `words[index]`, best first.
+pub fn complete(words: &[OsString], index: usize) -> Vec<Candidate> {
+    let before: Vec<OsString> = words.iter().take(index).cloned().collect();
+    let current = words.get(index).cloned().unwrap_or_default();
+    if before.is_empty() {
+        return Vec::new();
+    }
+    let before = with_family(before);
+    engine::complete(before, &current).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests;

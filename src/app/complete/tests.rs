@@ -1,0 +1,105 @@
+use super::*;
+
+/// The candidates for the word behind the last blank.
+fn found(line: &str) -> Vec<String> {
+    let words: Vec<OsString> = line.split(' ').map(Into::into).collect();
+    complete(&words, words.len() - 1).into_iter().map(|candidate| candidate.value).collect()
+}
+
+#[test]
+fn words_and_flags_are_those_of_the_command() {
+    for (line, expected) in [
+        ("armctl ye", &["yerc"][..]),
+        ("armctl yerc st", &["status"]),
+        ("yerc st", &["status"]),
+        ("/usr/bin/yerc.exe job se", &["select"]),
+        ("armctl --sim yerc job ", &["show", "select", "start"]),
+        ("armctl yerc --sim servo o", &["on", "off"]),
+        ("armctl yerc job select --li", &["--line"]),
+        ("armctl -o j", &["json", "jsonl"]),
+        ("armctl -oj", &["-ojson", "-ojsonl"]),
+        ("armctl --format=c", &["--format=csv"]),
+        ("armctl explain y", &["yerc", "yrcx"]),
+        ("armctl nonsense x", &[]),
+        ("armctl yerc --help job ", &[]),
+    ] {
+        let mut expected = expected.to_vec();
+        let mut found = found(line);
+        expected.sort_unstable();
+        found.sort_unstable();
+        assert_eq!(found, expected, "{line}");
+    }
+}
+
+#[test]
+fn values_are_those_of_their_kind() {
+    for (line, expected) in [
+        ("armctl help exi", &["exit-codes"][..]),
+        ("armctl schema yerc.job.", &["yerc.job.show", "yerc.job.select", "yerc.job.start"]),
+        ("armctl explain yerc 0x206", &["0x2060"]),
+        ("armctl explain yrcx 12.60", &["12.600"]),
+        ("armctl explain toyo 2", &["20"]),
+        ("armctl toyo param get soft-limit", &["soft-limit-plus", "soft-limit-minus"]),
+        ("armctl toyo param get SOFT-LIMIT-P", &["soft-limit-plus"]),
+        ("armctl toyo program insert 5 MV", &["MVB"]),
+        ("armctl toyo palletizing get 1 source-p", &["source-p0"]),
+        ("armctl yrcx io get serv", &["servo-on"]),
+        ("armctl yrcx io set alarm-res", &["alarm-reset=on", "alarm-reset=off"]),
+        ("armctl yrcx param get TOLE,OUT", &["TOLE,OUTPOS"]),
+        ("armctl yrcx var get SGR3", &["SGR3", "SGR30", "SGR31"]),
+        ("armctl yerc var get B", &["B", "BP"]),
+        ("armctl yerc --target s", &["sim:", "serial://"]),
+        ("armctl session open --family t", &["toyo"]),
+    ] {
+        let found = found(line);
+        let missing: Vec<_> = expected.iter().filter(|value| !found.iter().any(|found| found == *value)).collect();
+        assert!(missing.is_empty() && (!expected.is_empty() || found.is_empty()), "{line}: {found:?}");
+    }
+}
+
+#[test]
+fn robots_and_tags_are_those_of_the_inventory() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("robots.toml");
+    std::fs::write(
+        &file,
+        "[[robot]]\nname = \"cell1\"\ntarget = \"udp://h\"\ntags = [\"welding\"]\n\
+         [[robot]]\nname = \"press\"\ntarget = \"tcp://h:1\"\ntags = [\"line2\", \"welding\"]\n",
+    )
+    .unwrap();
+    let config = file.to_str().unwrap();
+    let candidates = |line: &str| {
+        let words: Vec<OsString> = line.replace("ROBOTS", config).split(' ').map(Into::into).collect();
+        let found = complete(&words, words.len() - 1);
+        found.into_iter().map(|found| (found.value, found.help.unwrap_or_default())).collect::<Vec<_>>()
+    };
+    let pair = |value: &str, help: &str| (value.to_owned(), help.to_owned());
+    assert_eq!(candidates("armctl --config ROBOTS -r "), [pair("cell1", "udp://h"), pair("press", "tcp://h:1")]);
+    assert_eq!(candidates("armctl yerc --config=ROBOTS status --robot=ce"), [pair("--robot=cell1", "udp://h")]);
+    assert_eq!(candidates("armctl --config ROBOTS yerc -rp"), [pair("-rpress", "tcp://h:1")]);
+    assert_eq!(candidates("armctl --config ROBOTS robots show p"), [pair("press", "tcp://h:1")]);
+    assert_eq!(candidates("armctl --config ROBOTS --tag "), [pair("line2", "press"), pair("welding", "cell1, press")]);
+    assert_eq!(candidates("armctl --config ROBOTS.none -r "), []);
+}
+
+#[test]
+fn every_line_has_an_answer() {
+    // The engine takes some words for impossible.
+    for line in [
+        "",
+        "armctl",
+        "armctl toyo jog -r -z x",
+        "armctl toyo jog X -- ",
+        "armctl -r -- x",
+        "armctl yerc move linear --x -10 --y ",
+        "armctl yrcx point set 5 --mm -1,-2 --",
+        "armctl --robot= --=x -",
+        "armctl yrcx var set SGI0 -5 ",
+        "armctl -",
+        "armctl --",
+    ] {
+        found(line);
+    }
+    assert_eq!(complete(&[], 0), []);
+    assert_eq!(complete(&["armctl".into()], 7), complete(&["armctl".into(), "".into()], 1));
+}

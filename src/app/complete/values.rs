@@ -1,0 +1,175 @@
+//! Which values there are of each kind.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args as _, Command, FromArgMatches as _};
+
+use super::Candidate;
+use crate::cli::Globals;
+use crate::command::ValueKind;
+use crate::command::common::{help, schema};
+use crate::controller::toyo;
+use crate::controller::toyo::table::instructions::INSTRUCTIONS;
+use crate::controller::toyo::table::palletizing::RECORDS;
+use crate::controller::toyo::table::parameters::PARAMETERS;
+use crate::controller::yerc::status;
+use crate::controller::yrcx::signal::{Side, Signal};
+use crate::controller::yrcx::{alarm, table};
+use crate::settings::inventory::{Inventory, Location};
+use crate::settings::target::Family;
+
+/// What the rest of the line says about robots and settings.
+#[derive(Debug)]
+pub(super) struct Context {
+    globals: Option<Globals>,
+}
+
+impl Context {
+    /// From what could be parsed of a line. Flags of one command with a mistake leave those of every command as they are.
+    pub fn new(matches: &ArgMatches) -> Self {
+        let command = Globals::augment_args(Command::new("armctl"));
+        let given = command.get_arguments().flat_map(|argument| {
+            let id = argument.get_id().as_str();
+            let long = argument.get_long().unwrap_or_default();
+            let is_given = matches.value_source(id) == Some(ValueSource::CommandLine);
+            let raw = if is_given { matches.get_raw(id) } else { None };
+            let takes_value = argument.get_action().takes_values();
+            raw.into_iter().flatten().map(move |value| {
+                let mut word = OsString::from(format!("--{long}"));
+                if takes_value {
+                    word.push("=");
+                    word.push(value);
+                }
+                word
+            })
+        });
+        let words: Vec<_> = std::iter::once("armctl".into()).chain(given).collect();
+        let parsed = command.try_get_matches_from(words);
+        let globals = parsed.and_then(|matches| Globals::from_arg_matches(&matches)).ok();
+        Self { globals }
+    }
+
+    fn inventory(&self) -> Option<Inventory> {
+        let named = self.globals.as_ref()?.config.clone();
+        let named = named.or_else(|| std::env::var_os("ARMCTL_CONFIG").filter(|path| !path.is_empty()).map(Into::into));
+        Inventory::load(&Location::find(named)).ok()
+    }
+}
+
+/// The values of a kind that begin with what was typed.
+pub(super) fn of(kind: ValueKind, typed: &str, context: &Context) -> Vec<Candidate> {
+    fitting(typed, all(kind, context))
+}
+
+/// Those that begin as typed; where none does, those that begin so in other letters, as many names are in capitals.
+fn fitting(typed: &str, all: Vec<Candidate>) -> Vec<Candidate> {
+    let begins = |candidate: &&Candidate| candidate.value.starts_with(typed);
+    let exact: Vec<Candidate> = all.iter().filter(begins).cloned().collect();
+    if !exact.is_empty() {
+        return exact;
+    }
+    let begins = |value: &str| value.get(..typed.len()).is_some_and(|start| start.eq_ignore_ascii_case(typed));
+    all.into_iter().filter(|candidate| begins(&candidate.value)).collect()
+}
+
+fn all(kind: ValueKind, context: &Context) -> Vec<Candidate> {
+    match kind {
+        ValueKind::Robot => robots(context),
+        ValueKind::RobotOrUrl => [robots(context), urls()].concat(),
+        ValueKind::Tag => tags(context),
+        ValueKind::Url => urls(),
+        ValueKind::Family => FAMILIES.map(|(family, about)| Candidate::new(family.name(), about)).into(),
+        ValueKind::HelpWord => help::topics().map(|(name, about)| Candidate::new(name, about)).collect(),
+        ValueKind::Schema => schema::all().iter().map(|entry| Candidate::new(entry.id, "")).collect(),
+        ValueKind::Code(family) => codes(family),
+        ValueKind::YercVariable => variable_kinds(),
+        ValueKind::ToyoParameter => PARAMETERS.iter().map(|row| Candidate::new(row.name, row.about)).collect(),
+        ValueKind::ToyoInstruction => INSTRUCTIONS.iter().map(|row| Candidate::new(row.word, row.about)).collect(),
+        ValueKind::ToyoRecord => RECORDS.iter().map(|row| Candidate::new(row.name, row.about)).collect(),
+        ValueKind::YrcxInput => signals(Side::Input, ""),
+        ValueKind::YrcxInputState => [signals(Side::Input, "=on"), signals(Side::Input, "=off")].concat(),
+        ValueKind::YrcxOutput => signals(Side::Output, ""),
+        ValueKind::YrcxParameter => {
+            table::parameter::PARAMETERS.iter().map(|row| Candidate::new(row.name, row.meaning)).collect()
+        }
+        ValueKind::YrcxVariable => static_variables(),
+    }
+}
+
+fn robots(context: &Context) -> Vec<Candidate> {
+    let inventory = context.inventory().unwrap_or_default();
+    inventory.robots.iter().map(|robot| Candidate::new(&robot.name, robot.target.url())).collect()
+}
+
+fn tags(context: &Context) -> Vec<Candidate> {
+    let inventory = context.inventory().unwrap_or_default();
+    let mut tags: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for robot in &inventory.robots {
+        for tag in &robot.tags {
+            tags.entry(tag).or_default().push(&robot.name);
+        }
+    }
+    tags.into_iter().map(|(tag, robots)| Candidate::new(tag, robots.join(", "))).collect()
+}
+
+/// How target URLs begin. What follows is nobody's guess.
+fn urls() -> Vec<Candidate> {
+    vec![
+        Candidate::new("sim:", "the built-in simulator"),
+        Candidate::new("udp://", "yerc: name or address of the controller"),
+        Candidate::new("eip://", "yrcx: name or address of the network board"),
+        Candidate::new("serial://", "toyo: a port of this machine, as in serial:///dev/ttyUSB0 or serial://COM3"),
+        Candidate::new("tcp://", "toyo: HOST:PORT of a serial device server"),
+    ]
+}
+
+const FAMILIES: [(Family, &str); 3] =
+    [(Family::Yerc, "Yaskawa FS100 / DX200"), (Family::Yrcx, "OMRON / Yamaha YRCX"), (Family::Toyo, "Toyo")];
+
+fn codes(family: Family) -> Vec<Candidate> {
+    match family {
+        Family::Yerc => {
+            let statuses = status::all_statuses().map(|row| Candidate::new(format!("0x{:02X}", row.code), row.name));
+            statuses
+                .chain(status::all_added().map(|row| Candidate::new(format!("0x{:04X}", row.code), row.name)))
+                .collect()
+        }
+        Family::Yrcx => alarm::KNOWN.iter().map(|known| Candidate::new(known.alarm.to_string(), known.text)).collect(),
+        Family::Toyo => {
+            toyo::errors::all().map(|code| Candidate::new(format!("{:02X}", code.code), code.name)).collect()
+        }
+    }
+}
+
+/// What references to variables of a yerc controller begin with.
+const VARIABLES: [(&str, &str); 8] = [
+    ("B", "byte"),
+    ("I", "integer, 16 bits"),
+    ("D", "double-precision integer, 32 bits"),
+    ("R", "real"),
+    ("S", "string"),
+    ("P", "position of a robot"),
+    ("BP", "position of a base axis"),
+    ("EX", "position of a station axis"),
+];
+
+fn variable_kinds() -> Vec<Candidate> {
+    VARIABLES.iter().map(|(letters, about)| Candidate::new(*letters, *about)).collect()
+}
+
+fn signals(side: Side, ending: &str) -> Vec<Candidate> {
+    let dedicated = Signal::of_side(side);
+    dedicated
+        .map(|row| Candidate::new(format!("{}{ending}", row.name), format!("{}: {}", row.text, row.effect)))
+        .collect()
+}
+
+/// `SGI0` to `SGR31`.
+fn static_variables() -> Vec<Candidate> {
+    let numbered = |letters: &'static str, about: &'static str| {
+        (0..32).map(move |number| Candidate::new(format!("{letters}{number}"), about))
+    };
+    numbered("SGI", "whole number").chain(numbered("SGR", "real number")).collect()
+}
