@@ -255,4 +255,17 @@ impl Globals {
             within: self.within,
         }
     }
+
+    /// The flags that say whom a line is for, as words.
+    pub fn whom(&self) -> Vec<String> {
+        let named = |flag: &str, value: String| vec![flag.to_owned(), value];
+        let mut words = Vec::new();
+        words.extend(self.sim.then(|| "--sim".to_owned()));
+        words.extend(self.all.then(|| "--all".to_owned()));
+        words.extend(self.target.iter().flat_map(|target| named("--target", target.url().to_owned())));
+        words.extend(self.robot.iter().flat_map(|robot| named("--robot", robot.clone())));
+        words.extend(self.tag.iter().flat_map(|tag| named("--tag", tag.clone())));
+        words.extend(self.config.iter().flat_map(|path| named("--config", path.display().to_string())));
+        words
+    }
 }

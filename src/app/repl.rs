@@ -4,17 +4,20 @@
 //! script: it ends at the first line that fails, with its exit code. A line is parsed and run exactly as a process of its
 //! own would be; only the flags of the REPL stand before its own.
 
+mod assistant;
 mod editor;
+mod meaning;
 mod prompt;
 mod terminal;
 
-use std::ffi::OsString;
 use std::io::IsTerminal as _;
 use std::sync::Arc;
 
 use tokio::io::{AsyncBufReadExt as _, BufReader};
 
+use self::assistant::Assistant;
 use self::editor::{Editor, Typed};
+use self::meaning::{Meaning, family_help};
 use self::prompt::{Prompt, look};
 use self::terminal::Terminal;
 use super::batch::{self, refuse_repetition};
@@ -38,15 +41,10 @@ pub fn can_type() -> bool {
 
 /// Nothing but the name of a family was typed where nobody can type: what its commands are.
 pub fn usage(screen: &Screen, prefix: &[String]) -> Stopped {
-    let args: Vec<OsString> = ["armctl"].into_iter().map(OsString::from).chain(family_help(prefix)).collect();
-    if let Err(help) = Parser::default().parse(&args) {
+    if let Err(help) = Parser::default().parse(&family_help(prefix)) {
         screen.usage(&help.render());
     }
     Stopped { told: true, ..Failure::usage("a command is missing").into() }
-}
-
-fn family_help(prefix: &[String]) -> impl Iterator<Item = OsString> {
-    prefix.iter().map(OsString::from).chain(["-h".into()])
 }
 
 /// Runs lines until somebody leaves, or the script ends.
@@ -62,11 +60,9 @@ pub async fn run(globals: Globals, prefix: Vec<String>) -> Result<(), Stopped> {
 struct Repl {
     globals: Globals,
     screen: Screen,
-    /// Words before each line that is a command of the family.
-    prefix: Vec<String>,
+    meaning: Meaning,
     /// Whom lines are for that name nobody, if that is one robot of a known family.
     robot: Option<Robot>,
-    parser: Parser,
 }
 
 /// What becomes of the lines after one.
@@ -94,13 +90,13 @@ impl Repl {
         if let (true, Some(robot)) = (prefix.is_empty(), &robot) {
             prefix.push(robot.family.name().to_owned());
         }
-        Ok(Self { screen: screen(&globals), globals, prefix, robot, parser: Parser::default() })
+        Ok(Self { screen: screen(&globals), globals, meaning: Meaning::new(prefix), robot })
     }
 
     /// Lines from a terminal.
     async fn converse(mut self) -> Result<(), Stopped> {
         let terminal = Terminal::save();
-        let (mut editor, say) = Editor::start(&self.screen, self.prefix.clone())?;
+        let (mut editor, say) = Editor::start(&self.screen, Assistant::new(&self.meaning, &self.globals))?;
         let (holder, thread) = Holder::start(say)?;
         let outcome = self.prompt(&mut editor, &holder).await;
         // The editor may still wait for a key.
@@ -121,7 +117,7 @@ impl Repl {
                 Some(robot) if !self.globals.dry_run => look(robot, &self.line(holder, "repl"), &self.screen).await,
                 _ => None,
             };
-            let prompt = Prompt::new(&self.prefix, self.robot.as_ref(), seen.as_ref(), self.screen.stdout_color());
+            let prompt = Prompt::new(self.meaning.prefix(), self.robot.as_ref(), seen.as_ref(), self.screen.stdout_color());
             let typed = tokio::select! {
                 typed = editor.read(prompt) => typed,
                 how = asked_to_end() => {
@@ -193,8 +189,8 @@ impl Repl {
             [word] if matches!(word.as_str(), "exit" | "quit") => return Next::Leave,
             _ => {}
         }
-        let args = self.args(&words);
-        let Words { globals, command } = match self.parser.parse(&args) {
+        let args = self.meaning.args(&words);
+        let Words { globals, command } = match self.meaning.parser.parse(&args) {
             Ok(words) => words,
             Err(error) => {
                 return refuse(&args, &error, self.screen.is_json()).map_or_else(Next::Failed, |()| Next::Line);
@@ -213,21 +209,6 @@ impl Repl {
             Wanted::Bare(prefix) => Err(usage(&screen, &prefix)),
         };
         done.map_or_else(|stopped| failed(&screen, stopped), |()| Next::Line)
-    }
-
-    /// The command line that a line stands for: with the family before it, where it is a command of the family.
-    fn args(&mut self, words: &[String]) -> Vec<OsString> {
-        let program = || std::iter::once(OsString::from("armctl"));
-        if let [word] = words
-            && matches!(word.as_str(), "help" | "?" | "-h" | "--help")
-        {
-            return program().chain(family_help(&self.prefix)).collect();
-        }
-        let family = self.prefix.first().and_then(|family| family.parse::<Family>().ok());
-        // Flags may stand before the command. What is neither of the family nor of all is the family's to refuse.
-        let owner = words.iter().find_map(|word| self.parser.owner(word, family));
-        let prefix = self.prefix.iter().filter(|_| owner.unwrap_or(family) == family);
-        program().chain(prefix.chain(words).map(OsString::from)).collect()
     }
 
     fn line(&self, holder: &Holder, typed: &str) -> Line {

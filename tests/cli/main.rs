@@ -28,6 +28,7 @@ macro_rules! transcripts {
 transcripts! {
     alarms
     backups
+    batch
     captures
     decode
     exit_codes
@@ -41,6 +42,7 @@ transcripts! {
     orders
     positions
     raw
+    repl
     robots
     robots_check
     sessions

@@ -1,20 +1,16 @@
 //! The line editor, on a thread of its own: links and signals are attended to while somebody thinks about what to type.
 
-use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::mpsc as blocking;
 use std::sync::{Mutex, PoisonError};
 
-use rustyline::completion::{Completer, Pair};
 use rustyline::config::{Behavior, BellStyle, CompletionType};
 use rustyline::error::ReadlineError;
-use rustyline::highlight::Highlighter;
-use rustyline::hint::{Hinter, HistoryHinter};
 use rustyline::history::FileHistory;
-use rustyline::validate::Validator;
-use rustyline::{ColorMode, Config, Context, ExternalPrinter as _, Helper};
+use rustyline::{ColorMode, Config, ExternalPrinter as _};
 use tokio::sync::mpsc;
 
+use super::assistant::Assistant;
 use super::prompt::Prompt;
 use crate::command::local::state_folder;
 use crate::failure::Failure;
@@ -49,11 +45,11 @@ impl Editor {
     /// Takes the terminal. Also what tells something meanwhile, above the line that is being typed.
     pub fn start(
         screen: &Screen,
-        prefix: Vec<String>,
+        assistant: Assistant,
     ) -> Result<(Self, impl Fn(&str) + Send + Sync + 'static), Failure> {
         let (prompts, asked) = blocking::channel();
         let (answer, typed) = mpsc::unbounded_channel();
-        let mut editor = editor(screen, prefix).map_err(|error| unusable(&error))?;
+        let mut editor = editor(screen, assistant).map_err(|error| unusable(&error))?;
         let history = History::find(&mut editor, screen);
         let printer = Mutex::new(editor.create_external_printer().ok());
         let screen = *screen;
@@ -107,19 +103,18 @@ fn unusable(error: &ReadlineError) -> Failure {
     Failure::local(format!("the terminal: {error}")).hint("lines can also come from a pipe: `armctl repl < FILE`")
 }
 
-fn editor(screen: &Screen, prefix: Vec<String>) -> rustyline::Result<LineEditor> {
-    let colour = screen.stdout_color();
+fn editor(screen: &Screen, assistant: Assistant) -> rustyline::Result<LineEditor> {
     let config = Config::builder()
         .max_history_size(REMEMBERED)?
         .history_ignore_space(true)
         .completion_type(CompletionType::List)
         .bell_style(BellStyle::None)
-        .color_mode(if colour { ColorMode::Enabled } else { ColorMode::Disabled })
+        .color_mode(if screen.stdout_color() { ColorMode::Enabled } else { ColorMode::Disabled })
         // Prompts are no data: stdout may be a file.
         .behavior(Behavior::PreferTerm)
         .build();
     let mut editor = LineEditor::with_config(config)?;
-    editor.set_helper(Some(Assistant { prefix, hinter: HistoryHinter::new(), colour }));
+    editor.set_helper(Some(assistant));
     Ok(editor)
 }
 
@@ -139,39 +134,5 @@ impl History {
             return None;
         }
         Some(Self(path))
-    }
-}
-
-/// Completion, hints and colours.
-struct Assistant {
-    prefix: Vec<String>,
-    hinter: HistoryHinter,
-    colour: bool,
-}
-
-impl Helper for Assistant {}
-
-impl Validator for Assistant {}
-
-impl Completer for Assistant {
-    type Candidate = Pair;
-
-    fn complete(&self, line: &str, at: usize, _: &Context<'_>) -> rustyline::Result<(usize, Vec<Pair>)> {
-        let _ = (&self.prefix, line);
-        Ok((at, Vec::new()))
-    }
-}
-
-impl Hinter for Assistant {
-    type Hint = String;
-
-    fn hint(&self, line: &str, at: usize, context: &Context<'_>) -> Option<String> {
-        self.hinter.hint(line, at, context)
-    }
-}
-
-impl Highlighter for Assistant {
-    fn highlight_hint<'h>(&self, hint: &'h str) -> Cow<'h, str> {
-        if self.colour { Cow::Owned(format!("\x1b[2m{hint}\x1b[0m")) } else { Cow::Borrowed(hint) }
     }
 }

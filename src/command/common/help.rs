@@ -12,20 +12,22 @@ use crate::settings::inventory::nearest;
 /// Explains a topic, or a command.
 #[derive(Debug, Args)]
 pub struct Help {
-    /// A topic (exit-codes, targets, inventory, output, safety, scripting, sessions, simulator,
-    /// toyo-setup, yerc-setup, yrcx-setup), or a command
+    /// A topic (exit-codes, targets, inventory, output, safety, scripting, sessions, repl,
+    /// batch, simulator, toyo-setup, yerc-setup, yrcx-setup), or a command
     #[arg(add = ValueKind::HelpWord)]
     words: Vec<String>,
 }
 
 /// Topics with a line about each and their text.
-const TOPICS: [(&str, &str, &str); 10] = [
+const TOPICS: [(&str, &str, &str); 12] = [
     ("targets", "how to say which robot", include_str!("topics/targets.txt")),
     ("inventory", "robots.toml", include_str!("topics/inventory.txt")),
     ("output", "tables, JSON, jq, colour", include_str!("topics/output.txt")),
     ("safety", "what asks, what refuses, what Ctrl-C does", include_str!("topics/safety.txt")),
     ("scripting", "watching, waiting, piping", include_str!("topics/scripting.txt")),
     ("sessions", "links that outlive commands", include_str!("topics/sessions.txt")),
+    ("repl", "a prompt for one robot", include_str!("topics/repl.txt")),
+    ("batch", "files of commands", include_str!("topics/batch.txt")),
     (SIMULATOR, "servers, start state, console, faults", include_str!("topics/simulator.txt")),
     ("toyo-setup", "cable and settings of a Toyo controller", include_str!("topics/toyo-setup.txt")),
     ("yerc-setup", "settings of an FS100 or DX200", include_str!("topics/yerc-setup.txt")),

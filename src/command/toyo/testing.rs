@@ -13,7 +13,7 @@ use serde_json::Value;
 use super::Family;
 use super::link::Link;
 use super::simulated::Simulated;
-use crate::cli::{Cli, OfToyo, Top};
+use crate::cli::{Cli, OfToyo, Top, Verb};
 use crate::command::{Access, AnyCommand, Context, Family as _, Need, Noun as _};
 use crate::controller::Risk;
 use crate::controller::toyo::simulator::Start;
@@ -220,8 +220,8 @@ fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<F
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Toyo))?.remove(0);
-    let Top::Toyo(OfToyo::Toyo(noun)) = cli.command else { unreachable!("the words follow toyo") };
-    Ok((robot, noun.command()))
+    let Top::Toyo(OfToyo::Toyo { verb: Some(Verb::Command(verb)) }) = cli.command else { unreachable!("the words follow toyo") };
+    Ok((robot, verb.command()))
 }
 
 /// Where tests write: nowhere.

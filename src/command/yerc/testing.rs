@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::Family;
 use super::link::Link;
-use crate::cli::{Cli, OfYerc, Top};
+use crate::cli::{Cli, OfYerc, Top, Verb};
 use crate::command::{Access, AnyCommand, Context, Family as _, Need, Noun as _};
 use crate::controller::Risk;
 use crate::controller::text::hex;
@@ -140,8 +140,8 @@ fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<F
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let flags = Options { encoding: cli.globals.encoding, ..Options::default() };
     let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(Name::Yerc))?.remove(0);
-    let Top::Yerc(OfYerc::Yerc(noun)) = cli.command else { unreachable!("the words follow yerc") };
-    Ok((robot, noun.command()))
+    let Top::Yerc(OfYerc::Yerc { verb: Some(Verb::Command(verb)) }) = cli.command else { unreachable!("the words follow yerc") };
+    Ok((robot, verb.command()))
 }
 
 /// Where tests write: nowhere.

@@ -10,8 +10,8 @@ use serde_json::Value;
 
 use super::Family;
 use super::link::Link;
-use crate::cli::{Cli, OfYrcx, Top};
-use crate::command::{Access, AnyCommand, Context, Family as _, Need, Noun as _};
+use crate::cli::{Cli, OfYrcx, Top, Verb};
+use crate::command::{Access, AnyCommand, Context, Family as _, Need};
 use crate::controller::Risk;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Words};
 use crate::controller::yrcx::signal::output;
@@ -360,8 +360,8 @@ fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<F
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Yrcx))?.remove(0);
-    let Top::Yrcx(OfYrcx::Yrcx(line)) = cli.command else { unreachable!("the words follow yrcx") };
-    Ok((robot, line.command()))
+    let Top::Yrcx(OfYrcx::Yrcx { unit, verb: Some(Verb::Command(verb)) }) = cli.command else { unreachable!("the words follow yrcx") };
+    Ok((robot, unit.of(verb)))
 }
 
 /// Where tests write: nowhere.

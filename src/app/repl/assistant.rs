@@ -1,0 +1,136 @@
+//! Completion, hints and colours of the line that is being typed.
+
+use std::borrow::Cow;
+use std::cell::RefCell;
+use std::ffi::OsString;
+
+use rustyline::completion::{Completer, Pair};
+use rustyline::highlight::Highlighter;
+use rustyline::hint::{Hinter, HistoryHinter};
+use rustyline::validate::Validator;
+use rustyline::{Context, Helper};
+
+use super::meaning::Meaning;
+use crate::app::complete::complete;
+use crate::app::{screen, words};
+use crate::cli::Globals;
+
+/// Helps with a line.
+pub struct Assistant {
+    meaning: RefCell<Meaning>,
+    /// Flags of all lines that say whom they are for.
+    flags: Vec<OsString>,
+    hinter: HistoryHinter,
+    colour: bool,
+}
+
+impl Assistant {
+    /// For lines of this meaning, with these flags before their own.
+    pub fn new(meaning: &Meaning, globals: &Globals) -> Self {
+        Self {
+            meaning: RefCell::new(Meaning::new(meaning.prefix().to_vec())),
+            flags: globals.whom().into_iter().map(OsString::from).collect(),
+            hinter: HistoryHinter::new(),
+            colour: screen(globals).stdout_color(),
+        }
+    }
+
+    /// Where the word at the end of a line begins, and what it could become.
+    fn candidates(&self, line: &str) -> (usize, Vec<Pair>) {
+        let start = word_start(line);
+        let (before, typed) = line.split_at(start);
+        let Ok(before) = words::split(before) else { return (start, Vec::new()) };
+        let typed = typed.trim_start_matches(['\'', '"']).replace('\\', "");
+        let mut found: Vec<Pair> = Vec::new();
+        for mut words in self.meaning.borrow_mut().beginnings(&before) {
+            words.splice(1..1, self.flags.iter().cloned());
+            words.push(OsString::from(&typed));
+            for candidate in complete(&words, words.len() - 1) {
+                let replacement = shlex::try_quote(&candidate.value).map_or_else(|_| String::new(), Cow::into_owned);
+                if !replacement.is_empty() && found.iter().all(|other| other.replacement != replacement) {
+                    found.push(Pair { display: candidate.value, replacement });
+                }
+            }
+        }
+        if let [only] = &mut found[..]
+            && !only.replacement.ends_with(['=', '/', ':'])
+        {
+            only.replacement.push(' ');
+        }
+        (start, found)
+    }
+}
+
+/// Where the last word of a line begins, its quote included.
+fn word_start(line: &str) -> usize {
+    let (mut start, mut quote, mut escaped) = (0, None, false);
+    for (at, c) in line.char_indices() {
+        match (quote, c) {
+            _ if escaped => escaped = false,
+            (None | Some('"'), '\\') => escaped = true,
+            (Some(open), c) if c == open => quote = None,
+            (None, '\'' | '"') => quote = Some(c),
+            (None, c) if c.is_whitespace() => start = at + c.len_utf8(),
+            _ => {}
+        }
+    }
+    start
+}
+
+impl Helper for Assistant {}
+
+impl Validator for Assistant {}
+
+impl Completer for Assistant {
+    type Candidate = Pair;
+
+    fn complete(&self, line: &str, at: usize, _: &Context<'_>) -> rustyline::Result<(usize, Vec<Pair>)> {
+        Ok(self.candidates(&line[..at]))
+    }
+}
+
+impl Hinter for Assistant {
+    type Hint = String;
+
+    fn hint(&self, line: &str, at: usize, context: &Context<'_>) -> Option<String> {
+        self.hinter.hint(line, at, context)
+    }
+}
+
+impl Highlighter for Assistant {
+    fn highlight_hint<'h>(&self, hint: &'h str) -> Cow<'h, str> {
+        if self.colour { Cow::Owned(format!("\x1b[2m{hint}\x1b[0m")) } else { Cow::Borrowed(hint) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser as _;
+
+    use super::*;
+    use crate::cli::Cli;
+
+    fn completed(prefix: &[&str], line: &str) -> Vec<String> {
+        let globals = Cli::parse_from(["armctl", "--sim", "repl"]).globals;
+        let prefix = prefix.iter().map(ToString::to_string).collect();
+        let (start, found) = Assistant::new(&Meaning::new(prefix), &globals).candidates(line);
+        found.iter().map(|pair| format!("{}{}", &line[..start], pair.replacement)).collect()
+    }
+
+    #[test]
+    fn words_are_completed_where_they_stand() {
+        assert_eq!(completed(&["yerc"], "serv"), ["servo "]);
+        assert_eq!(completed(&["yerc"], "rob"), ["robots "]);
+        assert_eq!(completed(&["yerc"], "servo o"), ["servo on", "servo off"]);
+        assert_eq!(completed(&["yerc"], "toyo ho"), ["toyo home", "toyo host"]);
+        assert_eq!(completed(&[], "expl"), ["explain "]);
+        assert!(completed(&["yerc"], "servo 'x y").is_empty());
+    }
+
+    #[test]
+    fn a_word_begins_after_the_space_that_no_quote_holds() {
+        for (line, start) in [("", 0), ("a b", 2), ("a ", 2), ("say 'x y", 4), ("say \"x' y", 4), ("say x\\ y", 4)] {
+            assert_eq!(word_start(line), start, "{line}");
+        }
+    }
+}
