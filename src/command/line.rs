@@ -6,13 +6,14 @@ use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::holding::{By, Holder};
 use super::{Access, Need};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::Screen;
+use crate::output::envelope::Envelope;
 use crate::settings::Robot;
 use crate::settings::target::Family;
 
@@ -69,19 +70,16 @@ impl Line {
         Ok(Access { trace: access.trace.clone().filter(|_| !is_traced), ..access })
     }
 
-    /// Marks envelopes with where the line stands, and keeps them if they are wanted all at once. What is to be written
-    /// now, if anything.
-    pub fn pass(&self, mut value: Value) -> Option<Value> {
-        if let Some(Origin { file, line }) = &self.origin {
-            let envelopes = match &mut value {
-                Value::Array(envelopes) => envelopes,
-                envelope => std::slice::from_mut(envelope),
-            };
-            for envelope in envelopes.iter_mut().filter_map(Value::as_object_mut) {
-                envelope.insert("file".to_owned(), json!(**file));
-                envelope.insert("line".to_owned(), json!(line));
-            }
+    /// The envelope with where the line stands.
+    pub fn marked(&self, envelope: Envelope) -> Envelope {
+        match &self.origin {
+            Some(Origin { file, line }) => Envelope { file: Some(file.to_string()), line: Some(*line), ..envelope },
+            None => envelope,
         }
+    }
+
+    /// Keeps envelopes if they are wanted all at once. What is to be written now, if anything.
+    pub fn pass(&self, value: Value) -> Option<Value> {
         let Some(results) = &self.results else { return Some(value) };
         match value {
             Value::Array(values) => results.borrow_mut().extend(values),

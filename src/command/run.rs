@@ -171,7 +171,7 @@ impl Run {
             return Ok(false);
         }
         let envelope = stopped.envelope.as_deref().cloned();
-        self.emit(&timed(envelope.unwrap_or_else(|| Envelope::failed(None, stopped.failure.clone()))))?;
+        self.emit(timed(envelope.unwrap_or_else(|| Envelope::failed(None, stopped.failure.clone()))))?;
         Ok(true)
     }
 
@@ -183,7 +183,7 @@ impl Run {
         } else {
             let envelope = Envelope::local(id, report.data()?);
             let envelope = Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope };
-            self.emit(&if self.screen.format == Format::Jsonl { timed(envelope) } else { envelope })?;
+            self.emit(if self.screen.format == Format::Jsonl { timed(envelope) } else { envelope })?;
         }
         failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: !self.is_for_people() }))
     }
@@ -252,7 +252,7 @@ impl Run {
                     if self.is_for_people() {
                         self.screen.failure(&failure);
                     } else {
-                        self.emit(&timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
+                        self.emit(timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
                     }
                     Some(failure)
                 }
@@ -277,7 +277,7 @@ impl Run {
         if self.is_for_people() || failure.kind == Kind::Interrupted {
             return Ok(Stopped::at(robot, command, failure));
         }
-        self.emit(&timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
+        self.emit(timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
         Ok(Stopped { failure, envelope: None, told: true })
     }
 
@@ -340,9 +340,9 @@ impl Run {
         let envelopes: Vec<Envelope> = envelopes.collect::<Result<_, _>>()?;
         if !self.is_for_people() {
             if self.screen.format == Format::Jsonl {
-                envelopes.iter().try_for_each(|envelope| self.emit(&timed(envelope.clone())))?;
+                envelopes.iter().try_for_each(|envelope| self.emit(timed(envelope.clone())))?;
             } else {
-                self.emit(&envelopes)?;
+                self.write(&envelopes.iter().cloned().map(|envelope| self.marked(envelope)).collect::<Vec<_>>())?;
             }
             return Ok(envelopes);
         }
@@ -500,11 +500,23 @@ impl Run {
         }
         let envelope = enveloped(robot, id, Ok(report))?;
         let is_stream = self.screen.format == Format::Jsonl || !matches!(place, Place::Alone);
-        self.emit(&if is_stream { timed(envelope) } else { envelope })
+        self.emit(if is_stream { timed(envelope) } else { envelope })
+    }
+
+    /// Writes an envelope.
+    fn emit(&self, envelope: Envelope) -> Result<(), Failure> {
+        self.write(&self.marked(envelope))
+    }
+
+    fn marked(&self, envelope: Envelope) -> Envelope {
+        match &self.line {
+            Some(line) => line.marked(envelope),
+            None => envelope,
+        }
     }
 
     /// Writes JSON, or what the filter makes of it: strings as they are, the rest as JSON, a line each.
-    fn emit(&self, value: &impl Serialize) -> Result<(), Failure> {
+    fn write(&self, value: &impl Serialize) -> Result<(), Failure> {
         let value = match &self.line {
             Some(line) => line.pass(as_value(value)?),
             None if self.filter.is_none() => return self.screen.json(value),

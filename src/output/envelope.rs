@@ -21,6 +21,14 @@ pub struct Envelope {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String", extend("format" = "date-time"))]
     pub time: Option<Timestamp>,
+    /// The file that the command stands in; in a batch only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "String")]
+    pub file: Option<String>,
+    /// Its line there, from 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "usize")]
+    pub line: Option<usize>,
     /// Name of the robot.
     pub robot: Option<String>,
     /// Its family.
@@ -73,6 +81,8 @@ impl Envelope {
         };
         Self {
             time: None,
+            file: None,
+            line: None,
             robot: Some(robot.name.clone()),
             family: Some(robot.family.name()),
             target: Some(robot.target.value.url().to_owned()),
@@ -88,6 +98,8 @@ impl Envelope {
     pub fn local(command: &str, data: Value) -> Self {
         Self {
             time: None,
+            file: None,
+            line: None,
             robot: None,
             family: None,
             target: None,
@@ -103,6 +115,8 @@ impl Envelope {
     pub fn failed(command: Option<&str>, failure: Failure) -> Self {
         Self {
             time: None,
+            file: None,
+            line: None,
             robot: None,
             family: None,
             target: None,
