@@ -24,7 +24,13 @@ use crate::settings::target::Family;
 
 /// Runs a command line, the program's name included, and says how the process ends.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let args = with_family(args.into_iter().collect());
+    let args: Vec<OsString> = args.into_iter().collect();
+    if let Some(answer) = complete::answer(&args) {
+        // A shell that does not listen has nothing to be told.
+        let _ = Screen::new(Format::Table, ColorChoice::Never, true, 0).data(&answer);
+        return ExitCode::SUCCESS;
+    }
+    let args = with_family(args);
     let mut parser = Parser::default();
     let parsed = parser.parse(&args);
     parser.abandon();

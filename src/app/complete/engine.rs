@@ -15,6 +15,9 @@ use super::values::{self, Context};
 use crate::cli::Cli;
 use crate::command::ValueKind;
 
+/// How candidates are marked, on their way through the engine, behind which more must follow.
+const BEGUN: &str = "begun";
+
 /// So that arguments can name their kind: `#[arg(add = ValueKind::Robot)]`.
 impl ArgExt for ValueKind {}
 
@@ -49,7 +52,10 @@ pub(super) fn complete(mut before: Vec<OsString>, current: &OsStr) -> Option<Vec
 
 fn candidate(found: &CompletionCandidate) -> Option<Candidate> {
     let help = found.get_help().map(|help| help.to_string().lines().next().unwrap_or_default().to_owned());
-    Some(Candidate { value: found.get_value().to_str()?.to_owned(), help })
+    let value = found.get_value().to_str()?.to_owned();
+    // Folders, and flags that take their value behind `=`.
+    let is_begun = found.get_tag().is_some_and(|tag| tag.to_string() == BEGUN) || value.ends_with(['/', '=']);
+    Some(Candidate { value, help, is_begun })
 }
 
 /// The subcommands that a line names.
@@ -91,8 +97,9 @@ fn with_values(argument: &Arg, context: &Arc<Context>) -> Arg {
     let context = Arc::clone(context);
     argument.add(ArgValueCompleter::new(move |current: &OsStr| {
         let found = current.to_str().map_or_else(Vec::new, |current| values::of(kind, current, &context));
-        let found = found.into_iter().enumerate().map(|(order, Candidate { value, help })| {
-            CompletionCandidate::new(value).help(help.map(Into::into)).display_order(Some(order))
+        let found = found.into_iter().enumerate().map(|(order, Candidate { value, help, is_begun })| {
+            let tag = is_begun.then(|| BEGUN.into());
+            CompletionCandidate::new(value).help(help.map(Into::into)).display_order(Some(order)).tag(tag)
         });
         found.collect()
     }))

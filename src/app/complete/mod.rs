@@ -12,9 +12,12 @@
 //! `values.rs`; the library that knows words and flags is unstable and stays in `engine.rs`.
 
 mod engine;
+mod shell;
 mod values;
 
 use std::ffi::OsString;
+
+pub use shell::answer;
 
 use super::with_family;
 
@@ -25,12 +28,18 @@ pub struct Candidate {
     pub value: String,
     /// What it is, in a line.
     pub help: Option<String>,
+    /// Whether more must follow without a blank, as behind `udp://`.
+    pub is_begun: bool,
 }
 
 impl Candidate {
     fn new(value: impl Into<String>, help: impl Into<String>) -> Self {
         let help = Some(help.into()).filter(|help| !help.is_empty());
-        Self { value: value.into(), help }
+        Self { value: value.into(), help, is_begun: false }
+    }
+
+    fn begun(self) -> Self {
+        Self { is_begun: true, ..self }
     }
 }
 

@@ -116,13 +116,14 @@ fn tags(context: &Context) -> Vec<Candidate> {
 
 /// How target URLs begin. What follows is nobody's guess.
 fn urls() -> Vec<Candidate> {
-    vec![
+    let urls = [
         Candidate::new("sim:", "the built-in simulator"),
         Candidate::new("udp://", "yerc: name or address of the controller"),
         Candidate::new("eip://", "yrcx: name or address of the network board"),
         Candidate::new("serial://", "toyo: a port of this machine, as in serial:///dev/ttyUSB0 or serial://COM3"),
         Candidate::new("tcp://", "toyo: HOST:PORT of a serial device server"),
-    ]
+    ];
+    urls.map(Candidate::begun).into()
 }
 
 const FAMILIES: [(Family, &str); 3] =
@@ -156,7 +157,7 @@ const VARIABLES: [(&str, &str); 8] = [
 ];
 
 fn variable_kinds() -> Vec<Candidate> {
-    VARIABLES.iter().map(|(letters, about)| Candidate::new(*letters, *about)).collect()
+    VARIABLES.iter().map(|(letters, about)| Candidate::new(*letters, *about).begun()).collect()
 }
 
 fn signals(side: Side, ending: &str) -> Vec<Candidate> {

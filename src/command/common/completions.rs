@@ -1,9 +1,7 @@
 //! `armctl completions SHELL`.
 
-use clap::{Args, CommandFactory as _};
-use clap_complete::Shell;
+use clap::{Args, ValueEnum};
 
-use crate::cli::Cli;
 use crate::command::run::Run;
 use crate::failure::Failure;
 
@@ -14,15 +12,36 @@ pub struct Completions {
     shell: Shell,
 }
 
+/// A shell that can complete.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Shell {
+    /// Bash 3.2 and later
+    Bash,
+    /// Elvish
+    Elvish,
+    /// Fish 3.1 and later
+    Fish,
+    /// PowerShell
+    Powershell,
+    /// Zsh
+    Zsh,
+}
+
 impl Completions {
     pub(super) fn run(self, run: &Run) -> Result<(), Failure> {
-        run.screen.bytes(&script(self.shell))
+        run.screen.data(self.shell.script())
     }
 }
 
-/// The completion script of a shell.
-pub fn script(shell: Shell) -> Vec<u8> {
-    let mut script = Vec::new();
-    clap_complete::generate(shell, &mut Cli::command(), "armctl", &mut script);
-    script
+impl Shell {
+    /// What makes the shell ask this program; `src/app/complete/shell.rs` answers.
+    pub fn script(self) -> &'static str {
+        match self {
+            Self::Bash => include_str!("../../../completions/armctl.bash"),
+            Self::Elvish => include_str!("../../../completions/armctl.elv"),
+            Self::Fish => include_str!("../../../completions/armctl.fish"),
+            Self::Powershell => include_str!("../../../completions/_armctl.ps1"),
+            Self::Zsh => include_str!("../../../completions/_armctl"),
+        }
+    }
 }

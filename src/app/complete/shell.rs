@@ -1,0 +1,172 @@
+//! What a shell asks, and how it wants to be answered.
+//!
+//! The scripts in `completions/` set `ARMCTL_COMPLETE` to the name of the shell, and pass `--` and the words up to the
+//! cursor. Bash cuts words at `=` and `:` as well, so it passes the line, the piece of it at the cursor, and in the
+//! variable how it will show the answer and how wide.
+
+use std::ffi::OsString;
+
+use clap::ValueEnum as _;
+
+use super::{Candidate, complete};
+use crate::command::common::completions::Shell;
+
+/// The variable that turns a command line into a question.
+const ASKED: &str = "ARMCTL_COMPLETE";
+
+/// The answer to a shell, if this process is asked by one.
+pub fn answer(args: &[OsString]) -> Option<String> {
+    let asked = std::env::var(ASKED).ok()?;
+    let mut asked = asked.split_whitespace();
+    let shell = Shell::from_str(asked.next()?, false).ok()?;
+    let [_, dashes, words @ ..] = args else { return None };
+    if dashes != "--" {
+        return None;
+    }
+    let mut number = || asked.next().and_then(|number| number.parse().ok());
+    Some(match (shell, words) {
+        (Shell::Bash, [line, piece]) => {
+            let is_list = number().is_some_and(|how: usize| LISTING.contains(&how));
+            let width = number().filter(|_| is_list);
+            bash(&line.to_string_lossy(), &piece.to_string_lossy(), width)
+        }
+        (Shell::Bash, _) | (_, []) => String::new(),
+        (Shell::Powershell, [before @ .., last]) => {
+            let last = last.to_str().and_then(|last| last.strip_prefix('+')).unwrap_or_default();
+            let words: Vec<OsString> = before.iter().cloned().chain([last.into()]).collect();
+            lines(&complete(&words, before.len()), described)
+        }
+        (Shell::Fish, words) => lines(&complete(words, words.len() - 1), described),
+        (Shell::Zsh, words) => {
+            lines(&complete(words, words.len() - 1), |found| format!("{}{}", sign(found), described(found)))
+        }
+        (Shell::Elvish, words) => lines(&complete(words, words.len() - 1), |found| found.value.clone()),
+    })
+}
+
+/// How bash says that it shows candidates as a list (`COMP_TYPE`), which may have explanations.
+const LISTING: [usize; 2] = ['?' as usize, '!' as usize];
+
+fn lines(found: &[Candidate], line: impl Fn(&Candidate) -> String) -> String {
+    found.iter().map(|found| line(found) + "\n").collect()
+}
+
+fn described(found: &Candidate) -> String {
+    match &found.help {
+        Some(help) => format!("{}\t{help}", found.value),
+        None => found.value.clone(),
+    }
+}
+
+/// Whether a blank follows.
+fn sign(found: &Candidate) -> char {
+    if found.is_begun { '-' } else { '+' }
+}
+
+/// What stands at the cursor of `line`, for bash to put in the place of `piece`, its end.
+fn bash(line: &str, piece: &str, width: Option<usize>) -> String {
+    let Split { words, quote } = Split::of(line);
+    let index = words.len() - 1;
+    let current = words[index].to_string_lossy().into_owned();
+    let words: Vec<OsString> = words.into_iter().collect();
+    let found = complete(&words, index);
+    // The part of the word that bash took for words of their own.
+    let piece = if quote.is_some() { piece.trim_start_matches(['"', '\'']) } else { piece };
+    let kept = Split::of(piece).words.pop().map_or(0, |piece| piece.len());
+    let before = current.len().saturating_sub(kept);
+    let longest = found.iter().map(|found| found.value.chars().count()).max().unwrap_or(0);
+    let width = width.filter(|_| found.len() > 1);
+    lines(&found, |found| {
+        let value = found.value.get(before..).unwrap_or(&found.value);
+        let value = if quote.is_some() { value.to_owned() } else { escaped(value) };
+        let sign = sign(found);
+        match (&found.help, width) {
+            (Some(help), Some(width)) => {
+                let room = width.saturating_sub(longest + 6);
+                let help: String = help.chars().take(room).collect();
+                format!("{sign}{value:longest$}  ({help})")
+            }
+            _ => format!("{sign}{value}"),
+        }
+    })
+}
+
+/// As bash would have it typed.
+fn escaped(value: &str) -> String {
+    let mut escaped = String::new();
+    for (index, c) in value.char_indices() {
+        let is_special = " \t'\"\\$`&|;<>()*?[]{}!".contains(c) || (index == 0 && "~#".contains(c));
+        escaped.extend(is_special.then_some('\\'));
+        escaped.push(c);
+    }
+    escaped
+}
+
+/// A line that may end anywhere as the words a shell would make of it.
+struct Split {
+    /// The last one is that at the cursor, maybe empty.
+    words: Vec<OsString>,
+    /// The quote that is open at the end.
+    quote: Option<char>,
+}
+
+impl Split {
+    fn of(line: &str) -> Self {
+        let mut words = Vec::new();
+        let mut word = String::new();
+        let mut is_begun = false;
+        let mut quote = None;
+        let mut chars = line.chars();
+        while let Some(c) = chars.next() {
+            match (c, quote) {
+                (_, Some(open)) if c == open => quote = None,
+                ('\\', None | Some('"')) => word.extend(chars.next()),
+                (_, Some(_)) => word.push(c),
+                ('"' | '\'', None) => quote = Some(c),
+                (' ' | '\t' | '\n', None) => {
+                    if is_begun {
+                        words.push(std::mem::take(&mut word).into());
+                    }
+                    is_begun = false;
+                    continue;
+                }
+                (_, None) => word.push(c),
+            }
+            is_begun = true;
+        }
+        words.push(word.into());
+        Self { words, quote }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_split_wherever_it_ends() {
+        let split = |line: &str| {
+            let Split { words, quote } = Split::of(line);
+            let words: Vec<String> = words.into_iter().map(|word| word.into_string().unwrap()).collect();
+            (words.join("|"), quote)
+        };
+        assert_eq!(split("armctl yerc "), ("armctl|yerc|".to_owned(), None));
+        assert_eq!(split("armctl -t sim: yerc st"), ("armctl|-t|sim:|yerc|st".to_owned(), None));
+        assert_eq!(split(r#"armctl file get "A B" 'C D"#), ("armctl|file|get|A B|C D".to_owned(), Some('\'')));
+        assert_eq!(split(r"a\ b ''"), ("a b|".to_owned(), None));
+        assert_eq!(split(""), (String::new(), None));
+        assert_eq!(split("\\"), (String::new(), None));
+    }
+
+    #[test]
+    fn bash_gets_what_it_puts_in_the_place_of_its_piece() {
+        assert_eq!(bash("armctl yerc job se", "se", None), "+select\n");
+        assert_eq!(bash("yerc job se", "se", None), "+select\n");
+        assert_eq!(bash("armctl --format=js", "js", None), "+json\n+jsonl\n");
+        assert_eq!(bash("armctl -t si", "si", None), "-sim:\n");
+        assert_eq!(bash("armctl -t sim: yerc st", "st", None), "+status\n");
+        assert_eq!(bash("armctl explain y", "y", Some(80)).lines().count(), 2);
+        assert!(bash("armctl explain toyo 2", "2", Some(40)).lines().all(|line| line.chars().count() <= 40));
+        assert_eq!(escaped("A B(1)"), r"A\ B\(1\)");
+    }
+}
