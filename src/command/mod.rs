@@ -5,6 +5,7 @@
 //! completion and schema follow from it.
 
 pub mod attach;
+pub mod backup;
 pub mod checks;
 pub mod common;
 pub mod holding;

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use super::manifest::{Controller, LeftOut};
+use super::manifest::Controller;
 use super::parts::Part;
+use crate::command::manifest::LeftOut;
 use crate::command::toyo::cells::Cell;
 use crate::command::toyo::link::{Link, wrong};
 use crate::command::toyo::program::{steps, text};

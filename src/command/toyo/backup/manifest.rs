@@ -1,40 +1,14 @@
-//! The list that a backup keeps of itself.
+//! What the list of a backup says of a Toyo controller.
 
-use std::path::Path;
-
-use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::parts::Part;
-use crate::command::local::is_plain_file_name;
-use crate::command::manifest::{self, List, Reason, Saved};
-use crate::failure::Failure;
+use crate::command::manifest::{self, About, Entry};
+use crate::settings::target::Family;
 
 /// The list of a backup.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Manifest {
-    /// [`List::FORMAT`].
-    pub format: String,
-    /// [`List::VERSION`].
-    pub version: u32,
-    /// The version of armctl that wrote it.
-    pub armctl: String,
-    /// Name of the robot.
-    pub robot: String,
-    /// Its URL.
-    pub target: String,
-    /// What kind of controller it is.
-    pub controller: Controller,
-    /// When the backup began.
-    pub started: Timestamp,
-    /// When it was last worked on.
-    pub updated: Timestamp,
-    /// Whether nothing is missing.
-    pub complete: bool,
-    /// Everything that was asked for so far.
-    pub parts: Vec<Entry>,
-}
+pub type Manifest = manifest::Manifest<Controller>;
 
 /// What a controller is.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -51,94 +25,26 @@ pub struct Controller {
     pub override_percent: Option<u8>,
 }
 
-/// A part of the controller.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct Entry {
-    /// `points-1`.
-    pub part: String,
-    /// The file, if there is one.
-    #[serde(flatten)]
-    pub copy: Option<Saved>,
-    /// What is not in it.
-    #[serde(default)]
-    pub left_out: Vec<LeftOut>,
-    /// Why there is no file.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub error: Option<Reason>,
-}
-
-/// Something that is not in a file, or not on a controller.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct LeftOut {
-    /// `P05`, `T2.7`.
-    pub key: String,
-    /// Why.
-    pub why: String,
-}
-
-impl Manifest {
-    /// The list of a backup that begins.
-    pub fn new(robot: String, target: String, controller: Controller) -> Self {
-        let now = Timestamp::now();
-        Self {
-            format: Self::FORMAT.to_owned(),
-            version: Self::VERSION,
-            armctl: env!("CARGO_PKG_VERSION").to_owned(),
-            robot,
-            target,
-            controller,
-            started: now,
-            updated: now,
-            complete: false,
-            parts: Vec::new(),
-        }
-    }
-
-    /// Writes the list into `folder`, whole or not at all.
-    pub fn write(&mut self, folder: &Path) -> Result<(), Failure> {
-        self.updated = Timestamp::now();
-        manifest::write(folder, self)
-    }
-
-    /// What it says of a part.
-    pub fn entry(&self, part: Part) -> Option<&Entry> {
-        let name = part.to_string();
-        self.parts.iter().find(|entry| entry.part == name)
-    }
-}
-
-impl List for Manifest {
-    const FORMAT: &'static str = "armctl toyo backup";
-    const VERSION: u32 = 1;
-
-    fn head(&self) -> (&str, u32) {
-        (&self.format, self.version)
-    }
-
-    fn state(&self) -> (&str, &str, bool) {
-        (&self.robot, &self.target, self.complete)
-    }
+impl About for Controller {
+    const FAMILY: Option<Family> = Some(Family::Toyo);
 
     fn check(&self) -> Result<(), String> {
-        let mut seen = Vec::new();
-        for Entry { part: name, copy, error, .. } in &self.parts {
-            let part: Part = name.parse()?;
-            if part.to_string() != *name || seen.contains(&part) {
-                return Err(format!("'{name}' is there twice"));
-            }
-            seen.push(part);
-            match copy {
-                Some(copy) if copy.file != part.file() || !is_plain_file_name(&copy.file) => {
-                    return Err(format!("'{name}' is in {}, not in '{}'", part.file(), copy.file));
-                }
-                None if error.is_none() => {
-                    return Err(format!("'{name}' has neither file, bytes and sha256 nor an error"));
-                }
-                _ => {}
-            }
-        }
-        match self.controller.override_percent {
+        match self.override_percent {
             Some(percent) if !(1..=100).contains(&percent) => Err(format!("an override of {percent} % is none")),
+            _ => Ok(()),
+        }
+    }
+
+    fn check_entry(entry: &Entry) -> Result<(), String> {
+        let name = &entry.name;
+        let part: Part = name.parse()?;
+        if part.to_string() != *name {
+            return Err(format!("'{name}' is {part}"));
+        }
+        match &entry.copy {
+            Some(copy) if copy.file != part.file() => {
+                Err(format!("'{name}' is in {}, not in '{}'", part.file(), copy.file))
+            }
             _ => Ok(()),
         }
     }
@@ -147,52 +53,35 @@ impl List for Manifest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::manifest::Saved;
 
-    fn manifest() -> Manifest {
-        let controller = Controller {
+    #[test]
+    fn a_part_is_in_its_own_file() {
+        let entry = |name: &str, file: &str| {
+            let copy = Some(Saved { file: file.into(), ..Saved::default() });
+            Controller::check_entry(&Entry { name: name.into(), copy, ..Entry::default() })
+        };
+        assert_eq!(entry("points-1", "points-1.csv"), Ok(()));
+        for (name, file) in [
+            ("points-1", "points-2.csv"),
+            ("points", "points-1.csv"),
+            ("palletizing-3", "palletizing-03.toml"),
+            ("pictures", "pictures.csv"),
+        ] {
+            assert!(entry(name, file).is_err(), "{name}");
+        }
+    }
+
+    #[test]
+    fn an_override_is_a_percentage() {
+        let controller = |percent| Controller {
             robot_type: "000000".into(),
             version: "4.00".into(),
             task_axes: "5000".into(),
             task_steps: [2000, 0, 0, 0],
-            override_percent: Some(100),
+            override_percent: Some(percent),
         };
-        let mut manifest = Manifest::new("cell3".into(), "tcp://h:1".into(), controller);
-        let copy = Saved { file: "points-1.csv".into(), bytes: 3, sha256: "ab".into() };
-        let (left_out, error) = (Vec::new(), Some(Reason { code: None, message: "no".into() }));
-        manifest.parts = vec![
-            Entry { part: "points-1".into(), copy: Some(copy), left_out: left_out.clone(), error: None },
-            Entry { part: "program-1".into(), copy: None, left_out, error },
-        ];
-        manifest
-    }
-
-    #[test]
-    fn a_list_is_read_as_it_was_written() {
-        let folder = tempfile::tempdir().unwrap();
-        let mut written = manifest();
-        written.write(folder.path()).unwrap();
-        assert_eq!(manifest::read::<Manifest>(folder.path()).unwrap().unwrap(), written);
-        assert!(written.entry(Part::Points(1)).unwrap().copy.is_some());
-        assert!(written.entry(Part::Points(2)).is_none());
-    }
-
-    #[test]
-    fn a_list_that_was_tampered_with_is_no_list() {
-        let spoil: [fn(&mut Manifest); 7] = [
-            |m| m.parts[0].copy.as_mut().unwrap().file = "../points-1.csv".into(),
-            |m| m.parts[0].copy.as_mut().unwrap().file = "points-2.csv".into(),
-            |m| m.parts[1].part = "points-1".into(),
-            |m| m.parts[1].error = None,
-            |m| m.parts[1].part = "pictures".into(),
-            |m| m.controller.override_percent = Some(101),
-            |m| m.version = 2,
-        ];
-        for spoil in spoil {
-            let folder = tempfile::tempdir().unwrap();
-            let mut spoilt = manifest();
-            spoil(&mut spoilt);
-            spoilt.write(folder.path()).unwrap();
-            assert!(manifest::read::<Manifest>(folder.path()).is_err());
-        }
+        assert!(controller(100).check().is_ok());
+        assert!(controller(101).check().is_err());
     }
 }

@@ -6,11 +6,11 @@ use std::str::FromStr;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::manifest::LeftOut;
-use crate::command::manifest::State;
+use crate::command::backup::{self, Item};
+use crate::command::manifest::{LeftOut, State};
 use crate::command::toyo::cells::Cells;
 use crate::controller::toyo::nearest::nearest;
-use crate::failure::{Failure, Kind};
+use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone};
 
 /// What is stored in a file of its own.
@@ -58,6 +58,11 @@ impl Part {
             Self::Program(_) => "txt",
         };
         format!("{self}.{ending}")
+    }
+
+    /// Of which kind it is.
+    pub fn kind(self) -> &'static str {
+        self.words().0
     }
 
     fn words(self) -> (&'static str, Option<u8>) {
@@ -156,10 +161,19 @@ impl PartResult {
 
     /// It failed. Says whether the next part can be tried: after a "no" to this one it can, on a broken line it cannot.
     pub fn fail(&mut self, failure: Failure) -> bool {
-        let goes_on = matches!(failure.kind, Kind::Refused | Kind::Malformed | Kind::Usage | Kind::RefusedHere);
+        let goes_on = backup::goes_on(&failure);
         self.state = State::Failed;
         self.error = Some(failure);
         goes_on
+    }
+}
+
+impl From<PartResult> for Item {
+    fn from(PartResult { part, state, file, left_out, cells, error }: PartResult) -> Self {
+        let count = |cells: u32| usize::try_from(cells).unwrap_or(usize::MAX);
+        let (written, unchanged) =
+            cells.map(|cells| (count(cells.cells_written), count(cells.cells_unchanged))).unzip();
+        Self { state, file, left_out, written, unchanged, error, ..Self::pending(part) }
     }
 }
 

@@ -1,16 +1,17 @@
 //! `toyo restore`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::content::{self, Content};
-use super::manifest::{Controller, LeftOut, Manifest};
+use super::manifest::{Controller, Manifest};
 use super::parts::{self, Part, PartResult, Parts};
+use crate::command::backup::{self, Item, Items, Only, POWER_CYCLE, Restoring};
 use crate::command::local::own_folder;
-use crate::command::manifest::{self, MANIFEST, State};
+use crate::command::manifest::{self, LeftOut, MANIFEST, State};
 use crate::command::toyo::cells::{Cell, Cells};
 use crate::command::toyo::link::{Link, wrong};
 use crate::command::toyo::program::steps;
@@ -52,6 +53,9 @@ pub struct Restore {
     /// Write the backup of one robot type to another
     #[arg(long)]
     force: bool,
+    /// Parts whose names fit
+    #[arg(skip)]
+    patterns: Only,
 }
 
 /// A part with what is to be stored.
@@ -62,8 +66,6 @@ struct Job {
 
 const MACHINE: Work = Work { doing: "storing machine parameters", noun: "", resumes: false };
 const SPEED: Work = Work { doing: "storing the override", noun: "", resumes: false };
-const POWER_CYCLE: &str = "machine parameters were changed: switch the controller's power off and on, then restore \
-                           again without --machine";
 
 impl Command for Restore {
     type Family = Family;
@@ -85,17 +87,14 @@ impl Command for Restore {
     async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
         let Context { link, screen, robot, several } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
-        let manifest: Manifest = manifest::read(&folder)?.ok_or_else(|| {
-            Failure::local(format!("{} holds no {MANIFEST}", folder.display()))
-                .hint("name the folder of a `toyo backup`; single files go with `param restore`, `point set` and so on")
-        })?;
+        let manifest: Manifest = manifest::existing(&folder)?;
         let parts = self.chosen(&manifest)?;
         if self.machine && !parts.contains(&Part::Parameters) {
             return Err(Failure::usage("--machine is about the parameters, which are not among the parts"));
         }
         let mut jobs = Vec::new();
         for part in parts {
-            if let Some(copy) = manifest.entry(part).and_then(|entry| entry.copy.as_ref()) {
+            if let Some(copy) = manifest.entry(&part.to_string()).and_then(|entry| entry.copy.as_ref()) {
                 copy.check(&folder)?;
                 jobs.push(Job { part, content: Content::load(part, &folder, screen)? });
             }
@@ -113,12 +112,26 @@ impl Command for Restore {
 }
 
 impl Restore {
+    /// Of what is asked for in any family.
+    pub fn of(restoring: &Restoring) -> Self {
+        let Restoring { folder, only: patterns, machine, force } = restoring.clone();
+        Self { folder, only: Vec::new(), machine, resume: None, force, patterns }
+    }
+
+    /// Whether all of the backup is restored.
+    fn is_whole(&self) -> bool {
+        self.only.is_empty() && self.patterns == Only::default()
+    }
+
     /// The parts to restore, in the order of writing.
     fn chosen(&self, manifest: &Manifest) -> Result<Vec<Part>, Failure> {
         let tasks = [1, 2, 3, 4];
         let mut parts = Part::all(&tasks, &tasks);
-        parts.retain(|part| manifest.entry(*part).is_some_and(|entry| entry.copy.is_some()));
+        parts.retain(|part| manifest.entry(&part.to_string()).is_some_and(|entry| entry.copy.is_some()));
+        let names: Vec<String> = parts.iter().map(ToString::to_string).collect();
+        self.patterns.check(names.iter().map(String::as_str))?;
         parts.retain(|part| self.only.is_empty() || self.only.iter().any(|only| only.has(*part)));
+        parts.retain(|part| self.patterns.has(&part.to_string()));
         if parts.is_empty() {
             return Err(Failure::usage("the backup has none of these parts").hint(format!("{MANIFEST} lists them")));
         }
@@ -170,7 +183,7 @@ impl Restore {
                 break;
             }
         }
-        if self.only.is_empty()
+        if self.is_whole()
             && let Some(store) = speed(backup)?
         {
             let mut result = PartResult::pending("override");
@@ -208,7 +221,7 @@ impl Restore {
                 link.foresee(&steps::read_request(steps.saturating_add(1).min(5000)), rest);
             }
         }
-        if let Some(store) = speed(backup)?.filter(|_| self.only.is_empty()) {
+        if let Some(store) = speed(backup)?.filter(|_| self.is_whole()) {
             stores::store_all(link, screen, SPEED, &[store], 0).await?;
         }
         link.put_back().await?;
@@ -327,6 +340,17 @@ impl Restored {
     fn is_interrupted(&self) -> bool {
         let kinds = self.parts.iter().filter_map(|part| part.error.as_ref());
         kinds.into_iter().any(|failure| failure.kind == Kind::Interrupted)
+    }
+}
+
+impl Restored {
+    /// As all families report it.
+    pub fn of_folder(self, folder: &Path) -> backup::Restored {
+        let Self { parts, needs_power_cycle } = self;
+        let items = Items::new(parts.into_iter().map(Item::from).collect());
+        let mut restored = backup::Restored::new(folder, items);
+        restored.needs_power_cycle = needs_power_cycle;
+        restored
     }
 }
 

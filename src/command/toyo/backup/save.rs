@@ -7,13 +7,14 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::content::{self, Text};
-use super::manifest::{Controller, Entry, Manifest};
+use super::manifest::{Controller, Manifest};
 use super::parts::{self, Part, PartResult};
+use crate::command::backup::{self, Item, Items, Making, Only, cut_off, write_text};
 use crate::command::interrupt::interruptible;
-use crate::command::local::{Target, make_folder, own_folder};
-use crate::command::manifest::{self, Hash, MANIFEST, Reason, Saved, State};
+use crate::command::local::{make_folder, own_folder};
+use crate::command::manifest::{self, Entry, MANIFEST, Reason, State};
 use crate::command::toyo::link::Link;
-use crate::command::toyo::{Family, files, tasks};
+use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::failure::Failure;
@@ -34,12 +35,34 @@ pub struct Backup {
     /// Points and program of the current task only, so that nothing is changed
     #[arg(long)]
     current_task: bool,
+    /// What is asked for, where that was said for all families
+    #[arg(skip)]
+    scope: Option<Vec<String>>,
     /// Go on with a backup that is not whole; parts that are there already are kept
     #[arg(long, conflicts_with = "force")]
     resume: bool,
     /// Make a new backup over the one in the folder
     #[arg(long)]
     force: bool,
+}
+
+/// In the scope of a backup, where the other tasks are not in it.
+const CURRENT_TASK: &str = "the current task";
+
+impl Backup {
+    /// Of what is asked for in any family; of the current task only where nothing may be changed.
+    pub fn of(making: &Making, current_task: bool) -> Self {
+        let Making { folder, mut scope, resume, force } = making.clone();
+        if current_task && !resume {
+            scope.get_or_insert_default().push(CURRENT_TASK.to_owned());
+        }
+        Self { folder, current_task, scope, resume, force }
+    }
+
+    /// What is asked for, as the list says it; `None` if nobody says.
+    fn scope(&self) -> Option<Vec<String>> {
+        self.scope.clone().or_else(|| self.current_task.then(|| vec![CURRENT_TASK.to_owned()]))
+    }
 }
 
 impl Command for Backup {
@@ -54,13 +77,24 @@ impl Command for Backup {
     async fn run(&self, context: Context<'_, Family>) -> Result<BackedUp, Failure> {
         let Context { link, screen, robot, several } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
-        let earlier = manifest::earlier(&folder, robot.target.value.url(), self.resume, self.force)?;
+        let scope = self.scope();
+        let earlier: Option<Manifest> = manifest::earlier(&folder, robot, scope.as_deref(), self.resume, self.force)?;
         if link.is_dry() {
             return self.rehearse(link).await;
         }
+        let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
+        if scope.iter().any(|word| word == CURRENT_TASK) != self.current_task {
+            let (of, other) = if self.current_task { ("every task", "leave") } else { ("the current task", "add") };
+            return Err(Failure::usage(format!("{} is a backup of {of}", folder.display()))
+                .hint(format!("{other} --current-task, or choose another folder")));
+        }
         // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with what was saved.
-        let outcome = interruptible(self.save(link, screen, robot, &folder, earlier)).await.and_then(|outcome| outcome);
-        let outcome = outcome.map_err(|failure| told(failure, &folder));
+        let outcome =
+            interruptible(self.save(link, screen, robot, &folder, scope, earlier)).await.and_then(|outcome| outcome);
+        let outcome = outcome.map_err(|failure| match manifest::read::<Controller>(&folder) {
+            Ok(Some(list)) => cut_off(failure, &folder, list.files.iter().filter(|entry| entry.copy.is_some()).count()),
+            _ => failure,
+        });
         tasks::done(link, outcome).await
     }
 }
@@ -72,26 +106,30 @@ impl Backup {
         screen: &Screen,
         robot: &Robot,
         folder: &Path,
+        scope: Vec<String>,
         earlier: Option<Manifest>,
     ) -> Result<BackedUp, Failure> {
         let controller = content::controller(link).await?;
-        let chosen = self.parts(link, &controller).await?;
+        let mut chosen = self.parts(link, &controller).await?;
+        let only = Only::of_scope(&scope);
+        let names: Vec<String> = chosen.iter().map(ToString::to_string).collect();
+        only.check(names.iter().map(String::as_str))?;
+        chosen.retain(|part| only.has(&part.to_string()));
         make_folder(folder)?;
-        let target = robot.target.value.url().to_owned();
-        let mut manifest = Manifest::new(robot.name.clone(), target, controller.clone());
+        let mut manifest = Manifest::new(robot, controller.clone(), scope);
         // What was saved before stays in the list until it is saved anew, so that it is kept whenever this is cut off.
         let earlier = earlier.filter(|earlier| earlier.controller.robot_type == controller.robot_type);
         let kept = |part: Part| {
-            let entry = earlier.as_ref()?.entry(part)?;
+            let entry = earlier.as_ref()?.entry(&part.to_string())?;
             entry.copy.as_ref().filter(|copy| copy.check(folder).is_ok())?;
             Some(entry.clone())
         };
-        manifest.parts = chosen.iter().filter_map(|part| kept(*part)).collect();
+        manifest.files = chosen.iter().filter_map(|part| kept(*part)).collect();
         manifest.write(folder)?;
         let mut results: Vec<PartResult> = chosen.iter().map(PartResult::pending).collect();
         let total = chosen.len();
         for (number, (part, result)) in chosen.iter().zip(&mut results).enumerate() {
-            if let Some(entry) = manifest.entry(*part) {
+            if let Some(entry) = manifest.entry(&part.to_string()) {
                 result.state = State::Kept;
                 result.file = entry.copy.as_ref().map(|copy| copy.file.clone());
                 result.left_out.clone_from(&entry.left_out);
@@ -100,7 +138,7 @@ impl Backup {
             screen.step(&format!("{}/{total} {part}", number + 1));
             let read = content::read(link, screen, *part, &controller).await;
             let (entry, goes_on) = entry_of(*part, read, folder, result)?;
-            manifest.parts.push(entry);
+            manifest.files.push(entry);
             manifest.write(folder)?;
             if !goes_on {
                 break;
@@ -109,7 +147,7 @@ impl Backup {
         let complete = results.iter().all(|part| matches!(part.state, State::Done | State::Kept));
         manifest.complete = complete;
         manifest.write(folder)?;
-        Ok(BackedUp::new(folder, controller, complete, results))
+        Ok(BackedUp::new(folder, controller, manifest.scope, complete, results))
     }
 
     async fn parts(&self, link: &mut Link, controller: &Controller) -> Result<Vec<Part>, Failure> {
@@ -148,7 +186,7 @@ fn entry_of(
     folder: &Path,
     result: &mut PartResult,
 ) -> Result<(Entry, bool), Failure> {
-    let mut entry = Entry { part: part.to_string(), copy: None, left_out: Vec::new(), error: None };
+    let mut entry = Entry { name: part.to_string(), holds: part.kind().to_owned(), ..Entry::default() };
     let Text { text, left_out } = match read {
         Ok(text) => text,
         Err(failure) => {
@@ -156,27 +194,12 @@ fn entry_of(
             return Ok((entry, result.fail(failure)));
         }
     };
-    files::write(&Target::new(folder.join(part.file()), true)?, &text)?;
-    let mut hash = Hash::default();
-    hash.take(text.as_bytes());
-    entry.copy = Some(Saved { file: part.file(), bytes: hash.bytes, sha256: hash.hex() });
+    entry.copy = Some(write_text(folder, part.file(), &text)?);
     entry.left_out.clone_from(&left_out);
     result.state = State::Done;
     result.file = Some(part.file());
     result.left_out = left_out;
     Ok((entry, true))
-}
-
-/// A failure that ended the work, with what is there already.
-fn told(failure: Failure, folder: &Path) -> Failure {
-    let saved = match manifest::read::<Manifest>(folder) {
-        Ok(Some(list)) => list.parts.iter().filter(|entry| entry.copy.is_some()).count(),
-        _ => return failure,
-    };
-    let message = format!("{}; {saved} parts are in {}", failure.message.trim_end_matches('.'), folder.display());
-    let again = "--resume goes on from there";
-    let hint = failure.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}; then {again}"));
-    Failure { message, ..failure }.hint(hint)
 }
 
 /// What is in the folder now.
@@ -190,12 +213,21 @@ pub struct BackedUp {
     complete: bool,
     controller: Controller,
     parts: Vec<PartResult>,
+    #[serde(skip)]
+    of: (PathBuf, Vec<String>),
 }
 
 impl BackedUp {
-    fn new(folder: &Path, controller: Controller, complete: bool, parts: Vec<PartResult>) -> Self {
+    fn new(folder: &Path, controller: Controller, scope: Vec<String>, complete: bool, parts: Vec<PartResult>) -> Self {
         let manifest = folder.join(MANIFEST).display().to_string();
-        Self { folder: folder.display().to_string(), manifest, complete, controller, parts }
+        let of = (folder.to_owned(), scope);
+        Self { folder: folder.display().to_string(), manifest, complete, controller, parts, of }
+    }
+}
+
+impl From<BackedUp> for backup::BackedUp {
+    fn from(BackedUp { complete, parts, of: (folder, scope), .. }: BackedUp) -> Self {
+        Self::new(&folder, scope, complete, Items::new(parts.into_iter().map(Item::from).collect()))
     }
 }
 

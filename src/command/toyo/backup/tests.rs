@@ -166,7 +166,7 @@ fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
     assert_eq!((failed.unwrap().kind, &part(&data, "program-2")["state"]), (Kind::Refused, &"done".into()));
     let list = std::fs::read_to_string(desk.path("saved/manifest.json")).unwrap();
     let list: Value = serde_json::from_str(&list).unwrap();
-    assert!(part(&list, "easy")["error"]["message"].as_str().unwrap().contains("@NG"));
+    assert!(list["files"][1]["error"]["message"].as_str().unwrap().contains("@NG"));
 }
 
 #[test]

@@ -8,17 +8,19 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::Instant;
 
-use super::manifest::{Entry, Manifest};
+use super::manifest::{Controller, Manifest};
 use super::name::{self, Shown, TypeArg, type_word};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
+use crate::command::backup::{self, Items, Making, Only};
 use crate::command::local::{LocalNames, Target, make_folder, own_folder};
-use crate::command::manifest::{self, Hash, MANIFEST, Reason, Saved, State};
+use crate::command::manifest::{self, Entry, Hash, MANIFEST, Reason, Saved, State};
 use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};
 use crate::controller::text::hex;
 use crate::controller::yerc::files::{self, FileType};
+use crate::controller::yerc::query::Query as _;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::View;
@@ -28,9 +30,12 @@ use crate::output::view::View;
 pub struct Backup {
     /// Folder, made if it is not there
     folder: PathBuf,
-    /// Which types, such as jbi,dat
-    #[arg(long = "type", value_name = "TYPE", value_delimiter = ',', ignore_case = true, default_value = "all")]
+    /// Which types, such as jbi,dat [default: all, or those of the backup that goes on]
+    #[arg(long = "type", value_name = "TYPE", value_delimiter = ',', ignore_case = true)]
     types: Vec<TypeArg>,
+    /// What is asked for, where that was said for all families
+    #[arg(skip)]
+    scope: Option<Vec<String>>,
     /// Go on with a backup that is not whole; files that are there already are kept
     #[arg(long, conflicts_with = "force")]
     resume: bool,
@@ -43,6 +48,34 @@ const SHAPE: Shape = Shape { done: "saved", has_paths: false, has_bytes: true };
 /// How much work may be lost from the list when the power fails.
 const WRITE_EVERY: Duration = Duration::from_secs(1);
 
+impl Backup {
+    /// Of what is asked for in any family.
+    pub fn of(making: &Making) -> Self {
+        let Making { folder, scope, resume, force } = making.clone();
+        Self { folder, types: Vec::new(), scope, resume, force }
+    }
+
+    /// What is asked for, as the list says it; `None` if nobody says.
+    fn scope(&self) -> Option<Vec<String>> {
+        let types = TypeArg::chosen(&self.types);
+        match types.len() {
+            0 => self.scope.clone(),
+            all if all == FileType::ALL.len() => Some(Vec::new()),
+            _ => Some(types.into_iter().map(|kind| format!("{TYPE}{}", type_word(kind))).collect()),
+        }
+    }
+}
+
+/// What was asked for, read back.
+fn asked(scope: &[String]) -> (Vec<FileType>, Only) {
+    let word = |kind: &FileType| scope.iter().any(|word| word.strip_prefix(TYPE) == Some(type_word(*kind)));
+    let types: Vec<FileType> = FileType::ALL.into_iter().filter(word).collect();
+    (if types.is_empty() { FileType::ALL.into() } else { types }, Only::of_scope(scope))
+}
+
+/// Before a type, in the scope of a backup.
+const TYPE: &str = "type ";
+
 impl Command for Backup {
     type Family = Family;
     type Report = BackedUp;
@@ -50,13 +83,17 @@ impl Command for Backup {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<BackedUp, Failure> {
         let Context { link, screen, robot, several } = context;
-        let types = TypeArg::chosen(&self.types);
         let folder = own_folder(&self.folder, &robot.name, several);
-        let earlier: Option<Manifest> = manifest::earlier(&folder, robot.target.value.url(), self.resume, self.force)?;
+        let scope = self.scope();
+        let earlier: Option<Manifest> = manifest::earlier(&folder, robot, scope.as_deref(), self.resume, self.force)?;
+        let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
+        let (types, only) = asked(&scope);
         if link.is_dry() {
+            link.foresee_next(&Controller::question(link)?.request());
             transfer::foresee_all(link, types.iter().map(|kind| files::list(*kind)));
-            return Ok(BackedUp::new(&folder, Results::new(Vec::new(), SHAPE), false));
+            return Ok(BackedUp::new(&folder, Results::new(Vec::new(), SHAPE), &scope, false));
         }
+        let controller = Controller::ask(link).await?;
         let mut work = Vec::new();
         let mut refused = Vec::new();
         for kind in &types {
@@ -66,21 +103,29 @@ impl Command for Backup {
                 Err(failure) => return Err(transfer::about(&kind.filter(), failure)),
             }
         }
+        let shown = |name: &[u8]| link.encoding.decode(name);
+        let names: Vec<String> = work.iter().map(|(_, name)| shown(name)).collect();
+        only.check(names.iter().map(String::as_str))?;
+        work.retain(|(_, name)| only.has(&shown(name)));
         make_folder(&folder)?;
-        let words = types.iter().map(|kind| type_word(*kind).to_owned()).collect();
-        let target = robot.target.value.url().to_owned();
-        let encoding = link.encoding.label().to_owned();
-        let manifest = Manifest::new(robot.name.clone(), target, link.model.to_string(), encoding, words);
+        let mut manifest = Manifest::new(robot, controller, scope.clone());
+        // What was saved before stays in the list until its turn, so that it is kept whenever this is cut off.
+        let is_wanted = |entry: &&Entry| entry.copy.is_some() && work.iter().any(|(_, name)| is_of(entry, name));
+        manifest.files = earlier.iter().flat_map(|list| &list.files).filter(is_wanted).cloned().collect();
         let mut ledger = Ledger::open(&folder, manifest, work.len(), screen)?;
         let mut results: Vec<FileResult> =
             work.iter().map(|(_, name)| FileResult::pending(Shown::new(link.encoding, name), None)).collect();
         let mut names = LocalNames::new(link.encoding);
         for (number, ((kind, name), result)) in work.iter().zip(&mut results).enumerate() {
             let file_type = type_word(FileType::of(name).unwrap_or(*kind)).to_owned();
-            let mut entry =
-                Entry { name: result.name.name.clone(), name_hex: hex(name), file_type, copy: None, error: None };
+            let mut entry = Entry {
+                name: result.name.name.clone(),
+                name_hex: Some(hex(name)),
+                holds: file_type,
+                ..Entry::default()
+            };
             let local = names.assign(name);
-            let kept = earlier.as_ref().and_then(|list| list.entry(name)?.copy.clone());
+            let kept = earlier.as_ref().and_then(|list| list.entry_of(name)?.copy.clone());
             let kept = kept.filter(|copy| local.as_ref() == Ok(&copy.file) && copy.check(&folder).is_ok());
             let goes_on = if let Some(copy) = kept {
                 result.state = State::Kept;
@@ -113,7 +158,7 @@ impl Command for Backup {
         let results = Results::new(results, SHAPE);
         let complete = results.failed + results.not_tried == 0;
         ledger.close(complete)?;
-        Ok(BackedUp::new(&folder, results, complete))
+        Ok(BackedUp::new(&folder, results, &scope, complete))
     }
 }
 
@@ -141,6 +186,10 @@ async fn fetch(
     Ok(Saved { file: local, bytes: hash.bytes, sha256: hash.hex() })
 }
 
+fn is_of(entry: &Entry, name: &[u8]) -> bool {
+    entry.name_hex.as_deref() == Some(&*hex(name))
+}
+
 /// The list under way, which is written even if the work is cut off.
 struct Ledger<'a> {
     manifest: Manifest,
@@ -159,7 +208,10 @@ impl<'a> Ledger<'a> {
     }
 
     fn record(&mut self, entry: Entry) -> Result<(), Failure> {
-        self.manifest.files.push(entry);
+        match self.manifest.files.iter_mut().find(|known| known.name_hex == entry.name_hex) {
+            Some(known) => *known = entry,
+            None => self.manifest.files.push(entry),
+        }
         if self.written.elapsed() >= WRITE_EVERY {
             self.manifest.write(self.folder)?;
             self.written = Instant::now();
@@ -203,12 +255,21 @@ pub struct BackedUp {
     complete: bool,
     #[serde(flatten)]
     results: Results,
+    #[serde(skip)]
+    of: (PathBuf, Vec<String>),
 }
 
 impl BackedUp {
-    fn new(folder: &Path, results: Results, complete: bool) -> Self {
+    fn new(folder: &Path, results: Results, scope: &[String], complete: bool) -> Self {
         let manifest = folder.join(MANIFEST).display().to_string();
-        Self { folder: folder.display().to_string(), manifest, complete, results }
+        let of = (folder.to_owned(), scope.to_vec());
+        Self { folder: folder.display().to_string(), manifest, complete, results, of }
+    }
+}
+
+impl From<BackedUp> for backup::BackedUp {
+    fn from(BackedUp { complete, results, of: (folder, scope), .. }: BackedUp) -> Self {
+        Self::new(&folder, scope, complete, Items::from(results))
     }
 }
 

@@ -6,12 +6,13 @@ use clap::Args;
 
 use super::content::Content;
 use super::deliver::{Delivery, Manner, deliver};
-use super::manifest::{Entry, Manifest};
+use super::manifest::{Manifest, controller_file};
 use super::name::{self, Shown, TypeArg};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
+use crate::command::backup::{Only, Restoring};
 use crate::command::local::own_folder;
-use crate::command::manifest::{self, MANIFEST};
+use crate::command::manifest::{self, Entry, MANIFEST, State};
 use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context};
@@ -36,6 +37,12 @@ pub struct Restore {
     /// Replace jobs that the controller does not overwrite by itself
     #[arg(long)]
     replace: bool,
+    /// Compare first, and send only what differs
+    #[arg(long)]
+    differing: bool,
+    /// Files whose names fit
+    #[arg(skip)]
+    patterns: Only,
     /// Send the backup of one model to another
     #[arg(long)]
     force: bool,
@@ -47,6 +54,21 @@ const SHAPE: Shape = Shape { done: "sent", has_paths: true, has_bytes: true };
 const ORDER: [FileType; 6] = [FileType::Dat, FileType::Cnd, FileType::Jbi, FileType::Lst, FileType::Sys, FileType::Prm];
 /// What goes if nobody says which types. Parameters and system data change the controller itself.
 const USUAL: [FileType; 3] = [FileType::Dat, FileType::Cnd, FileType::Jbi];
+
+impl Restore {
+    /// Of what is asked for in any family.
+    pub fn of(restoring: &Restoring) -> Self {
+        let Restoring { folder, only: patterns, machine, force } = restoring.clone();
+        let mut types = vec![TypeArg::Dat, TypeArg::Cnd, TypeArg::Jbi];
+        if patterns != Only::default() {
+            types.push(TypeArg::Lst);
+        }
+        if machine {
+            types.extend([TypeArg::Lst, TypeArg::Prm, TypeArg::Sys]);
+        }
+        Self { folder, only: Vec::new(), types, verify: false, replace: true, differing: true, patterns, force }
+    }
+}
 
 impl Command for Restore {
     type Family = Family;
@@ -60,12 +82,10 @@ impl Command for Restore {
     async fn run(&self, context: Context<'_, Family>) -> Result<Results, Failure> {
         let Context { link, screen, robot, several } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
-        let manifest: Manifest = manifest::read(&folder)?.ok_or_else(|| {
-            Failure::local(format!("{} holds no {MANIFEST}", folder.display()))
-                .hint("name the folder of a `yerc file backup`; single files go with `yerc file put`")
-        })?;
-        if manifest.model != link.model.to_string() && !self.force {
-            let message = format!("the backup is of a {}, {} is a {}", manifest.model, robot.label(), link.model);
+        let manifest: Manifest = manifest::existing(&folder)?;
+        let model = &manifest.controller.model;
+        if *model != link.model.to_string() && !self.force {
+            let message = format!("the backup is of a {model}, {} is a {}", robot.label(), link.model);
             return Err(Failure::new(Kind::RefusedHere, message)
                 .hint("check the model (?model=…); --force sends the files all the same"));
         }
@@ -94,6 +114,21 @@ impl Command for Restore {
         let total = deliveries.len();
         for (number, (delivery, result)) in deliveries.iter_mut().zip(&mut results).enumerate() {
             screen.step(&format!("{}/{total} {}", number + 1, result.name.name));
+            if self.differing {
+                match transfer::is_same(link, screen, &delivery.file, &mut delivery.content).await {
+                    Ok(true) => {
+                        result.state = State::Kept;
+                        continue;
+                    }
+                    Ok(false) => {}
+                    Err(failure) => {
+                        if result.settle(Err(failure)) {
+                            continue;
+                        }
+                        break;
+                    }
+                }
+            }
             let outcome = deliver(link, screen, delivery, manner, result).await;
             if !result.settle(outcome) {
                 break;
@@ -115,7 +150,7 @@ impl Restore {
         };
         for file in &only {
             let shown = link.encoding.decode(file.as_bytes());
-            if manifest.entry(file.as_bytes()).and_then(|entry| entry.copy.as_ref()).is_none() {
+            if manifest.entry_of(file.as_bytes()).and_then(|entry| entry.copy.as_ref()).is_none() {
                 return Err(Failure::usage(format!("the backup has no {shown}")).hint(format!("{MANIFEST} lists it")));
             }
             if !types.contains(&file.file_type()) {
@@ -124,12 +159,20 @@ impl Restore {
                     .hint(format!("add --type {kind}; parameters and system data change the controller itself")));
             }
         }
+        let copied = || manifest.files.iter().filter(|entry| entry.copy.is_some());
+        self.patterns.check(copied().map(|entry| entry.name.as_str()))?;
         let mut chosen = Vec::new();
-        for entry in manifest.files.iter().filter(|entry| entry.copy.is_some()) {
-            let file = entry.controller_file()?;
+        for entry in copied().filter(|entry| self.patterns.has(&entry.name)) {
+            let file = controller_file(entry)?;
             if types.contains(&file.file_type()) && (only.is_empty() || only.contains(&file)) {
                 chosen.push((file, entry));
             }
+        }
+        if chosen.is_empty() && self.patterns != Only::default() {
+            return Err(Failure::usage(
+                "these files are parameters or system data, which change the controller itself",
+            )
+            .hint("add --machine if that is meant"));
         }
         let place = |file: &FileName| ORDER.iter().position(|kind| *kind == file.file_type());
         chosen.sort_by_key(|(file, _)| place(file));

@@ -9,8 +9,9 @@ use serde::Serialize;
 use super::name::Shown;
 use super::transfer::about;
 use crate::command::Report;
+use crate::command::backup::{self, Item, Items, gravity};
 use crate::command::manifest::State;
-use crate::failure::{Failure, Kind};
+use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
 
 /// One file.
@@ -52,7 +53,7 @@ impl FileResult {
                 true
             }
             Err(failure) => {
-                let goes_on = matches!(failure.kind, Kind::Refused | Kind::Malformed | Kind::Usage | Kind::RefusedHere);
+                let goes_on = backup::goes_on(&failure);
                 self.state = State::Failed;
                 self.error = Some(failure);
                 goes_on
@@ -140,6 +141,17 @@ impl Results {
     }
 }
 
+impl From<Results> for Items {
+    fn from(results: Results) -> Self {
+        let item = |file: FileResult| {
+            let notes = notes(&file).map(ToOwned::to_owned).collect();
+            let FileResult { name: Shown { name, name_hex }, state, path, bytes, error, .. } = file;
+            Item { name_hex, state, file: path, bytes, notes, error, ..Item::pending(name) }
+        };
+        Self::new(results.files.into_iter().map(item).collect())
+    }
+}
+
 impl Report for Results {
     fn view(&self) -> View {
         View::table(self.table())
@@ -174,21 +186,11 @@ fn brief(failure: &Failure) -> String {
     }
 }
 
-/// What a person must know first: that something may have been done, then that the work ended early.
-fn gravity(kind: Kind) -> u8 {
-    match kind {
-        Kind::OutcomeUnknown => 4,
-        Kind::NoAnswer | Kind::Local => 3,
-        Kind::Malformed => 2,
-        Kind::Refused => 1,
-        _ => 0,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::controller::text::Encoding;
+    use crate::failure::Kind;
     use crate::output::render;
 
     const SHAPE: Shape = Shape { done: "saved", has_paths: false, has_bytes: true };

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use super::compare::Comparer;
 use super::content::Content;
 use crate::command::yerc::link::{Link, Refusal};
 use crate::controller::yerc::files::{self, FileName, FileType, split_list};
@@ -9,6 +10,7 @@ use crate::controller::yerc::request::Request;
 use crate::controller::yerc::session::{DownloadEnd, UploadEnd};
 use crate::controller::yerc::wire::Status;
 use crate::failure::{Failure, Kind};
+use crate::output::Screen;
 use crate::output::progress::Progress;
 
 /// Largest file taken from a controller; theirs have some megabytes.
@@ -62,6 +64,27 @@ pub async fn fetch_listed(
     match link.download(&file.save(), MAX_FILE, None, take).await? {
         DownloadEnd::Nothing(Status { added: NO_FILE_OR_EMPTY, .. }) => Ok(0),
         end => taken(&end),
+    }
+}
+
+/// Whether the controller has a file with this content already. One that it does not give is another one.
+pub async fn is_same(
+    link: &mut Link,
+    screen: &Screen,
+    file: &FileName,
+    content: &mut Content,
+) -> Result<bool, Failure> {
+    let name = link.encoding.decode(file.as_bytes());
+    let mut progress = screen.bytes_progress(&format!("{name} (comparing)"), Some(content.size()));
+    let mut comparer = Comparer::new(content.pieces()?);
+    let fetched = fetch(link, file, |block| {
+        progress.advance(block.len() as u64);
+        comparer.take(block)
+    });
+    match fetched.await {
+        Ok(_) => Ok(comparer.finish()?.first_difference.is_none()),
+        Err(failure) if failure.kind == Kind::Refused => Ok(false),
+        Err(failure) => Err(failure),
     }
 }
 
