@@ -553,6 +553,13 @@ impl Link {
         std::thread::spawn(move || screen.note("stopping the robot: stop input SI(06) off"));
     }
 
+    /// Notes in a dry run an order that depends on answers.
+    pub fn foresee(&mut self, order: &Order, about: &str) {
+        if let Transport::Notes(notes) = &mut self.transport {
+            notes.push(json!({ "wi": hex(order.words()), "about": about }));
+        }
+    }
+
     fn note(&mut self, order: &Order) {
         if let Transport::Notes(notes) = &mut self.transport {
             notes.push(json!({ "wi": hex(order.words()) }));

@@ -15,6 +15,7 @@
 
 mod alarm;
 mod arguments;
+pub mod backup;
 mod check;
 mod clock;
 #[cfg(test)]
@@ -121,6 +122,10 @@ commands! {
         HandData(Verbs<data::HandData>),
         /// Points and shifts that the controller computes
         PointCalc(Verbs<point_calc::PointCalc>),
+        /// Save points, pallets, shifts, hands, variables, parameters in a folder
+        Backup(backup::Backup),
+        /// Write back what a backup holds
+        Restore(backup::Restore),
         /// Static variables SGI and SGR
         Var(Verbs<var::Var>),
         /// Parameters of robots and axes

@@ -106,12 +106,12 @@ fn cut_off(failure: Failure, done: usize, all: usize) -> Failure {
 }
 
 /// Whether a refusal is about remote commands as such: the next one would be refused as well.
-fn is_about_commands(alarm: Alarm) -> bool {
+pub fn is_about_commands(alarm: Alarm) -> bool {
     alarm.group == STOP_INPUT.group
 }
 
 /// Answers repeat what was asked for, as far as they have it.
-fn check_echo(order: &Order, values: &Values) -> Result<(), Failure> {
+pub fn check_echo(order: &Order, values: &Values) -> Result<(), Failure> {
     let differs = |(key, asked): &(Key, &Value)| values.value(*key).is_some_and(|told| told != *asked);
     match order.values().iter().find(differs) {
         Some((key, _)) => {

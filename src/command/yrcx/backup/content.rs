@@ -1,0 +1,505 @@
+//! The parts of a controller as texts, and texts as what is to be written.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::parts::{POINTS, Part, Records};
+use super::rows::{self, Row};
+use crate::command::manifest::{About, Entry, LeftOut};
+use crate::command::yrcx::link::Link;
+use crate::command::yrcx::numbers::{Numbers, runs};
+use crate::command::yrcx::refusal::refused;
+use crate::command::yrcx::several::{check_echo, is_about_commands};
+use crate::command::yrcx::single::shown;
+use crate::controller::yrcx::alarm::Alarm;
+use crate::controller::yrcx::answer::Answer;
+use crate::controller::yrcx::order::{Draft, Order};
+use crate::controller::yrcx::table::parameter::PARAMETERS;
+use crate::controller::yrcx::table::{Command, Field};
+use crate::controller::yrcx::value::{Key, Value, Values};
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::progress::Progress;
+use crate::settings::target::Family;
+
+/// What kind of controller it is.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Controller {
+    /// Of the host software: `V1.08 R0048`.
+    pub software: String,
+    /// The robots that it has.
+    pub robots: Vec<Robot>,
+}
+
+/// A robot of the controller.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Robot {
+    /// 1 to 4.
+    pub robot: u8,
+    /// The number of its model.
+    pub robot_type: i32,
+    /// The axes that it has, 1 to 4.
+    pub axes: Vec<u8>,
+}
+
+impl About for Controller {
+    const FAMILY: Option<Family> = Some(Family::Yrcx);
+
+    fn check_entry(entry: &Entry) -> Result<(), String> {
+        let part: Part = entry.name.parse()?;
+        match &entry.copy {
+            Some(copy) if copy.file != part.file() => {
+                Err(format!("'{part}' is in {}, not in '{}'", part.file(), copy.file))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Controller {
+    /// Asks the controller.
+    pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
+        let versions = link.run(&Command::Versions.order().build()?).await?.values;
+        let told = |key| shown(Command::Versions, &versions, key).unwrap_or_default();
+        let software = format!("{} {}", told(Key::HostVersion), told(Key::HostRevision));
+        let mut robots = Vec::new();
+        for robot in 1..=4_u8 {
+            let Ok(servos) = ask(link, &of_robot(Command::ServoStatus, robot).build()?).await? else { continue };
+            let has = |(axis, key): (u8, Key)| servos.int(key).filter(|state| *state != NO_AXIS).map(|_| axis);
+            let axes: Vec<u8> = (1..).zip(Key::AXES).filter_map(has).collect();
+            if axes.is_empty() {
+                continue;
+            }
+            let system = link.run(&of_robot(Command::System, robot).build()?).await?.values;
+            robots.push(Robot { robot, robot_type: system.int(Key::RobotType).unwrap_or_default(), axes });
+        }
+        Ok(Self { software, robots })
+    }
+
+    /// What a dry run notes of [`ask`](Self::ask).
+    pub fn foresee(link: &mut Link) -> Result<(), Failure> {
+        link.foresee(&Command::Versions.order().build()?, "which versions it has");
+        link.foresee(&of_robot(Command::ServoStatus, 1).build()?, "which axes it has, and so on for robots 2 to 4");
+        link.foresee(&of_robot(Command::System, 1).build()?, "the type of each robot that it has");
+        Ok(())
+    }
+
+    /// The types of its robots, in words.
+    pub fn types(&self) -> String {
+        let types = self.robots.iter().map(|robot| format!("{} (robot {})", robot.robot_type, robot.robot));
+        types.collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// What the state of the servo of an axis is that is not there (4.7.3).
+const NO_AXIS: i32 = 9;
+
+/// A part as text.
+pub struct Text {
+    /// What its file holds.
+    pub text: String,
+    /// Which numbers were asked for.
+    pub numbers: Vec<i32>,
+    /// Numbers that the controller has nothing for, with the alarm that it refused them with.
+    pub refused: Vec<(i32, Alarm)>,
+    /// What there is and is not in the file.
+    pub left_out: Vec<LeftOut>,
+}
+
+impl Text {
+    /// As the list says it.
+    pub fn holds(&self, part: Part) -> String {
+        match part {
+            Part::Points(_) | Part::Comments(_) => format!("{} {}", part.kind(), runs(&self.numbers)),
+            _ => part.kind().to_owned(),
+        }
+    }
+
+    /// Numbers that were refused, by alarms.
+    pub fn refusals(&self) -> Vec<LeftOut> {
+        let mut alarms: Vec<Alarm> = self.refused.iter().map(|(_, alarm)| *alarm).collect();
+        alarms.dedup();
+        alarms.sort_unstable_by_key(ToString::to_string);
+        alarms.dedup();
+        let of = |alarm: Alarm| {
+            let numbers = self.refused.iter().filter(|(_, own)| *own == alarm).map(|(number, _)| *number);
+            LeftOut {
+                key: runs(&numbers.collect::<Vec<_>>()),
+                why: format!("refused with alarm {alarm}, {}", alarm.text()),
+            }
+        };
+        alarms.into_iter().map(of).collect()
+    }
+}
+
+/// An order for a robot of the controller.
+fn of_robot(command: Command, robot: u8) -> Draft {
+    command.order().with(Key::Robot, i32::from(robot))
+}
+
+/// Asks; a refusal is an answer, unless the next command would be refused as well.
+pub async fn ask(link: &mut Link, order: &Order) -> Result<Result<Values, Alarm>, Failure> {
+    match link.try_run(order).await?.answer {
+        Answer::Done(values) | Answer::Running(values) => {
+            check_echo(order, &values)?;
+            Ok(Ok(values))
+        }
+        Answer::Refused { alarm, .. } if is_about_commands(alarm) => Err(refused(order.row(), alarm)),
+        Answer::Refused { alarm, .. } => Ok(Err(alarm)),
+    }
+}
+
+/// Which numbers of records are read.
+pub struct Wanted {
+    /// In this order.
+    pub numbers: Vec<i32>,
+    /// These are read in any case.
+    pub always: BTreeSet<i32>,
+    /// After so many other ones in a row that were refused no more are read; `None` to read all.
+    pub gap: Option<usize>,
+    /// Refused ones before the first.
+    pub gap_before: usize,
+}
+
+impl Wanted {
+    /// All of these.
+    pub fn all(numbers: Vec<i32>) -> Self {
+        Self { numbers, always: BTreeSet::new(), gap: None, gap_before: 0 }
+    }
+}
+
+impl Records {
+    /// All numbers that there are.
+    pub fn all(&self) -> Result<Vec<i32>, Failure> {
+        let numbers = self.numbers.split(',').map(|text| self.parse(text)).collect::<Result<Vec<_>, _>>();
+        Ok(Numbers::of(&numbers.map_err(Failure::local)?))
+    }
+
+    /// A number, or a range of them.
+    pub fn parse(&self, text: &str) -> Result<Numbers, String> {
+        Numbers::parse(self.read, self.columns[0].1, text)
+    }
+
+    /// What reads one.
+    pub fn read(&self, number: i32) -> Result<Order, Failure> {
+        Ok(self.read.order().with(self.columns[0].1, number).build()?)
+    }
+
+    fn names(&self) -> Vec<&'static str> {
+        self.columns.iter().map(|(name, _)| *name).collect()
+    }
+
+    fn row(&self, number: i32, values: &Values) -> Row {
+        let text = |(index, key): (usize, Key)| match values.value(key) {
+            None if index == 0 => {
+                let value = Value::Int(number);
+                self.read.row().request().find(|field| field.key == key).map(|field| field.show(&value))
+            }
+            None => None,
+            Some(value) => field(self.read.row().answer(), key, values).map(|field| field.show(value)),
+        };
+        self.columns.iter().map(|(_, key)| *key).enumerate().map(|column| text(column).unwrap_or_default()).collect()
+    }
+
+    /// What stores a row.
+    fn store(&self, row: &Row) -> Result<Store, Failure> {
+        let cells = || self.columns.iter().map(|(_, key)| *key).zip(row);
+        // A hand is written to a robot, and read with the robot that has it; no hand system has no text.
+        let draft = cells().fold(self.write.order(), |draft, (key, text)| match key {
+            Key::Owner => draft.with(Key::Robot, text.as_str()),
+            Key::HandSystem if text.is_empty() => draft,
+            _ => draft.with(key, text.as_str()),
+        });
+        let write = draft.build()?;
+        let (key, number) = (row[0].clone(), write.values().int(self.columns[0].1).unwrap_or_default());
+        let wanted = |key: Key| {
+            let own = if key == Key::Owner { Key::Robot } else { key };
+            (key, write.values().value(own).cloned().unwrap_or(Value::Int(0)))
+        };
+        let wanted = self.columns[1..].iter().map(|(_, key)| wanted(*key)).collect();
+        Ok(Store { key, read: self.read(number)?, write, wanted })
+    }
+}
+
+/// The field of a key that counts where a layout has several.
+fn field(mut layout: impl Iterator<Item = &'static Field>, key: Key, values: &Values) -> Option<&'static Field> {
+    let counts = |field: &Field| {
+        let other = |key| values.int(key).unwrap_or_default();
+        field.when.is_none_or(|when| (when.least..=when.most).contains(&other(when.key)))
+    };
+    layout.find(|field| field.key == key && counts(field))
+}
+
+/// What a robot is set to: its name, what reads it and what writes it (4.2.8, 4.2.14 to 16, 4.2.19; 4.7.8, 9, 16).
+const SETTINGS: [(&str, Command, Key, Command, Key); 5] = [
+    ("auto_speed_percent", Command::SpeedStatus, Key::AutoSpeed, Command::SpeedAuto, Key::SpeedPercent),
+    ("manual_speed_percent", Command::SpeedStatus, Key::ManualSpeed, Command::SpeedManual, Key::SpeedPercent),
+    ("program_speed_percent", Command::SpeedStatus, Key::ProgramSpeed, Command::SpeedProgram, Key::SpeedPercent),
+    ("inching_distance", Command::InchAmountGet, Key::InchingAmount, Command::InchAmountSet, Key::InchingAmount),
+    ("hand_system", Command::ArmDesignation, Key::Arm, Command::ArmSelect, Key::Arm),
+];
+const SETTING_COLUMNS: [&str; 3] = ["robot", "setting", "value"];
+const PARAMETER_COLUMNS: [&str; 4] = ["robot", "parameter", "axis", "value"];
+
+/// What reads a part first, for a dry run, and what follows.
+pub fn first_reads(part: Part) -> Result<Vec<(Order, String)>, Failure> {
+    let about = |text: &str| text.to_owned();
+    Ok(match (part, part.records()) {
+        (Part::Comments(_), _) => Vec::new(),
+        (_, Some(records)) => {
+            let then =
+                if records.kind == POINTS.kind { "and so on, then the comments of those defined" } else { "and so on" };
+            let first = records.all()?[0];
+            vec![(records.read(first)?, format!("{}, {then}", records.kind))]
+        }
+        (Part::Settings, _) => vec![
+            (of_robot(Command::SpeedStatus, 1).build()?, about("settings of each robot: speeds")),
+            (of_robot(Command::InchAmountGet, 1).build()?, about("its inching distance")),
+            (of_robot(Command::ArmDesignation, 1).build()?, about("its hand system")),
+        ],
+        (Part::Parameters, _) => {
+            vec![(parameter(1, "WEIGHTG", "")?, about("parameters of each robot and axis, and so on"))]
+        }
+        _ => vec![(Command::Slots.order().with(Key::Controller, 1).build()?, about("what is in the option slots"))],
+    })
+}
+
+/// Reads a part that is not made of records.
+pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Controller) -> Result<Text, Failure> {
+    let (text, left_out) = match part {
+        Part::Settings => settings(link, controller).await?,
+        Part::Parameters => parameters(link, screen, controller).await?,
+        _ => (info(link, controller).await?, Vec::new()),
+    };
+    Ok(Text { text, numbers: Vec::new(), refused: Vec::new(), left_out })
+}
+
+/// Reads records.
+pub async fn read_records(
+    link: &mut Link,
+    screen: &Screen,
+    records: &Records,
+    wanted: &Wanted,
+) -> Result<Text, Failure> {
+    let mut progress = bar(screen, records.kind, wanted.numbers.len());
+    let (mut rows, mut refused, mut asked) = (Vec::new(), Vec::new(), Vec::new());
+    let mut gap = wanted.gap_before;
+    for number in &wanted.numbers {
+        let is_meant = wanted.always.contains(number);
+        if !is_meant && wanted.gap.is_some_and(|most| gap >= most) {
+            continue;
+        }
+        match ask(link, &records.read(*number)?).await? {
+            Ok(values) => {
+                gap = if is_meant { gap } else { 0 };
+                // A point without a comment has an empty one.
+                if values.text(Key::Comment) != Some("") {
+                    rows.push(records.row(*number, &values));
+                }
+            }
+            Err(alarm) => {
+                gap += usize::from(!is_meant);
+                refused.push((*number, alarm));
+            }
+        }
+        asked.push(*number);
+        progress.advance(1);
+    }
+    let mut left_out = Vec::new();
+    keep_writable(&mut rows, &mut left_out, |row| records.store(row));
+    Ok(Text { text: rows::write(&records.names(), &rows), numbers: asked, refused, left_out })
+}
+
+/// What may not be written back, such as a pallet without places, is told and not kept.
+fn keep_writable(rows: &mut Vec<Row>, left_out: &mut Vec<LeftOut>, store: impl Fn(&Row) -> Result<Store, Failure>) {
+    rows.retain(|row| {
+        let Err(failure) = store(row) else { return true };
+        let why = format!("it may not be written: {}", failure.message);
+        left_out.push(LeftOut { key: row.join(" "), why });
+        false
+    });
+}
+
+fn bar(screen: &Screen, what: &str, count: usize) -> Progress {
+    screen.items_progress(&format!("reading {what}"), count as u64)
+}
+
+async fn info(link: &mut Link, controller: &Controller) -> Result<String, Failure> {
+    let mut text = String::from("# What the controller is. Nothing of it is written back.\n");
+    let mut line = |name: &str, value: String| text.push_str(&format!("{name} = {value:?}\n"));
+    for (command, keys) in
+        [(Command::Versions, &VERSIONS[..]), (Command::Slots, &[Key::Slot1, Key::Slot2, Key::Slot3, Key::Slot4][..])]
+    {
+        let draft = command.order();
+        let order = if command == Command::Slots { draft.with(Key::Controller, 1) } else { draft }.build()?;
+        match ask(link, &order).await? {
+            Ok(values) => {
+                keys.iter().for_each(|key| line(key.name(), shown(command, &values, *key).unwrap_or_default()))
+            }
+            Err(alarm) => line(order.row().id, format!("refused with alarm {alarm}")),
+        }
+    }
+    for Robot { robot, robot_type, axes } in &controller.robots {
+        let axes: Vec<String> = axes.iter().map(ToString::to_string).collect();
+        text.push_str(&format!(
+            "\n[[robot]]\nrobot = {robot}\nrobot_type = {robot_type}\naxes = [{}]\n",
+            axes.join(", ")
+        ));
+    }
+    Ok(text)
+}
+
+const VERSIONS: [Key; 7] = [
+    Key::HostVersion,
+    Key::HostRevision,
+    Key::FpgaVersion,
+    Key::DriverVersion1,
+    Key::DriverVersion2,
+    Key::DriverVersion3,
+    Key::DriverVersion4,
+];
+
+async fn settings(link: &mut Link, controller: &Controller) -> Result<(String, Vec<LeftOut>), Failure> {
+    let (mut rows, mut left_out) = (Vec::new(), Vec::new());
+    for Robot { robot, .. } in &controller.robots {
+        let mut last: Option<(Command, Result<Values, Alarm>)> = None;
+        for (name, command, key, ..) in SETTINGS {
+            if last.as_ref().is_none_or(|(of, _)| *of != command) {
+                last = Some((command, ask(link, &of_robot(command, *robot).build()?).await?));
+            }
+            match &last {
+                Some((_, Ok(values))) => {
+                    let value = shown(command, values, key).unwrap_or_default();
+                    rows.push(vec![robot.to_string(), name.to_owned(), value]);
+                }
+                Some((_, Err(alarm))) => left_out.push(not_told(format!("{name} of robot {robot}"), *alarm)),
+                None => {}
+            }
+        }
+    }
+    keep_writable(&mut rows, &mut left_out, |row| setting_store(row));
+    Ok((rows::write(&SETTING_COLUMNS, &rows), left_out))
+}
+
+fn not_told(key: String, alarm: Alarm) -> LeftOut {
+    LeftOut { key, why: format!("refused with alarm {alarm}, {}", alarm.text()) }
+}
+
+fn parameter(robot: u8, name: &str, axis: &str) -> Result<Order, Failure> {
+    let draft = of_robot(Command::ParamGet, robot).with(Key::Parameter, name);
+    Ok(draft.with_some(Key::Axes, Some(axis).filter(|axis| !axis.is_empty())).build()?)
+}
+
+/// All parameters but one: the payload in kilograms is that in grams, less exactly.
+async fn parameters(
+    link: &mut Link,
+    screen: &Screen,
+    controller: &Controller,
+) -> Result<(String, Vec<LeftOut>), Failure> {
+    let mut wanted = Vec::new();
+    for Robot { robot, axes, .. } in &controller.robots {
+        for parameter in PARAMETERS.iter().filter(|parameter| parameter.name != "WEIGHT") {
+            match parameter.per_axis {
+                true => wanted.extend(axes.iter().map(|axis| (*robot, parameter.name, axis.to_string()))),
+                false => wanted.push((*robot, parameter.name, String::new())),
+            }
+        }
+    }
+    let mut progress = bar(screen, "parameters", wanted.len());
+    let (mut rows, mut left_out) = (Vec::new(), Vec::new());
+    for (robot, name, axis) in wanted {
+        match ask(link, &parameter(robot, name, &axis)?).await? {
+            Ok(values) => {
+                let value = values.int(Key::Value).unwrap_or_default();
+                rows.push(vec![robot.to_string(), name.to_owned(), axis, value.to_string()]);
+            }
+            Err(alarm) => left_out.push(not_told(parameter_key(robot, name, &axis), alarm)),
+        }
+        progress.advance(1);
+    }
+    keep_writable(&mut rows, &mut left_out, |row| parameter_store(row));
+    Ok((rows::write(&PARAMETER_COLUMNS, &rows), left_out))
+}
+
+fn parameter_key(robot: impl std::fmt::Display, name: &str, axis: &str) -> String {
+    let of_axis = if axis.is_empty() { String::new() } else { format!(", axis {axis}") };
+    format!("{name} of robot {robot}{of_axis}")
+}
+
+/// A value to be written, unless the controller has it.
+#[derive(Debug, PartialEq)]
+pub struct Store {
+    /// What tells it from the others.
+    pub key: String,
+    /// Reads what is there.
+    pub read: Order,
+    /// Writes it.
+    pub write: Order,
+    /// What the answer must hold for it to be the same.
+    wanted: Vec<(Key, Value)>,
+}
+
+impl Store {
+    /// Whether what was read is what would be written.
+    pub fn is_there(&self, values: &Values) -> bool {
+        self.wanted.iter().all(|(key, wanted)| values.value(*key).unwrap_or(&Value::Int(0)) == wanted)
+    }
+}
+
+/// Reads and checks the file of a part: what is to be written.
+pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
+    let path = folder.join(part.file());
+    let text = std::fs::read_to_string(&path).map_err(|error| Failure::io(path.display(), &error))?;
+    let wrong = |why: String| Failure::usage(format!("{}: {why}", path.display())).hint("make a new backup");
+    let (columns, store): (Vec<&str>, Box<dyn Fn(&Row) -> Result<Store, Failure>>) = match (part, part.records()) {
+        (_, Some(records)) => (records.names(), Box::new(|row| records.store(row))),
+        (Part::Settings, _) => (SETTING_COLUMNS.into(), Box::new(setting_store)),
+        (Part::Parameters, _) => (PARAMETER_COLUMNS.into(), Box::new(parameter_store)),
+        _ => return Ok(Vec::new()),
+    };
+    let mut seen = BTreeSet::new();
+    let mut stores = Vec::new();
+    for (line, row) in rows::read(&columns, &text).map_err(wrong)? {
+        let store = store(&row).map_err(|failure| wrong(format!("line {line}: {}", failure.message)))?;
+        if !seen.insert(store.key.clone()) {
+            return Err(wrong(format!("line {line}: {} is there twice", store.key)));
+        }
+        stores.push(store);
+    }
+    Ok(stores)
+}
+
+fn setting_store(row: &Row) -> Result<Store, Failure> {
+    let [robot, name, value] = &row[..] else { return Err(Failure::usage("three cells are wanted")) };
+    let setting = SETTINGS.iter().find(|(known, ..)| known == name);
+    let (_, read, told, write, key) = setting.ok_or_else(|| Failure::usage(format!("there is no setting '{name}'")))?;
+    let write = write.order().with(Key::Robot, robot.as_str()).with(*key, value.as_str()).build()?;
+    let wanted = vec![(*told, write.values().value(*key).cloned().unwrap_or(Value::Int(0)))];
+    let read = read.order().with(Key::Robot, robot.as_str()).build()?;
+    Ok(Store { key: format!("{name} of robot {robot}"), read, write, wanted })
+}
+
+fn parameter_store(row: &Row) -> Result<Store, Failure> {
+    let [robot, name, axis, value] = &row[..] else { return Err(Failure::usage("four cells are wanted")) };
+    let draft = |command: Command| {
+        let draft = command.order().with(Key::Robot, robot.as_str()).with(Key::Parameter, name.as_str());
+        draft.with_some(Key::Axes, Some(axis.as_str()).filter(|axis| !axis.is_empty()))
+    };
+    let write = draft(Command::ParamSet).with(Key::Value, value.as_str()).build()?;
+    let wanted = vec![(Key::Value, write.values().value(Key::Value).cloned().unwrap_or(Value::Int(0)))];
+    Ok(Store { key: parameter_key(robot, name, axis), read: draft(Command::ParamGet).build()?, write, wanted })
+}
+
+/// The points that a file of them has.
+pub fn defined(part: Part, folder: &Path) -> Result<Vec<i32>, Failure> {
+    let number = |store: &Store| store.write.values().int(Key::Point);
+    Ok(load(part, folder)?.iter().filter_map(number).collect())
+}
+
+/// The points that the file of pallets names: five each (4.3.3).
+pub fn points_of_pallets(pallets: Part, folder: &Path) -> Result<BTreeSet<i32>, Failure> {
+    let first = |store: &Store| store.write.values().int(Key::FirstPoint);
+    Ok(load(pallets, folder)?.iter().filter_map(first).flat_map(|first| first..first + 5).collect())
+}

@@ -1,0 +1,14 @@
+//! `yrcx backup` and `yrcx restore`: what remote commands read and write, in a folder of text files with a list of itself.
+//!
+//! Programs and all else are out of reach of remote commands.
+
+mod content;
+mod parts;
+mod restore;
+mod rows;
+mod save;
+#[cfg(test)]
+mod tests;
+
+pub use restore::Restore;
+pub use save::{Backup, points};

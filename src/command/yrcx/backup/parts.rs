@@ -1,0 +1,223 @@
+//! The parts of a controller, each in a file of its own.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::Key;
+
+/// What is stored in a file of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// Versions, option slots, robots: to read only.
+    Info,
+    /// Speeds, inching distance, hand system of each robot.
+    Settings,
+    /// Parameters of robots and axes.
+    Parameters,
+    /// What is read and written by its number.
+    Records(&'static Records),
+    /// A thousand points, from 0 to 29.
+    Points(u16),
+    /// The comments of these points.
+    Comments(u16),
+}
+
+/// What is read and written by its number.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Records {
+    /// `pallets`.
+    pub kind: &'static str,
+    /// What reads one.
+    pub read: Command,
+    /// What writes one.
+    pub write: Command,
+    /// Numbers there are.
+    pub numbers: &'static str,
+    /// Columns of the file with the fields they hold; the first is the number.
+    pub columns: &'static [(&'static str, Key)],
+}
+
+const AXES: [(&str, Key); 4] =
+    [("axis_1", Key::Axis1), ("axis_2", Key::Axis2), ("axis_3", Key::Axis3), ("axis_4", Key::Axis4)];
+
+/// Static variables (4.4.1).
+pub static VARIABLES: Records = Records {
+    kind: "variables",
+    read: Command::VarGet,
+    write: Command::VarSet,
+    numbers: "SGI0..SGI31,SGR0..SGR31",
+    columns: &[("variable", Key::Variable), ("value", Key::Value)],
+};
+/// Pallets (4.3.3).
+pub static PALLETS: Records = Records {
+    kind: "pallets",
+    read: Command::PalletGet,
+    write: Command::PalletSet,
+    numbers: "0..39",
+    columns: &[
+        ("pallet", Key::Pallet),
+        ("nx", Key::CountX),
+        ("ny", Key::CountY),
+        ("nz", Key::CountZ),
+        ("first_point", Key::FirstPoint),
+    ],
+};
+/// Shifts (4.3.4).
+pub static SHIFTS: Records = Records {
+    kind: "shifts",
+    read: Command::ShiftGet,
+    write: Command::ShiftSet,
+    numbers: "0..39",
+    columns: &[
+        ("shift", Key::Shift),
+        ("axis_1_mm", Key::Axis1),
+        ("axis_2_mm", Key::Axis2),
+        ("axis_3_mm", Key::Axis3),
+        ("axis_4_mm", Key::Axis4),
+    ],
+};
+/// Hands (4.3.5). A hand is written to the robot that has it.
+pub static HANDS: Records = Records {
+    kind: "hands",
+    read: Command::HandGet,
+    write: Command::HandSet,
+    numbers: "0..31",
+    columns: &[
+        ("hand", Key::Hand),
+        ("robot", Key::Owner),
+        ("data_1", Key::Data1),
+        ("data_2_mm", Key::Data2),
+        ("data_3_mm", Key::Data3),
+        ("data_4", Key::Data4),
+    ],
+};
+/// Points (4.3.1); axes are in the unit of each point.
+pub static POINTS: Records = Records {
+    kind: "points",
+    read: Command::PointGet,
+    write: Command::PointSet,
+    numbers: "0..29999",
+    columns: &[
+        ("point", Key::Point),
+        ("unit", Key::Unit),
+        AXES[0],
+        AXES[1],
+        AXES[2],
+        AXES[3],
+        ("hand_system", Key::HandSystem),
+    ],
+};
+/// Comments of points (4.3.2).
+pub static COMMENTS: Records = Records {
+    kind: "comments",
+    read: Command::CommentGet,
+    write: Command::CommentSet,
+    numbers: "0..29999",
+    columns: &[("point", Key::Point), ("comment", Key::Comment)],
+};
+
+/// Points in a file.
+pub const THOUSAND: u16 = 1000;
+
+impl Part {
+    /// Those of one file, in the order of reading: pallets come before the points that they name.
+    pub fn single() -> [Self; 7] {
+        let [variables, pallets, shifts, hands] = [&VARIABLES, &PALLETS, &SHIFTS, &HANDS].map(Self::Records);
+        [Self::Info, Self::Settings, Self::Parameters, variables, pallets, shifts, hands]
+    }
+
+    /// All that there can be.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let thousands = (0..30).flat_map(|thousand| [Self::Points(thousand), Self::Comments(thousand)]);
+        Self::single().into_iter().chain(thousands)
+    }
+
+    /// In the order of writing: a pallet is worth nothing without its points, and what moves the robot otherwise comes
+    /// last.
+    pub fn in_order_of_writing() -> impl Iterator<Item = Self> {
+        let place = |part: &Self| match part {
+            Self::Records(records) if records.kind != PALLETS.kind => 0,
+            Self::Points(_) | Self::Comments(_) => 1,
+            Self::Records(_) => 2,
+            Self::Parameters | Self::Settings | Self::Info => 3,
+        };
+        let mut parts: Vec<Self> = Self::all().collect();
+        parts.sort_by_key(place);
+        parts.into_iter()
+    }
+
+    /// Its file in the folder.
+    pub fn file(self) -> String {
+        let ending = if self == Self::Info { "toml" } else { "csv" };
+        format!("{self}.{ending}")
+    }
+
+    /// What is read and written by its number, if it is that.
+    pub fn records(self) -> Option<&'static Records> {
+        match self {
+            Self::Records(records) => Some(records),
+            Self::Points(_) => Some(&POINTS),
+            Self::Comments(_) => Some(&COMMENTS),
+            Self::Info | Self::Settings | Self::Parameters => None,
+        }
+    }
+
+    /// Of which kind it is.
+    pub fn kind(self) -> &'static str {
+        match (self, self.records()) {
+            (_, Some(records)) => records.kind,
+            (Self::Settings, _) => "settings",
+            (Self::Parameters, _) => "parameters",
+            _ => "info",
+        }
+    }
+
+    /// Whether it changes how the robot moves, and goes back only when that is asked for.
+    pub fn is_machine(self) -> bool {
+        matches!(self, Self::Settings | Self::Parameters)
+    }
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Points(thousand) | Self::Comments(thousand) => {
+                write!(f, "{}-{:05}", self.kind(), thousand * THOUSAND)
+            }
+            _ => f.write_str(self.kind()),
+        }
+    }
+}
+
+impl FromStr for Part {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        Self::all().find(|part| part.to_string() == name).ok_or_else(|| format!("there is no part '{name}'"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_part_has_a_name_and_a_file() {
+        let names: Vec<String> = Part::all().map(|part| part.to_string()).collect();
+        assert_eq!(names[..4], ["info", "settings", "parameters", "variables"]);
+        assert_eq!(names[7..10], ["points-00000", "comments-00000", "points-01000"]);
+        for part in Part::all() {
+            assert_eq!(part.to_string().parse(), Ok(part));
+        }
+        assert_eq!(Part::Points(29).file(), "points-29000.csv");
+        assert!("points".parse::<Part>().is_err());
+    }
+
+    #[test]
+    fn pallets_are_written_after_points_and_machine_parts_last() {
+        let names: Vec<String> = Part::in_order_of_writing().map(|part| part.to_string()).collect();
+        assert_eq!(names[..4], ["variables", "shifts", "hands", "points-00000"]);
+        assert_eq!(names[names.len() - 4..], ["pallets", "info", "settings", "parameters"]);
+    }
+}
