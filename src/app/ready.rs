@@ -80,6 +80,8 @@ impl Ready {
         match &work {
             Work::Common(Common::Status(_)) => run.sources.widen(),
             Work::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
+            Work::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.family(),
+            Work::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.family(),
             _ => {}
         }
         Ok(Self { run, work })
@@ -177,6 +179,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
             (false, true) => Sessions::OwnSimulators,
             (false, false) => Sessions::Shared,
         },
+        simulated: None,
     };
     // A robot that is told by flag needs no file; a broken file is an error for everybody else.
     let mut location = Location::find(match globals.config {

@@ -12,6 +12,7 @@ pub mod holding;
 pub mod interrupt;
 mod kind;
 pub mod line;
+pub mod lines;
 pub mod local;
 pub mod manifest;
 pub mod orders;
@@ -133,6 +134,11 @@ pub trait Command {
         Risk::Read
     }
 
+    /// The most that it does to this robot, where that depends on it; not more than [`risk`](Self::risk).
+    fn risk_on(&self, _robot: &Robot) -> Risk {
+        self.risk()
+    }
+
     /// Completes "This will …" in the question before a motion.
     fn intent(&self) -> String {
         String::new()
@@ -166,6 +172,10 @@ pub trait AnyCommand<F: Family> {
     fn id(&self) -> &'static str;
     /// See [`Command::risk`].
     fn risk(&self) -> Risk;
+    /// See [`Command::risk_on`].
+    fn risk_on(&self, _robot: &Robot) -> Risk {
+        self.risk()
+    }
     /// See [`Command::intent`].
     fn intent(&self) -> String;
     /// See [`Command::demand`].
@@ -219,6 +229,10 @@ impl<C: Command> AnyCommand<C::Family> for C {
 
     fn risk(&self) -> Risk {
         Command::risk(self)
+    }
+
+    fn risk_on(&self, robot: &Robot) -> Risk {
+        Command::risk_on(self, robot)
     }
 
     fn intent(&self) -> String {

@@ -149,7 +149,7 @@ impl Run {
     /// Passes the gate. A question waits for its answer on a thread of its own, so that Ctrl-C is heard meanwhile.
     async fn pass_gate<F: Family>(&self, robot: &Robot, command: &dyn AnyCommand<F>) -> Result<(), Failure> {
         let (gate, screen) = (self.gate, self.screen);
-        let (risk, demand, intent) = (command.risk(), command.demand(), command.intent());
+        let (risk, demand, intent) = (command.risk_on(robot), command.demand(), command.intent());
         if risk < Risk::Motion && demand == Demand::Usual {
             return gate.pass(&screen, robot, risk, &demand, &intent);
         }
@@ -399,7 +399,7 @@ impl Run {
     }
 
     async fn connect<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<F::Link, Failure> {
-        let (granted, need) = (command.risk(), command.need());
+        let (granted, need) = (command.risk_on(robot), command.need());
         let access = Access { granted, dry_run: false, trace: self.trace.clone(), need, typed: None };
         let access = match &self.line {
             Some(line) => line.connecting(robot, access, &self.screen).await?,
@@ -410,25 +410,22 @@ impl Run {
 
     /// One run. Ctrl-C during a motion stops the robot first.
     async fn attempt<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot, link: &mut F::Link) -> Outcome {
-        let several = self.sources.selection.is_plural();
+        let (several, risk) = (self.sources.selection.is_plural(), command.risk_on(robot));
         let context = Context { robot, link: &mut *link, screen: &self.screen, several };
         match interruptible(command.run(context)).await {
             Ok(outcome) => outcome,
-            Err(_)
-                if command.risk() == Risk::Motion
-                    && (self.gate.on_interrupt == OnInterrupt::Stop || F::must_halt(link)) =>
-            {
+            Err(_) if risk == Risk::Motion && (self.gate.on_interrupt == OnInterrupt::Stop || F::must_halt(link)) => {
                 Err(match F::halt(link).await {
                     Ok(done) => Failure::new(Kind::Interrupted, done),
                     Err(failure) => Failure::new(Kind::Interrupted, format!("the robot may still move: {failure}"))
                         .hint("use the pendant or the emergency stop if it must not"),
                 })
             }
-            Err(interrupt) if command.risk() == Risk::Motion => Err(Failure {
+            Err(interrupt) if risk == Risk::Motion => Err(Failure {
                 message: format!("{}: left as it is; what was started goes on", interrupt.message),
                 ..interrupt
             }),
-            Err(interrupt) if command.risk() == Risk::Write => Err(Failure {
+            Err(interrupt) if risk == Risk::Write => Err(Failure {
                 message: format!("{}; what was sent may have been done, in whole or in part", interrupt.message),
                 ..interrupt
             }
@@ -445,7 +442,7 @@ impl Run {
         screen: &Screen,
     ) -> Result<Vec<Value>, Failure> {
         let access = Access {
-            granted: command.risk(),
+            granted: command.risk_on(robot),
             dry_run: true,
             trace: self.trace.clone(),
             need: command.need(),

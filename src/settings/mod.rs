@@ -109,6 +109,8 @@ pub struct Selection {
     pub environment: Option<Target>,
     /// Which sessions commands go through.
     pub sessions: Sessions,
+    /// The family of a simulator where the command line does not tell it; `None` for the first one.
+    pub simulated: Option<Family>,
 }
 
 /// Which sessions commands go through.
@@ -126,7 +128,7 @@ pub enum Sessions {
 impl Selection {
     /// Whether nothing was said about robots.
     pub fn names_nobody(&self) -> bool {
-        let Self { sim, target, robots, tags, all, environment, sessions: _ } = self;
+        let Self { sim, target, robots, tags, all, environment, sessions: _, simulated: _ } = self;
         !(*sim || *all || target.is_some() || environment.is_some() || !robots.is_empty() || !tags.is_empty())
     }
 
@@ -223,7 +225,7 @@ impl Sources {
 
     fn unnamed(&self, target: Target, origin: Origin, family: Option<Family>) -> Result<Robot, Failure> {
         // A simulator for a command of any family: the first one.
-        let simulated = target.is_simulated().then_some(Family::Yerc);
+        let simulated = target.is_simulated().then_some(self.selection.simulated.unwrap_or(Family::Yerc));
         let Some(family) = family.or(target.family()).or(simulated) else {
             return Err(Failure::usage(format!("target '{target}' does not tell the family"))
                 .hint("name the family: `armctl yerc …`"));

@@ -1,6 +1,7 @@
 //! Commands that are about no single controller.
 
 pub mod batch;
+pub mod backup;
 pub mod completions;
 pub mod decode;
 mod explain;
@@ -28,6 +29,12 @@ pub enum Common {
     /// Hold a link for all commands that follow: open, list, close
     #[command(subcommand)]
     Session(session::Session),
+    /// Save what controllers store in a folder of files
+    Backup(backup::Backup),
+    /// Write back what a backup holds
+    Restore(backup::Restore),
+    /// Compare a backup with another one, or with a controller
+    Diff(backup::Diff),
     /// Serve the simulators on real sockets
     Sim(sim::Sim),
     /// Explain bytes of the line
@@ -49,7 +56,12 @@ pub enum Common {
 impl Common {
     /// Whether it asks or lists robots, and so needs the inventory.
     pub fn is_about_robots(&self) -> bool {
-        matches!(self, Self::Status(_) | Self::Robots(_) | Self::Session(_))
+        match self {
+            Self::Status(_) | Self::Robots(_) | Self::Session(_) | Self::Restore(_) => true,
+            Self::Backup(backup) => !backup.is_local(),
+            Self::Diff(diff) => !diff.is_local(),
+            _ => false,
+        }
     }
 
     /// Why it is nothing for a line of a file: it would never end, or writes something else than results.
@@ -59,6 +71,7 @@ impl Common {
             Self::Sim(_) => Some("it serves until it is ended"),
             Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => Some("it prints a text to read"),
             Self::Status(_) | Self::Robots(_) | Self::Session(_) | Self::Decode(_) | Self::Explain(_) => None,
+            Self::Backup(_) | Self::Restore(_) | Self::Diff(_) => None,
         }
     }
 
@@ -66,6 +79,9 @@ impl Common {
     pub async fn run(self, run: &Run) -> Result<(), Stopped> {
         match self {
             Self::Status(overview) => run.robots(&overview).await,
+            Self::Backup(backup) => backup.run(run).await,
+            Self::Restore(restore) => run.robots(&restore).await,
+            Self::Diff(diff) => diff.run(run).await,
             Self::Sim(sim) => sim.run(run).await,
             Self::Session(session) => Box::pin(session.run(run)).await,
             Self::Robots(robots) => robots.run(run).await,

@@ -49,7 +49,11 @@ pub fn all() -> Vec<SchemaEntry> {
     all.extend(<Yrcx as Noun<yrcx::Family>>::schemas());
     all.extend(<Toyo as Noun<toyo::Family>>::schemas());
     all.extend(<Overview as Noun<Fleet>>::schemas());
+    all.extend(<super::backup::Backup as Noun<Fleet>>::schemas());
+    all.extend(<super::backup::Restore as Noun<Fleet>>::schemas());
+    all.extend(<super::backup::Diff as Noun<Fleet>>::schemas());
     all.extend([
+        SchemaEntry::of::<super::backup::Checked>("backup.check"),
         SchemaEntry::of::<super::decode::toyo::Lines>("decode.toyo"),
         SchemaEntry::of::<super::decode::capture::Capture<super::decode::toyo::FieldRow>>("decode.toyo.capture"),
         SchemaEntry::of::<super::decode::yerc::Frames>("decode.yerc"),

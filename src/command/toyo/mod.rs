@@ -1,6 +1,6 @@
 //! `toyo`: Toyo controllers over RS-232C host communication.
 
-mod backup;
+pub mod backup;
 mod bus;
 mod card;
 mod cells;

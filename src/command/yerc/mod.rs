@@ -3,7 +3,7 @@
 mod alarm;
 mod axes;
 mod check;
-mod file;
+pub mod file;
 mod hours;
 mod info;
 mod io;

@@ -53,7 +53,8 @@ impl Backup {
     /// Of what is asked for in any family; of the current task only where nothing may be changed.
     pub fn of(making: &Making, current_task: bool) -> Self {
         let Making { folder, mut scope, resume, force } = making.clone();
-        if current_task && !resume {
+        let is_said = scope.iter().flatten().any(|word| word == CURRENT_TASK);
+        if current_task && !resume && !is_said {
             scope.get_or_insert_default().push(CURRENT_TASK.to_owned());
         }
         Self { folder, current_task, scope, resume, force }
@@ -83,10 +84,9 @@ impl Command for Backup {
             return self.rehearse(link).await;
         }
         let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
-        if scope.iter().any(|word| word == CURRENT_TASK) != self.current_task {
-            let (of, other) = if self.current_task { ("every task", "leave") } else { ("the current task", "add") };
-            return Err(Failure::usage(format!("{} is a backup of {of}", folder.display()))
-                .hint(format!("{other} --current-task, or choose another folder")));
+        if self.current_task && !scope.iter().any(|word| word == CURRENT_TASK) {
+            return Err(Failure::usage(format!("{} is a backup of every task", folder.display()))
+                .hint("of the current task alone, make one in another folder"));
         }
         // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with what was saved.
         let outcome =
@@ -110,7 +110,7 @@ impl Backup {
         earlier: Option<Manifest>,
     ) -> Result<BackedUp, Failure> {
         let controller = content::controller(link).await?;
-        let mut chosen = self.parts(link, &controller).await?;
+        let mut chosen = parts(link, &controller, scope.iter().any(|word| word == CURRENT_TASK)).await?;
         let only = Only::of_scope(&scope);
         let names: Vec<String> = chosen.iter().map(ToString::to_string).collect();
         only.check(names.iter().map(String::as_str))?;
@@ -150,14 +150,6 @@ impl Backup {
         Ok(BackedUp::new(folder, controller, manifest.scope, complete, results))
     }
 
-    async fn parts(&self, link: &mut Link, controller: &Controller) -> Result<Vec<Part>, Failure> {
-        let current = tasks::choose(link, None).await?;
-        let wanted = |task: &u8| !self.current_task || *task == current;
-        let points: Vec<u8> = controller.point_tasks().into_iter().filter(wanted).collect();
-        let programs: Vec<u8> = controller.program_tasks().into_iter().filter(wanted).collect();
-        Ok(Part::all(&points, &programs))
-    }
-
     async fn rehearse(&self, link: &mut Link) -> Result<BackedUp, Failure> {
         content::foresee_controller(link);
         let mut first = |part: Part, about: &str| -> Result<(), Failure> {
@@ -177,6 +169,15 @@ impl Backup {
         link.foresee(&content::first_read(Part::Program(1))?, &format!("and so on, every step {of}"));
         std::future::pending().await
     }
+}
+
+/// What there is, or what there is of the current task alone.
+async fn parts(link: &mut Link, controller: &Controller, current_task: bool) -> Result<Vec<Part>, Failure> {
+    let current = tasks::choose(link, None).await?;
+    let wanted = |task: &u8| !current_task || *task == current;
+    let points: Vec<u8> = controller.point_tasks().into_iter().filter(wanted).collect();
+    let programs: Vec<u8> = controller.program_tasks().into_iter().filter(wanted).collect();
+    Ok(Part::all(&points, &programs))
 }
 
 /// Writes the file of a part that was read, and says whether the next one can be read.

@@ -1,23 +1,21 @@
 //! `yerc file diff`: what sending the local file would change.
 
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use similar::{Algorithm, ChangeTag, capture_diff_slices_deadline, group_diff_ops};
 
 use super::compare::{Comparer, Comparison};
 use super::content::Content;
 use super::name::{self, Shown};
 use super::transfer;
+use crate::command::lines::{self, Change, Ending, Line, MOST_TEXT, TextDifference};
 use crate::command::local::{local_name, own_folder};
 use crate::command::yerc::Family;
 use crate::command::{Command, Context, Report};
-use crate::controller::text::Encoding;
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Section, Tone, View};
+use crate::output::view::{Section, View};
 
 /// Compares a file on the controller with a local one.
 #[derive(Debug, Args)]
@@ -28,13 +26,6 @@ pub struct Diff {
     #[arg(value_name = "FILE")]
     local: Option<PathBuf>,
 }
-
-/// Larger files are compared byte by byte only.
-const MOST_TEXT: usize = 4 << 20;
-/// Unchanged lines around a change.
-const AROUND: usize = 3;
-/// After this, a correct but longer diff does.
-const PATIENCE: Duration = Duration::from_secs(2);
 
 impl Command for Diff {
     type Family = Family;
@@ -112,79 +103,27 @@ struct Hunk {
     lines: Vec<Line>,
 }
 
-/// A line of either file.
-#[derive(Debug, PartialEq, Eq, Serialize, JsonSchema)]
-struct Line {
-    change: Change,
-    text: String,
-    ending: Ending,
-}
-
-/// Which file has a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-enum Change {
-    /// Both.
-    Same,
-    /// The controller's alone.
-    Removed,
-    /// The local one alone.
-    Added,
-}
-
-/// How a line ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-enum Ending {
-    CrLf,
-    Lf,
-    /// The file ends without one.
-    None,
-}
-
-/// A difference in lines.
-#[derive(Debug)]
-struct TextDifference {
-    hunks: Vec<Hunk>,
-    only_line_endings: bool,
-}
-
-impl TextDifference {
-    /// `None` if one of the two is no text.
-    fn of(encoding: Encoding, theirs: &[u8], ours: &[u8]) -> Option<Self> {
-        let is_text = |bytes: &[u8]| bytes.len() <= MOST_TEXT && !bytes.contains(&0);
-        if !is_text(theirs) || !is_text(ours) {
-            return None;
+impl From<lines::Hunk> for Hunk {
+    fn from(hunk: lines::Hunk) -> Self {
+        Self {
+            controller_start: hunk.old_start,
+            controller_lines: hunk.old_lines,
+            local_start: hunk.new_start,
+            local_lines: hunk.new_lines,
+            lines: hunk.lines,
         }
-        let (old, new) = (lines(theirs), lines(ours));
-        let only_line_endings = old.len() == new.len() && old.iter().zip(&new).all(|(a, b)| ended(a).0 == ended(b).0);
-        let ops = capture_diff_slices_deadline(Algorithm::Myers, &old, &new, Instant::now().checked_add(PATIENCE));
-        let line = |change: &similar::Change<&[u8]>| {
-            let (text, ending) = ended(change.value());
-            let change = match change.tag() {
-                ChangeTag::Equal => Change::Same,
-                ChangeTag::Delete => Change::Removed,
-                ChangeTag::Insert => Change::Added,
-            };
-            Line { change, text: encoding.decode(text), ending }
-        };
-        let hunk = |group: Vec<similar::DiffOp>| {
-            let lines: Vec<Line> =
-                group.iter().flat_map(|op| op.iter_changes(&old, &new)).map(|change| line(&change)).collect();
-            let count = |without: Change| lines.iter().filter(|line| line.change != without).count();
-            let (controller_lines, local_lines) = (count(Change::Added), count(Change::Removed));
-            let start = |range: Option<std::ops::Range<usize>>, lines: usize| {
-                range.map_or(0, |range| range.start + usize::from(lines > 0))
-            };
-            Hunk {
-                controller_start: start(group.first().map(similar::DiffOp::old_range), controller_lines),
-                controller_lines,
-                local_start: start(group.first().map(similar::DiffOp::new_range), local_lines),
-                local_lines,
-                lines,
-            }
-        };
-        Some(Self { hunks: group_diff_ops(ops, AROUND).into_iter().map(hunk).collect(), only_line_endings })
+    }
+}
+
+impl From<&Hunk> for lines::Hunk {
+    fn from(hunk: &Hunk) -> Self {
+        Self {
+            old_start: hunk.controller_start,
+            old_lines: hunk.controller_lines,
+            new_start: hunk.local_start,
+            new_lines: hunk.local_lines,
+            lines: hunk.lines.clone(),
+        }
     }
 }
 
@@ -194,7 +133,7 @@ impl Difference {
         let equal = first_difference.is_none();
         let (hunks, only_line_endings) = match text {
             _ if equal => (Some(Vec::new()), Some(false)),
-            Some(text) => (Some(text.hunks), Some(text.only_line_endings)),
+            Some(text) => (Some(text.hunks.into_iter().map(Hunk::from).collect()), Some(text.only_line_endings)),
             None => (None, None),
         };
         Self {
@@ -222,41 +161,15 @@ impl Difference {
             (Some(_), Some(false)) => format!("{name} on the controller and {path} differ"),
         }
     }
-
-    /// The unified form. A CR LF is what lines of a controller end in, so only other ends are shown, and a bare LF only
-    /// beside lines that have CR LF.
-    fn unified(&self, hunks: &[Hunk]) -> Vec<Cell> {
-        let mut shown = vec![
-            Cell::from(format!("--- {} (controller)", self.name.name)).tone(Tone::Bad),
-            Cell::from(format!("+++ {}", self.path)).tone(Tone::Good),
-        ];
-        let marks_lf = hunks.iter().flat_map(|hunk| &hunk.lines).any(|line| line.ending == Ending::CrLf);
-        for hunk in hunks {
-            let Hunk { controller_start, controller_lines, local_start, local_lines, lines } = hunk;
-            let head = format!("@@ -{controller_start},{controller_lines} +{local_start},{local_lines} @@");
-            shown.push(Cell::from(head).tone(Tone::Warning));
-            for Line { change, text, ending } in lines {
-                let (sign, tone) = match change {
-                    Change::Same => (' ', Tone::Plain),
-                    Change::Removed => ('-', Tone::Bad),
-                    Change::Added => ('+', Tone::Good),
-                };
-                let mark = if *ending == Ending::Lf && marks_lf { " [LF]" } else { "" };
-                shown.push(Cell::from(format!("{sign}{text}{mark}")).tone(tone));
-                if *ending == Ending::None {
-                    shown.push("\\ no line ending".into());
-                }
-            }
-        }
-        shown
-    }
 }
 
 impl Report for Difference {
     fn view(&self) -> View {
         match &self.hunks {
             Some(hunks) if !self.equal && self.only_line_endings == Some(false) => {
-                View::default().and(Section::Lines(self.unified(hunks)))
+                let hunks: Vec<lines::Hunk> = hunks.iter().map(lines::Hunk::from).collect();
+                let old = format!("{} (controller)", self.name.name);
+                View::default().and(Section::Lines(lines::unified(old, self.path.clone(), &hunks)))
             }
             Some(hunks) if !self.equal => {
                 let ends = |bare: Change| {
@@ -282,24 +195,10 @@ impl Report for Difference {
     }
 }
 
-/// Lines with what ends them.
-fn lines(bytes: &[u8]) -> Vec<&[u8]> {
-    bytes.split_inclusive(|byte| *byte == b'\n').collect()
-}
-
-fn ended(line: &[u8]) -> (&[u8], Ending) {
-    match line.strip_suffix(b"\n") {
-        None => (line, Ending::None),
-        Some(text) => match text.strip_suffix(b"\r") {
-            Some(text) => (text, Ending::CrLf),
-            None => (text, Ending::Lf),
-        },
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::controller::text::Encoding;
     use crate::output::render;
 
     fn difference(theirs: &[u8], ours: &[u8]) -> Difference {

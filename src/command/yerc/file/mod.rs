@@ -16,6 +16,9 @@ mod restore;
 mod results;
 mod transfer;
 
+pub use backup::Backup;
+pub use restore::Restore;
+
 use super::Family;
 use crate::command::commands;
 
@@ -33,9 +36,9 @@ commands! {
         /// Compare a file on the controller with a local one
         Diff(diff::Diff),
         /// Fetch every file into a folder, with sizes and hashes
-        Backup(backup::Backup),
+        Backup(Backup),
         /// Send the files of a backup back
-        Restore(restore::Restore),
+        Restore(Restore),
         /// Have the controller make its batch backup (CMOSBK.BIN), and fetch it
         Cmos(cmos::Cmos),
     }

@@ -13,7 +13,7 @@ use crate::command::local::{make_folder, own_folder};
 use crate::command::manifest::{self, Entry, Reason, State};
 use crate::command::yrcx::Family;
 use crate::command::yrcx::link::Link;
-use crate::command::yrcx::numbers::Numbers;
+use crate::command::yrcx::numbers::{Numbers, runs};
 use crate::command::{Command, Context};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -245,7 +245,7 @@ impl Saving<'_> {
                 entry.holds = text.holds(part);
                 entry.left_out = text.left_out.iter().cloned().chain(text.refusals()).collect();
                 if let Part::Points(_) = part {
-                    item.notes.push(format!("{} of {}", text.text.lines().count() - 1, entry.holds));
+                    item.notes.push(format!("{} defined in {}", text.text.lines().count() - 1, runs(&text.numbers)));
                 }
                 entry.copy = Some(copy);
                 Had::There
