@@ -18,6 +18,7 @@ pub mod manifest;
 pub mod orders;
 pub mod overview;
 pub mod run;
+pub mod sample;
 pub mod toyo;
 pub mod trace;
 pub mod yerc;

@@ -117,7 +117,7 @@ pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<Overvie
 }
 
 /// The state of one robot in a line.
-#[derive(Debug, Default, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct OverviewReport {
     /// Where it is false, all that follows is null.
     pub reachable: bool,
@@ -143,7 +143,7 @@ pub struct OverviewReport {
 }
 
 /// A place in base coordinates.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct PositionMm {
     /// X.
     pub x_mm: f64,

@@ -4,6 +4,7 @@
 
 pub mod envelope;
 pub mod escape;
+pub mod fullscreen;
 pub mod jq;
 pub mod progress;
 pub mod prompt;

@@ -47,6 +47,7 @@ mod tasks;
 #[cfg(test)]
 mod testing;
 mod timer;
+pub mod top;
 mod trace;
 mod values;
 mod waiting;

@@ -4,7 +4,7 @@ use super::link::Link;
 use super::position::Place;
 use crate::command::overview::{OverviewReport, PositionMm};
 use crate::controller::toyo::request::Request;
-use crate::controller::toyo::status::RunMode;
+use crate::controller::toyo::status::{RunMode, Status};
 use crate::controller::toyo::table::Command;
 use crate::failure::Failure;
 
@@ -12,7 +12,12 @@ use crate::failure::Failure;
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     let status = link.status_of(&[0, 2, 3]).await?;
     let place = Place::of(&link.read(&Request::bare(Command::Mpst)).await?);
-    Ok(OverviewReport {
+    Ok(report(status, Some(place)))
+}
+
+/// What the answers say.
+pub(super) fn report(status: Status, place: Option<Place>) -> OverviewReport {
+    OverviewReport {
         reachable: true,
         mode: status.run_mode().map(RunMode::name),
         servo_on: Some(status.servo_on()),
@@ -20,8 +25,8 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
         held: Some(status.paused()),
         alarm: None,
         error: Some(status.has_error()),
-        position: Some(PositionMm { x_mm: place.x_mm, y_mm: place.y_mm, z_mm: place.z_mm }),
+        position: place.map(|place| PositionMm { x_mm: place.x_mm, y_mm: place.y_mm, z_mm: place.z_mm }),
         not_asked: None,
         failure: None,
-    })
+    }
 }

@@ -8,7 +8,7 @@ use super::Family;
 use super::link::Link;
 use super::orders::usage;
 use crate::command::orders::Done;
-use crate::command::{Command, Context, Report, commands};
+use crate::command::{Command, Context, Report, commands, sample};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -41,7 +41,7 @@ pub struct List {
 }
 
 /// Alarms that can be present at a time.
-const SLOTS: u8 = 4;
+pub(super) const SLOTS: u8 = 4;
 
 impl Command for List {
     type Family = Family;
@@ -136,6 +136,18 @@ impl Command for History {
         }
         Ok(PastAlarms { alarms, with_texts: texts })
     }
+}
+
+/// The alarms in the first `slots` slots, for a live view. `texts` goes off where the controller shows that it has none.
+pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Result<Vec<sample::Alarm>, Failure> {
+    let mut alarms = Vec::new();
+    for slot in 1..=slots {
+        let alarm = read(link, texts, |texts| ReadAlarm::new(slot, texts).map_err(usage)).await?;
+        if !alarm.is_none() {
+            alarms.push(AlarmEntry::new(&alarm, link.encoding, link.model).sample());
+        }
+    }
+    Ok(alarms)
 }
 
 /// Reads an alarm with its texts; without, as soon as the controller has shown that it does not know the command.
@@ -261,6 +273,14 @@ struct SubCode {
     shown: String,
 }
 
+impl SubCode {
+    /// What the pendant shows, or the best that is known of it; nothing where there is none.
+    fn told(&self) -> Option<&str> {
+        let text = self.text.as_deref().filter(|text| !text.trim().is_empty());
+        Some(text.unwrap_or(&self.shown)).filter(|told| !told.is_empty())
+    }
+}
+
 impl AlarmEntry {
     fn new(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> Self {
         let rendered = alarm.sub_code(model);
@@ -283,14 +303,19 @@ impl AlarmEntry {
         }
     }
 
+    fn sample(&self) -> sample::Alarm {
+        let sub_code = self.sub_code.told().unwrap_or_default();
+        let text = [self.name.as_str(), sub_code].join(" ").trim_end().to_owned();
+        sample::Alarm { code: self.code.to_string(), text, remedy: String::new() }
+    }
+
     /// Code, name, sub-code, time, board. The type is in JSON alone: here it would leave no room for the name.
     fn cells(&self) -> [Cell; 5] {
         let given = |text: &str| (!text.is_empty()).then(|| Cell::from(text));
-        let sub_code = self.sub_code.text.as_deref().filter(|text| !text.trim().is_empty());
         [
             Cell::from(self.code).tone(Tone::Bad),
             self.name.as_str().into(),
-            Cell::maybe(given(sub_code.unwrap_or(&self.sub_code.shown))),
+            Cell::maybe(self.sub_code.told().map(Cell::from)),
             Cell::from(self.time.as_str()).whole(),
             Cell::maybe(self.board.as_deref().and_then(given)),
         ]

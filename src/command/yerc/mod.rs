@@ -22,6 +22,7 @@ pub mod simulated;
 mod status;
 #[cfg(test)]
 mod testing;
+pub mod top;
 mod trace;
 mod var;
 mod writes;

@@ -4,7 +4,7 @@ use super::link::Link;
 use super::status;
 use crate::command::overview::{OverviewReport, PositionMm};
 use crate::controller::yerc::group::Group;
-use crate::controller::yerc::payload::StatusBit;
+use crate::controller::yerc::payload::{ControllerStatus, Position, StatusBit};
 use crate::controller::yerc::query::{Coordinates, ReadPosition, ReadStatus};
 use crate::failure::Failure;
 
@@ -14,12 +14,18 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     let query = ReadPosition::new(link.model, Group::R1, Coordinates::Base);
     let query = query.map_err(|error| Failure::local(error.to_string()))?;
     // A controller without a first robot has no position to show; that is no failure.
-    let position = link.try_ask(&query).await?.ok().map(|position| {
+    let position = link.try_ask(&query).await?.ok();
+    Ok(report(status, position.as_ref()))
+}
+
+/// What the answers say.
+pub(super) fn report(status: ControllerStatus, base: Option<&Position>) -> OverviewReport {
+    let position = base.map(|position| {
         let axes = position.axes.padded();
         let mm = |axis: usize| f64::from(axes[axis]) / 1000.0;
         PositionMm { x_mm: mm(0), y_mm: mm(1), z_mm: mm(2) }
     });
-    Ok(OverviewReport {
+    OverviewReport {
         reachable: true,
         mode: status::mode(status),
         servo_on: Some(status.servo_on()),
@@ -30,5 +36,5 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
         position,
         not_asked: None,
         failure: None,
-    })
+    }
 }

@@ -184,7 +184,7 @@ pub(super) fn decimal(value: i32, unit: Unit) -> f64 {
 
 /// Names of the axes of a robot; other groups have numbers (FS and DX 3.3.5). An eighth is not named by the manuals.
 pub(super) const ROBOT_AXES: [&str; MAX_AXES] = ["S", "L", "U", "R", "B", "T", "E", "8"];
-const CARTESIAN_AXES: [&str; MAX_AXES] = ["X", "Y", "Z", "Rx", "Ry", "Rz", "Re", "8"];
+pub(super) const CARTESIAN_AXES: [&str; MAX_AXES] = ["X", "Y", "Z", "Rx", "Ry", "Rz", "Re", "8"];
 const NUMBERED_AXES: [&str; MAX_AXES] = ["1", "2", "3", "4", "5", "6", "7", "8"];
 
 /// A number for each axis, under its name.

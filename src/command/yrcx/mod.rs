@@ -49,6 +49,7 @@ mod status_reset;
 mod teach;
 #[cfg(test)]
 mod testing;
+pub mod top;
 mod torque_limit;
 pub mod trace;
 mod unit;

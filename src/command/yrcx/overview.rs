@@ -4,6 +4,7 @@ use super::link::Link;
 use super::status::position_mm;
 use crate::command::overview::{OverviewReport, PositionMm};
 use crate::controller::yrcx::answer::Status;
+use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::{input, output};
 use crate::failure::Failure;
 
@@ -16,19 +17,32 @@ const BUSY: &str = "another client's remote command is under way, and there is o
 /// Looks at the signals, and asks for the position where that does not take command of the controller first.
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     let image = link.look().await?;
-    // Somebody else's remote command is not waited for: it may be a motion.
-    let is_busy = link.is_shared() && Status::of(image.0[0]) == Status::Running;
-    let position = if link.commands() && !is_busy { position_mm(link).await? } else { None };
-    Ok(OverviewReport {
+    let not_asked = not_asked(link, &image);
+    let position = if not_asked.is_none() { position_mm(link).await? } else { None };
+    let position = position.map(|[x_mm, y_mm, z_mm, _]| PositionMm { x_mm, y_mm, z_mm });
+    Ok(OverviewReport { position, not_asked, ..report(link, &image) })
+}
+
+/// Why no remote command may be given only to look. Somebody else's is not waited for: it may be a motion.
+pub(super) fn not_asked(link: &Link, image: &Image) -> Option<&'static str> {
+    if link.is_shared() && Status::of(image.0[0]) == Status::Running {
+        return Some(BUSY);
+    }
+    (!link.commands()).then_some(NOT_ASKED)
+}
+
+/// What the signals say.
+pub(super) fn report(link: &Link, image: &Image) -> OverviewReport {
+    OverviewReport {
         reachable: true,
-        mode: Some(if output::AUTO_MODE.is_on(&image) { "auto" } else { "manual" }),
-        servo_on: Some(output::SERVO_ON.is_on(&image)),
-        running: Some(output::PROGRAM_RUNNING.is_on(&image)),
+        mode: Some(if output::AUTO_MODE.is_on(image) { "auto" } else { "manual" }),
+        servo_on: Some(output::SERVO_ON.is_on(image)),
+        running: Some(output::PROGRAM_RUNNING.is_on(image)),
         held: link.shown().map(|shown| !input::STOP.is_on(shown)),
-        alarm: Some(output::ALARM.is_on(&image)),
+        alarm: Some(output::ALARM.is_on(image)),
         error: None,
-        position: position.map(|[x_mm, y_mm, z_mm, _]| PositionMm { x_mm, y_mm, z_mm }),
-        not_asked: if is_busy { Some(BUSY) } else { (!link.commands()).then_some(NOT_ASKED) },
+        position: None,
+        not_asked: None,
         failure: None,
-    })
+    }
 }

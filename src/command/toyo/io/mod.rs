@@ -6,6 +6,8 @@
 mod read;
 mod set;
 
+pub(super) use read::{Bank, INPUTS, OUTPUTS, ports_of};
+
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -31,9 +33,9 @@ commands! {
 
 /// A port and the state of its bits.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-struct Port {
+pub(super) struct Port {
     /// As the manual names it: `PN01`, `SY01` for the system port.
-    name: String,
+    pub(super) name: String,
     /// Null for the system port.
     port: Option<u8>,
     /// As the controller sends it: bit 8 first, bit 1 last.
@@ -45,6 +47,11 @@ struct Port {
 }
 
 impl Port {
+    /// Its bits as a number.
+    pub(super) fn byte(&self) -> u8 {
+        self.on.iter().fold(0, |byte, number| byte | 1 << (number - 1))
+    }
+
     fn new(port: Option<u8>, byte: u8) -> Self {
         let name = port.map_or_else(|| "SY01".to_owned(), name);
         let bits = [0, 1, 2, 3, 4, 5, 6, 7].map(|bit| byte >> bit & 1 == 1);

@@ -59,7 +59,7 @@ const BITS: &str = "A port has the bits 8 to 1, in this order: the rightmost one
 
 /// A kind of ports.
 #[derive(Debug, Clone, Copy)]
-struct Bank {
+pub(in super::super) struct Bank {
     command: table::Command,
     /// `input`.
     word: &'static str,
@@ -70,8 +70,8 @@ struct Bank {
 }
 
 /// The numbers are those of TO 2-8. Screen 7 of the inputs, which it allows, would be beyond the last port (C8).
-const INPUTS: Bank = Bank { command: table::Command::Minp, word: "input", own: 23, slave: 3 };
-const OUTPUTS: Bank = Bank { command: table::Command::Mout, word: "output", own: 18, slave: 2 };
+pub(in super::super) const INPUTS: Bank = Bank { command: table::Command::Minp, word: "input", own: 23, slave: 3 };
+pub(in super::super) const OUTPUTS: Bank = Bank { command: table::Command::Mout, word: "output", own: 18, slave: 2 };
 const INTERNAL: Bank = Bank { command: table::Command::Mnin, word: "internal", own: 4, slave: 0 };
 
 impl Bank {
@@ -90,6 +90,11 @@ impl Bank {
         (1..=self.last(station)).filter(move |port| self.screen(station, *port) == screen)
     }
 
+    /// Asks for a screen of them.
+    pub(in super::super) fn request(self, station: u8, screen: u8) -> Request {
+        Request::of(self.command, [Value::Number(station.into()), Value::Number(screen.into())])
+    }
+
     async fn read(self, link: &mut Link, station: u8, port: Option<u8>) -> Result<Ports, Failure> {
         let last = self.last(station);
         let screens = match port {
@@ -100,8 +105,7 @@ impl Bank {
             Some(port) => self.screen(station, port)..=self.screen(station, port),
             None => 1..=self.screen(station, last),
         };
-        let request =
-            |screen: u8| Request::of(self.command, [Value::Number(station.into()), Value::Number(screen.into())]);
+        let request = |screen: u8| self.request(station, screen);
         link.rehearse(&screens.clone().map(request).collect::<Vec<_>>()).await;
         let (mut ports, mut refused) = (Vec::new(), Vec::new());
         for screen in screens {
@@ -122,7 +126,7 @@ impl Bank {
 
 /// The ports in an answer. A number that is there twice is that of the next port, as where the manual prints PN02
 /// twice (ambiguity C7).
-fn ports_of(record: &Record) -> Vec<Port> {
+pub(in super::super) fn ports_of(record: &Record) -> Vec<Port> {
     let mut ports: Vec<Port> = record.bits("sy01").map(|byte| Port::new(None, byte)).into_iter().collect();
     for (number, bits) in [("port1", "bits1"), ("port2", "bits2"), ("port3", "bits3"), ("port4", "bits4")] {
         let Some(byte) = record.bits(bits) else { break };

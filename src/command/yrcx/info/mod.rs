@@ -51,4 +51,5 @@ commands! {
     }
 }
 
+pub use alarm::AlarmReport;
 pub use servo::{AxisServo, servos};

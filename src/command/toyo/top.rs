@@ -1,0 +1,141 @@
+//! A robot of the family in a live view: status and position in a line; axes with their soft limits, the error and the
+//! first ports on a screen. The protocol has no torque.
+
+use super::io::{Bank as Ports, INPUTS, OUTPUTS, ports_of};
+use super::link::{Link, Toyo};
+use super::overview::report;
+use super::position::Place;
+use crate::command::sample::{Alarm, Axis, Bank, Depth, Eight, Lamp, Sample, Whole, clocked};
+use crate::command::{Access, Family as _};
+use crate::controller::toyo::errors;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::status::Status;
+use crate::controller::toyo::table::{Command, Parameter};
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::Tone;
+use crate::settings::Robot;
+
+/// An eye on one controller.
+#[derive(Debug)]
+pub struct Eye {
+    link: Link,
+    /// Once they were asked for.
+    limits: Option<Limits>,
+}
+
+/// The soft limits of X, Y, Z and R, where the controller tells them.
+type Limits = [Option<(f64, f64)>; 4];
+
+/// Letters of the axes, in the order of a position.
+const LETTERS: [&str; 4] = ["X", "Y", "Z", "R"];
+
+impl Eye {
+    /// Opens it; nothing but reads can leave.
+    pub async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+        Ok(Self { link: Toyo::connect(robot, access, screen).await?, limits: None })
+    }
+
+    /// Takes a look.
+    pub async fn look(&mut self, depth: Depth) -> Result<Sample, Failure> {
+        let (first, answered_in) = clocked(self.link.status_of(&[0])).await;
+        let first = first?;
+        let rest: &[u8] = match (depth, first.has_error()) {
+            (Depth::Whole, _) => &[1, 2, 3, 4],
+            (Depth::Line, true) => &[1, 2, 3],
+            (Depth::Line, false) => &[2, 3],
+        };
+        let status = self.link.status_of(rest).await?.with(0, first.state);
+        let place = self.link.try_read(&Request::bare(Command::Mpst)).await?.ok().map(|record| Place::of(&record));
+        let whole = match depth {
+            Depth::Line => None,
+            Depth::Whole => Some(self.whole(status, place).await?),
+        };
+        Ok(Sample { line: report(status, place), answered_in, alarms: alarms(status), whole })
+    }
+
+    /// Closes it.
+    pub async fn close(self, screen: &Screen) -> Result<(), Failure> {
+        Toyo::close(self.link, screen).await
+    }
+
+    async fn whole(&mut self, status: Status, place: Option<Place>) -> Result<Whole, Failure> {
+        let limits = match self.limits {
+            Some(limits) => limits,
+            None => *self.limits.insert(limits(&mut self.link).await?),
+        };
+        let banks = vec![self.bank("inputs", INPUTS).await?, self.bank("outputs", OUTPUTS).await?];
+        let axes = place.map_or_else(Vec::new, |place| axes(place, limits));
+        Ok(Whole { lamps: lamps(status), axes, torque_unit: None, banks, not_asked: None })
+    }
+
+    /// The first screen of ports of the controller itself.
+    async fn bank(&mut self, name: &'static str, ports: Ports) -> Result<Bank, Failure> {
+        let groups = match self.link.try_read(&ports.request(0, 1)).await? {
+            Ok(record) => ports_of(&record).iter().map(|port| Eight::falling(port.name.clone(), port.byte())).collect(),
+            Err(_) => Vec::new(),
+        };
+        Ok(Bank { name, groups })
+    }
+}
+
+/// Asks for the soft limits. They belong to axes 1 to 4, and which letter an axis has is the machine's.
+async fn limits(link: &mut Link) -> Result<Limits, Failure> {
+    let Ok(system) = link.try_read(&Request::bare(Command::Sysp)).await? else { return Ok(Limits::default()) };
+    let (least, most) = (parameter(link, "P02").await?, parameter(link, "P01").await?);
+    let (Some(least), Some(most)) = (least, most) else { return Ok(Limits::default()) };
+    let limit = |record: &Record, axis: usize| record.number(&format!("ax{axis}")).map(|steps| f64::from(steps) / 100.0);
+    Ok(LETTERS.map(|letter| {
+        let axis = (1..=4).find(|axis| system.word(&format!("arm{axis}")) == Some(letter))?;
+        Some((limit(&least, axis)?, limit(&most, axis)?)).filter(|(least, most)| least < most)
+    }))
+}
+
+async fn parameter(link: &mut Link, id: &str) -> Result<Option<Record>, Failure> {
+    let request = Parameter::named(id).and_then(|parameter| Request::read_parameter(parameter, None).ok());
+    let request = request.ok_or_else(|| Failure::local(format!("there is no parameter {id}")))?;
+    Ok(link.try_read_content(&request).await?.ok())
+}
+
+fn alarms(status: Status) -> Vec<Alarm> {
+    if !status.has_error() {
+        return Vec::new();
+    }
+    let error = errors::explain(status.error);
+    let code = format!("{:02X}", error.code);
+    vec![Alarm { code, text: error.name.into_owned(), remedy: error.remedy.to_owned() }]
+}
+
+fn lamps(status: Status) -> Vec<Lamp> {
+    vec![
+        Lamp::new("host", status.host_on(), Tone::Good),
+        Lamp::new("pendant", status.pendant_on(), Tone::Warning),
+        Lamp::new("servo", status.servo_on(), Tone::Good),
+        Lamp::should("origin", status.homed(), Tone::Warning),
+        Lamp::new("homing", status.homing(), Tone::Warning),
+        Lamp::new("running", status.executing(), Tone::Good),
+        Lamp::new("paused", status.paused(), Tone::Warning),
+        Lamp::new("in position", status.in_position(), Tone::Good),
+        Lamp::new("error", status.has_error(), Tone::Bad),
+        Lamp::should("ready", status.ready_output(), Tone::Plain),
+        Lamp::new("waits", status.waits_for_input(), Tone::Warning),
+        Lamp::new("one move", status.single_movement(), Tone::Plain),
+        Lamp::new("slave lost", status.slave_not_ready(), Tone::Bad),
+        Lamp::new("power cycle", status.needs_power_cycle(), Tone::Bad),
+    ]
+}
+
+fn axes(place: Place, limits: Limits) -> Vec<Axis> {
+    let positions = [place.x_mm, place.y_mm, place.z_mm, place.r_mm];
+    let axes = LETTERS.iter().zip(positions).zip(limits);
+    let axes = axes.map(|((letter, position), limits)| Axis {
+        name: (*letter).to_owned(),
+        position,
+        unit: "mm",
+        decimals: 2,
+        limits,
+        ..Axis::default()
+    });
+    axes.collect()
+}

@@ -1,0 +1,130 @@
+//! A robot of the family in a live view: status and position in a line; axes, torque, alarms and signals on a screen.
+
+use super::alarm::{SLOTS, present};
+use super::link::{Link, Yerc};
+use super::overview::report;
+use super::position::{CARTESIAN_AXES, ROBOT_AXES, decimal};
+use crate::command::sample::{Axis, Bank, Depth, Eight, Lamp, Sample, Whole, clocked};
+use crate::command::{Access, Family as _};
+use crate::controller::units;
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::{Axes, ControllerStatus, CycleMode, Position, PositionKind, StatusBit};
+use crate::controller::yerc::query::{
+    Coordinates, Query, QueryError, ReadIoGroups, ReadPosition, ReadPositionError, ReadStatus, ReadTorque,
+};
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::Tone;
+use crate::settings::Robot;
+
+/// An eye on one controller.
+#[derive(Debug)]
+pub struct Eye {
+    link: Link,
+    /// Whether the controller knows alarms with their texts, as far as is known.
+    texts: bool,
+}
+
+/// Signals that are shown, by kind: the first ones of the user's, and so many groups of eight.
+const BANKS: [(&str, u16); 2] = [("inputs", 1), ("outputs", 1001)];
+const GROUPS: u16 = 4;
+
+impl Eye {
+    /// Opens it; nothing but reads can leave.
+    pub async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+        Ok(Self { link: Yerc::connect(robot, access, screen).await?, texts: true })
+    }
+
+    /// Takes a look.
+    pub async fn look(&mut self, depth: Depth) -> Result<Sample, Failure> {
+        let (status, answered_in) = clocked(self.link.ask(&ReadStatus)).await;
+        let status = status?;
+        // A controller without a first robot has no position to show; that is no failure.
+        let base = self.ask(ReadPosition::new(self.link.model, Group::R1, Coordinates::Base)).await?;
+        let slots = if depth == Depth::Whole { SLOTS } else { 1 };
+        let alarms = if status.alarm() { present(&mut self.link, &mut self.texts, slots).await? } else { Vec::new() };
+        let whole = match depth {
+            Depth::Line => None,
+            Depth::Whole => Some(self.whole(status, base.as_ref()).await?),
+        };
+        Ok(Sample { line: report(status, base.as_ref()), answered_in, alarms, whole })
+    }
+
+    /// Closes it.
+    pub async fn close(self, screen: &Screen) -> Result<(), Failure> {
+        Yerc::close(self.link, screen).await
+    }
+
+    async fn whole(&mut self, status: ControllerStatus, base: Option<&Position>) -> Result<Whole, Failure> {
+        let model = self.link.model;
+        let pulses = self.ask(ReadPosition::new(model, Group::R1, Coordinates::Pulse)).await?;
+        let torque = self.ask(ReadTorque::new(model, Group::R1)).await?;
+        let error = self.ask(ReadPositionError::new(model, Group::R1)).await?;
+        let mut axes = pulses.map_or_else(Vec::new, |pulses| joints(pulses.axes, torque, error));
+        axes.extend(base.into_iter().flat_map(coordinates));
+        let mut banks = Vec::new();
+        for (name, first) in BANKS {
+            if let Some(bytes) = self.ask(ReadIoGroups::new(model, first, GROUPS)).await? {
+                let groups = (first..).zip(bytes).map(|(group, byte)| Eight::rising(format!("#{group}0"), byte));
+                banks.push(Bank { name, groups: groups.collect() });
+            }
+        }
+        let torque_unit = torque.map(|_| "raw");
+        Ok(Whole { lamps: lamps(status), axes, torque_unit, banks, not_asked: None })
+    }
+
+    /// Asks for what need not be there: a refusal is `None`.
+    async fn ask<Q: Query>(&mut self, query: Result<Q, QueryError>) -> Result<Option<Q::Answer>, Failure> {
+        let query = query.map_err(|error| Failure::local(error.to_string()))?;
+        Ok(self.link.try_ask(&query).await?.ok())
+    }
+}
+
+fn lamps(status: ControllerStatus) -> Vec<Lamp> {
+    let has = |bit| status.has(bit);
+    let cycle = |cycle| status.cycle() == Some(cycle);
+    vec![
+        Lamp::new("teach", has(StatusBit::Teach), Tone::Warning),
+        Lamp::new("play", has(StatusBit::Play), Tone::Good),
+        Lamp::should("remote", has(StatusBit::CommandRemote), Tone::Plain),
+        Lamp::new("servo", status.servo_on(), Tone::Good),
+        Lamp::new("running", status.running(), Tone::Good),
+        Lamp::new("hold", status.held(), Tone::Warning),
+        Lamp::new("alarm", status.alarm(), Tone::Bad),
+        Lamp::new("error", status.error(), Tone::Bad),
+        Lamp::new("step", cycle(CycleMode::Step), Tone::Plain),
+        Lamp::new("one cycle", cycle(CycleMode::Once), Tone::Plain),
+        Lamp::new("continuous", cycle(CycleMode::Continuous), Tone::Plain),
+        Lamp::new("safe speed", has(StatusBit::Guarded), Tone::Warning),
+    ]
+}
+
+fn joints(pulses: Axes, torque: Option<Axes>, error: Option<Axes>) -> Vec<Axis> {
+    let of = |axes: Option<Axes>, axis: usize| axes.and_then(|axes| axes.as_slice().get(axis).copied()).map(f64::from);
+    let axes = ROBOT_AXES.iter().zip(pulses.as_slice()).enumerate();
+    let axes = axes.map(|(axis, (name, pulses))| Axis {
+        name: (*name).to_owned(),
+        position: f64::from(*pulses),
+        unit: units::PULSE.symbol,
+        decimals: units::PULSE.decimals,
+        limits: None,
+        torque: of(torque, axis),
+        error: of(error, axis),
+    });
+    axes.collect()
+}
+
+fn coordinates(base: &Position) -> Vec<Axis> {
+    let axes = CARTESIAN_AXES.iter().zip(base.axes.as_slice()).enumerate();
+    let axes = axes.map(|(axis, (name, value))| {
+        let unit = PositionKind::Base.unit(axis);
+        Axis {
+            name: (*name).to_owned(),
+            position: decimal(*value, unit),
+            unit: unit.symbol,
+            decimals: unit.decimals,
+            ..Axis::default()
+        }
+    });
+    axes.collect()
+}

@@ -1,0 +1,215 @@
+//! A robot of the family in a live view: what the controller shows by itself. Where this connection has the command
+//! already, as in a session or on the simulator in this process, also what remote commands tell: position, torque, alarm.
+//!
+//! The remote commands of a session are for all its clients, one at a time. So a view gives only one of them in a while,
+//! and remembers what the others told.
+
+use std::time::Duration;
+
+use tokio::time::Instant;
+
+use super::info::{AlarmReport, servos};
+use super::link::{Link, Yrcx};
+use super::overview::{not_asked, report};
+use super::position::{Position, Unit};
+use crate::command::overview::{OverviewReport, PositionMm};
+use crate::command::sample::{Alarm, Axis, Bank, Depth, Eight, Lamp, Sample, Whole};
+use crate::command::{Access, Family as _};
+use crate::controller::yrcx::answer::{Answer, Status};
+use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::order::Order;
+use crate::controller::yrcx::signal::{Side, Signal, output};
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::Tone;
+use crate::settings::Robot;
+use crate::settings::target::Place;
+
+/// An eye on one controller.
+#[derive(Debug)]
+pub struct Eye {
+    link: Link,
+    told: Told,
+    /// What is asked next in a session, and when something was asked there.
+    next: usize,
+    asked: Option<Instant>,
+}
+
+/// What remote commands told.
+#[derive(Debug, Default)]
+struct Told {
+    /// Numbers of the axes that there are, from 1.
+    axes: Option<Vec<usize>>,
+    position_mm: Option<[f64; 4]>,
+    torque_percent: Option<[Option<i32>; 4]>,
+    alarm: Option<Alarm>,
+}
+
+/// Least time between two looks by messages: boards answer them when they have nothing better to do.
+const LOOKS: Duration = Duration::from_millis(100);
+/// Least time between two remote commands in a session.
+const TURNS: Duration = Duration::from_millis(500);
+
+/// The first general-purpose signals, SI(20) and SO(20), and so many groups of eight.
+const FIRST: u16 = 20;
+const GROUPS: u16 = 4;
+
+impl Eye {
+    /// Opens it; nothing but reads can leave, and no connection is opened that the controller would miss.
+    pub async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+        let mut robot = robot.clone();
+        if let Place::Eip(eip) = &mut robot.target.value.place {
+            eip.rpi = eip.rpi.max(LOOKS);
+        }
+        let link = Yrcx::connect(&robot, access, screen).await?;
+        Ok(Self { link, told: Told::default(), next: 0, asked: None })
+    }
+
+    /// Takes a look.
+    pub async fn look(&mut self, depth: Depth) -> Result<Sample, Failure> {
+        let image = self.link.look().await?;
+        let not_asked = not_asked(&self.link, &image);
+        if not_asked.is_none() {
+            self.ask(depth, &image).await?;
+        }
+        if !output::ALARM.is_on(&image) {
+            self.told.alarm = None;
+        }
+        let position = self.told.position_mm.map(|[x_mm, y_mm, z_mm, _]| PositionMm { x_mm, y_mm, z_mm });
+        let line = OverviewReport { position, not_asked, ..report(&self.link, &image) };
+        let whole = (depth == Depth::Whole).then(|| self.whole(&image, not_asked));
+        Ok(Sample { line, answered_in: None, alarms: self.told.alarm.iter().cloned().collect(), whole })
+    }
+
+    /// Closes it.
+    pub async fn close(self, screen: &Screen) -> Result<(), Failure> {
+        Yrcx::close(self.link, screen).await
+    }
+
+    /// Gives the remote commands that are due.
+    async fn ask(&mut self, depth: Depth, image: &Image) -> Result<(), Failure> {
+        let questions = self.questions(depth, output::ALARM.is_on(image));
+        if !self.link.is_shared() {
+            for question in questions {
+                self.put(question).await?;
+            }
+            return Ok(());
+        }
+        let now = Instant::now();
+        if questions.is_empty() || self.asked.is_some_and(|asked| now < asked + TURNS) {
+            return Ok(());
+        }
+        self.asked = Some(now);
+        self.next = self.next.wrapping_add(1);
+        self.put(questions[self.next % questions.len()]).await
+    }
+
+    fn questions(&self, depth: Depth, has_alarm: bool) -> Vec<Command> {
+        let is_whole = depth == Depth::Whole;
+        let wanted = [
+            (Command::PositionMm, true),
+            (Command::AlarmHistory, has_alarm && self.told.alarm.is_none()),
+            (Command::ServoStatus, is_whole && self.told.axes.is_none()),
+            (Command::TorqueOfMax, is_whole),
+        ];
+        wanted.into_iter().filter(|(_, is_wanted)| *is_wanted).map(|(command, _)| command).collect()
+    }
+
+    /// Gives a remote command that only reads, and remembers what it tells.
+    async fn put(&mut self, command: Command) -> Result<(), Failure> {
+        let draft = self.link.draft(command)?;
+        let order: Order = match command {
+            Command::AlarmHistory => draft.with(Key::History, 1).build()?,
+            // No axis named: all of them.
+            Command::TorqueOfMax => draft.with(Key::Axes, 0).build()?,
+            _ => draft.build()?,
+        };
+        // A refusal is no answer here: a robot that does not know its origin refuses to tell its position.
+        let values = match self.link.try_run(&order).await?.answer {
+            Answer::Done(values) | Answer::Running(values) => Some(values),
+            Answer::Refused { .. } => None,
+        };
+        let values = values.as_ref();
+        match command {
+            Command::PositionMm => {
+                let position = values.and_then(|values| Position::of(values, Some(Unit::Mm)).position_mm);
+                self.told.position_mm = position;
+            }
+            Command::TorqueOfMax => {
+                self.told.torque_percent = values.map(|values| Key::AXES.map(|key| values.int(key)));
+            }
+            Command::ServoStatus => {
+                self.told.axes = values.map(|values| servos(values).iter().map(|servo| servo.axis).collect());
+            }
+            _ => self.told.alarm = values.and_then(alarm),
+        }
+        Ok(())
+    }
+
+    fn whole(&self, image: &Image, not_asked: Option<&'static str>) -> Whole {
+        let shown = self.link.shown().copied();
+        let mut banks = Vec::new();
+        if let Some(shown) = shown {
+            banks.push(bank("inputs", Side::Input, &shown));
+        }
+        banks.push(bank("outputs", Side::Output, image));
+        let torque_unit = self.told.torque_percent.map(|_| "% of max");
+        Whole { lamps: lamps(image), axes: self.axes(), torque_unit, banks, not_asked }
+    }
+
+    fn axes(&self) -> Vec<Axis> {
+        let Some(position) = self.told.position_mm else { return Vec::new() };
+        let torque = self.told.torque_percent.unwrap_or_default();
+        let is_there = |axis: &usize| self.told.axes.as_ref().is_none_or(|axes| axes.contains(axis));
+        let axes = (1..).zip(position).zip(torque).filter(|((axis, _), _)| is_there(axis));
+        let axes = axes.map(|((axis, position), torque)| Axis {
+            name: axis.to_string(),
+            position,
+            unit: "mm",
+            decimals: 3,
+            torque: torque.map(f64::from),
+            ..Axis::default()
+        });
+        axes.collect()
+    }
+}
+
+/// An entry of the history. That 1 is the latest is not in the manual.
+fn alarm(values: &Values) -> Option<Alarm> {
+    let AlarmReport { code, meaning, remedies, .. } = AlarmReport::of(values);
+    let text = format!("{} (entry 1 of the history)", meaning.unwrap_or_default());
+    Some(Alarm { code: code?, text, remedy: remedies.join("; ") })
+}
+
+fn lamps(image: &Image) -> Vec<Lamp> {
+    let is_on = |signal: Signal| signal.is_on(image);
+    vec![
+        Lamp::new("auto", is_on(output::AUTO_MODE), Tone::Good),
+        Lamp::new("servo", is_on(output::SERVO_ON), Tone::Good),
+        Lamp::new("program", is_on(output::PROGRAM_RUNNING), Tone::Good),
+        Lamp::new("sequence", is_on(output::SEQUENCE_RUNNING), Tone::Good),
+        Lamp::should("origin", is_on(output::ORIGIN_COMPLETE), Tone::Warning),
+        Lamp::new("emergency", is_on(output::EMERGENCY_STOP), Tone::Bad),
+        Lamp::new("alarm", is_on(output::ALARM), Tone::Bad),
+        Lamp::new("warning", is_on(output::WARNING), Tone::Warning),
+        Lamp::should("CPU OK", is_on(output::CPU_OK), Tone::Bad),
+        Lamp::should("MP ready", is_on(output::MP_READY), Tone::Warning),
+        Lamp::new("at start", is_on(output::PROGRAM_RESET), Tone::Plain),
+        Lamp::new("command", Status::of(image.0[0]) == Status::Running, Tone::Good),
+    ]
+}
+
+fn bank(name: &'static str, side: Side, image: &Image) -> Bank {
+    // The numbers are octal: 20, 30, 40 and 50, and 0 to 7 from each.
+    let starts = (0..GROUPS).map(|group| FIRST + 10 * group);
+    let groups = starts.map(|start| Eight {
+        label: format!("{}{start}", side.name()),
+        signals: std::array::from_fn(|bit| {
+            let bit = u16::try_from(bit).unwrap_or_default();
+            Signal::new(side, start + bit).is_ok_and(|signal| signal.is_on(image))
+        }),
+    });
+    Bank { name, groups: groups.collect() }
+}
