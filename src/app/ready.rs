@@ -78,7 +78,7 @@ impl Ready {
         let need = work.need();
         let mut run = prepare(globals, need, line)?;
         match &work {
-            Work::Common(Common::Status(_)) => run.sources.widen(),
+            Work::Common(Common::Status(_) | Common::Top(_)) => run.sources.widen(),
             Work::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
             Work::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.family(),
             Work::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.family(),

@@ -64,7 +64,8 @@ impl Screen {
                 usual(panic);
             }));
         });
-        let taken = take().and_then(|()| Terminal::new(CrosstermBackend::new(BufWriter::with_capacity(PICTURE, io::stdout()))));
+        let taken =
+            take().and_then(|()| Terminal::new(CrosstermBackend::new(BufWriter::with_capacity(PICTURE, io::stdout()))));
         match taken {
             Ok(terminal) => Ok(Fullscreen { terminal }),
             Err(error) => {

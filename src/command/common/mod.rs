@@ -12,6 +12,7 @@ pub mod robots;
 pub mod schema;
 pub mod session;
 pub mod sim;
+mod top;
 
 use clap::Subcommand;
 
@@ -23,6 +24,8 @@ use super::run::{Run, Stopped};
 pub enum Common {
     /// One line a robot: reachable, mode, servo, state, alarm, position
     Status(Overview),
+    /// All robots, or one, live on the whole screen
+    Top(top::Top),
     /// The inventory: list, show, add, remove; check and discover
     #[command(subcommand)]
     Robots(robots::Robots),
@@ -57,7 +60,7 @@ impl Common {
     /// Whether it asks or lists robots, and so needs the inventory.
     pub fn is_about_robots(&self) -> bool {
         match self {
-            Self::Status(_) | Self::Robots(_) | Self::Session(_) | Self::Restore(_) => true,
+            Self::Status(_) | Self::Top(_) | Self::Robots(_) | Self::Session(_) | Self::Restore(_) => true,
             Self::Backup(backup) => !backup.is_local(),
             Self::Diff(diff) => !diff.is_local(),
             _ => false,
@@ -69,6 +72,7 @@ impl Common {
         match self {
             Self::Session(session) if session.stays() => Some("it holds a link until it is ended; add --background"),
             Self::Sim(_) => Some("it serves until it is ended"),
+            Self::Top(_) => Some("it is a view for a terminal"),
             Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => Some("it prints a text to read"),
             Self::Status(_) | Self::Robots(_) | Self::Session(_) | Self::Decode(_) | Self::Explain(_) => None,
             Self::Backup(_) | Self::Restore(_) | Self::Diff(_) => None,
@@ -82,6 +86,7 @@ impl Common {
             Self::Backup(backup) => backup.run(run).await,
             Self::Restore(restore) => run.robots(&restore).await,
             Self::Diff(diff) => diff.run(run).await,
+            Self::Top(top) => Box::pin(top.run(run)).await,
             Self::Sim(sim) => sim.run(run).await,
             Self::Session(session) => Box::pin(session.run(run)).await,
             Self::Robots(robots) => robots.run(run).await,

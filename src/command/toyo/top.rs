@@ -85,7 +85,8 @@ async fn limits(link: &mut Link) -> Result<Limits, Failure> {
     let Ok(system) = link.try_read(&Request::bare(Command::Sysp)).await? else { return Ok(Limits::default()) };
     let (least, most) = (parameter(link, "P02").await?, parameter(link, "P01").await?);
     let (Some(least), Some(most)) = (least, most) else { return Ok(Limits::default()) };
-    let limit = |record: &Record, axis: usize| record.number(&format!("ax{axis}")).map(|steps| f64::from(steps) / 100.0);
+    let limit =
+        |record: &Record, axis: usize| record.number(&format!("ax{axis}")).map(|steps| f64::from(steps) / 100.0);
     Ok(LETTERS.map(|letter| {
         let axis = (1..=4).find(|axis| system.word(&format!("arm{axis}")) == Some(letter))?;
         Some((limit(&least, axis)?, limit(&most, axis)?)).filter(|(least, most)| least < most)

@@ -1,0 +1,166 @@
+//! The picture of a live view: the list of all robots, the screen of one, and the keys.
+
+mod chart;
+mod detail;
+mod list;
+mod pen;
+
+use std::time::Duration;
+
+use ratatui::Frame;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
+use ratatui::widgets::{Clear, Widget as _};
+
+use super::keys::{Explained, KEYS};
+use super::model::{Model, Moment, Seen};
+use crate::output::view::Tone;
+pub use pen::Palette;
+use pen::{Pen, after, line_of, to_ascii, width};
+
+/// Draws everything.
+pub fn draw(frame: &mut Frame<'_>, model: &Model, now: Moment, palette: Palette) {
+    let area = frame.area();
+    render(frame.buffer_mut(), area, model, model.moment(now), palette);
+}
+
+fn render(buffer: &mut Buffer, area: Rect, model: &Model, now: Moment, palette: Palette) {
+    let mut pen = Pen { buffer, palette };
+    let [head, body, foot] = rows(area);
+    match model.chosen().filter(|_| model.is_open) {
+        Some(seen) => {
+            detail::head(&mut pen, head, model, seen, now);
+            detail::body(&mut pen, body, model, seen, now);
+        }
+        None => {
+            list::head(&mut pen, head, model);
+            list::body(&mut pen, body, model, now);
+        }
+    }
+    keys(&mut pen, foot, model);
+    if model.has_help {
+        help(&mut pen, area);
+    }
+    if !palette.is_unicode {
+        to_ascii(pen.buffer);
+    }
+}
+
+/// The first line, the last one, and what is between them.
+fn rows(area: Rect) -> [Rect; 3] {
+    let head = line_of(area, 0);
+    let foot = if area.height > 1 { line_of(area, area.height - 1) } else { Rect::ZERO };
+    let body = Rect { y: area.y + head.height, height: area.height.saturating_sub(2), ..area };
+    [head, body, foot]
+}
+
+/// How often robots are looked at, and whether the picture stands still, at the end of the first line.
+fn pace(pen: &mut Pen<'_>, line: Rect, model: &Model) {
+    let pace = format!("every {:?} ", model.every);
+    pen.right(line, &pace, pen.palette.quiet());
+    if model.is_paused() {
+        let taken = u16::try_from(pace.len()).unwrap_or_default();
+        let room = Rect { width: line.width.saturating_sub(taken + 1), ..line };
+        let style = pen.palette.tone(Tone::Warning).add_modifier(Modifier::REVERSED);
+        pen.right(room, " PAUSED ", style);
+    }
+}
+
+/// The last line: what keys do, as many as there is room for; or the filter that is being typed.
+fn keys(pen: &mut Pen<'_>, line: Rect, model: &Model) {
+    let (accent, quiet) = (pen.palette.accent(), pen.palette.quiet());
+    if model.is_typing {
+        let parts = [(" filter: ", accent), (model.filter.as_str(), Style::new()), ("█", accent)];
+        let taken = pen.parts(line, &parts);
+        pen.left(after(line, taken + 2), "Enter keeps it, Esc shows all again", quiet);
+        return;
+    }
+    let counts = |key: &&Explained| !key.short.is_empty() && if model.is_open { key.counts.1 } else { key.counts.0 };
+    let shown: Vec<&Explained> = KEYS.iter().filter(counts).collect();
+    let mut at = 1;
+    for (index, key) in shown.iter().enumerate() {
+        let columns = u16::try_from(width(key.key) + width(key.short) + 3).unwrap_or(u16::MAX);
+        // The last ones, help and end, are always there.
+        let rest: usize =
+            shown.iter().skip(index + 1).rev().take(2).map(|key| width(key.key) + width(key.short) + 3).sum();
+        let is_last = index + 2 >= shown.len();
+        let needed = usize::from(at) + usize::from(columns) + if is_last { 0 } else { rest };
+        if needed > usize::from(line.width) + 2 && !is_last {
+            continue;
+        }
+        let place = after(line, at);
+        pen.parts(
+            Rect { width: place.width.min(columns), ..place },
+            &[(key.key, accent), (" ", quiet), (key.short, quiet)],
+        );
+        at = at.saturating_add(columns);
+    }
+}
+
+/// All keys with what they do, over everything else.
+fn help(pen: &mut Pen<'_>, area: Rect) {
+    const KEY: u16 = 8;
+    let columns = KEYS.iter().map(|key| width(key.full)).max().unwrap_or_default();
+    let wanted =
+        (u16::try_from(columns).unwrap_or_default() + KEY + 6, u16::try_from(KEYS.len()).unwrap_or_default() + 5);
+    let (columns, lines) = (wanted.0.min(area.width), wanted.1.min(area.height));
+    let place = Rect {
+        x: area.x + (area.width - columns) / 2,
+        y: area.y + (area.height - lines) / 2,
+        width: columns,
+        height: lines,
+    };
+    Clear.render(place, pen.buffer);
+    frame(pen, place);
+    let inside = Rect {
+        x: place.x.saturating_add(3).min(place.right()),
+        y: place.y.saturating_add(1).min(place.bottom()),
+        width: place.width.saturating_sub(6),
+        height: place.height.saturating_sub(2),
+    };
+    let bold = Style::new().add_modifier(Modifier::BOLD);
+    pen.left(line_of(inside, 0), "Nothing here can move a robot or change anything.", bold);
+    for (line, key) in (2..).zip(&KEYS) {
+        let line = line_of(inside, line);
+        pen.left(Rect { width: line.width.min(KEY), ..line }, key.key, pen.palette.accent());
+        pen.left(after(line, KEY), key.full, Style::new());
+    }
+}
+
+/// A border.
+fn frame(pen: &mut Pen<'_>, area: Rect) {
+    use ratatui::widgets::Block;
+
+    Block::bordered().border_style(pen.palette.quiet()).render(area, pen.buffer);
+}
+
+/// When a robot answered last, and how fast: `4 ms`, or `12 s ago` where it is late.
+fn answer(pen: &Pen<'_>, seen: &Seen, now: Moment, every: Duration) -> (String, Style) {
+    let Some(age) = seen.age(now) else { return ("-".to_owned(), pen.palette.quiet()) };
+    if seen.sample().is_none() || seen.is_old(now, every) {
+        let tone = if seen.sample().is_none() { Tone::Bad } else { Tone::Warning };
+        return (format!("{} ago", whole(age)), pen.palette.tone(tone));
+    }
+    match seen.sample().and_then(|sample| sample.answered_in) {
+        Some(time) => (milliseconds(time), Style::new()),
+        None => ("-".to_owned(), pen.palette.quiet()),
+    }
+}
+
+fn milliseconds(time: Duration) -> String {
+    let milliseconds = time.as_secs_f64() * 1000.0;
+    if milliseconds < 10.0 { format!("{milliseconds:.1} ms") } else { format!("{milliseconds:.0} ms") }
+}
+
+/// A time in its greatest unit.
+fn whole(time: Duration) -> String {
+    match time.as_secs() {
+        seconds @ 0..120 => format!("{seconds} s"),
+        seconds @ 120..7200 => format!("{} min", seconds / 60),
+        seconds => format!("{} h", seconds / 3600),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,191 @@
+//! Text in cells: cut where there is no room, harmless for a terminal, in colours that mean something.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::text::Span;
+
+use crate::output::escape;
+use crate::output::view::Tone;
+
+/// What the terminal can show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Palette {
+    /// Colours; without them, bold, underlined and reversed.
+    pub has_color: bool,
+    /// More than ASCII.
+    pub is_unicode: bool,
+}
+
+impl Palette {
+    /// How a tone is noticed.
+    pub fn tone(self, tone: Tone) -> Style {
+        let style = Style::new();
+        match (tone, self.has_color) {
+            (Tone::Plain, _) | (Tone::Good, false) => style,
+            (Tone::Good, true) => style.fg(Color::Green),
+            (Tone::Warning, true) => style.fg(Color::Yellow),
+            (Tone::Bad, true) => style.fg(Color::Red).add_modifier(Modifier::BOLD),
+            (Tone::Warning, false) => style.add_modifier(Modifier::BOLD),
+            (Tone::Bad, false) => style.add_modifier(Modifier::BOLD | Modifier::UNDERLINED),
+        }
+    }
+
+    /// What stands back: headings, units, what is off.
+    pub fn quiet(self) -> Style {
+        if self.has_color { Style::new().fg(Color::DarkGray) } else { Style::new() }
+    }
+
+    /// Keys, and what is chosen.
+    pub fn accent(self) -> Style {
+        let bold = Style::new().add_modifier(Modifier::BOLD);
+        if self.has_color { bold.fg(Color::Cyan) } else { bold }
+    }
+
+    /// Headings of columns.
+    pub fn heading(self) -> Style {
+        self.quiet().add_modifier(Modifier::UNDERLINED)
+    }
+}
+
+/// Draws text into the buffer of a picture; what is outside of it is left out.
+#[derive(Debug)]
+pub struct Pen<'a> {
+    /// Where to.
+    pub buffer: &'a mut Buffer,
+    /// With what.
+    pub palette: Palette,
+}
+
+impl Pen<'_> {
+    /// Text at the left of a line; returns the columns that it took.
+    pub fn left(&mut self, line: Rect, text: &str, style: Style) -> u16 {
+        let line = line.intersection(self.buffer.area);
+        if line.is_empty() {
+            return 0;
+        }
+        let text = escape::line(text);
+        let room = usize::from(line.width);
+        if width(&text) <= room {
+            let (end, _) = self.buffer.set_stringn(line.x, line.y, &text, room, style);
+            return end - line.x;
+        }
+        let (end, _) = self.buffer.set_stringn(line.x, line.y, &text, room - 1, style);
+        self.buffer.set_stringn(end, line.y, "…", 1, style);
+        line.width
+    }
+
+    /// Text at the right of a line; at the left, and cut, where it has no room.
+    pub fn right(&mut self, line: Rect, text: &str, style: Style) {
+        let taken = u16::try_from(width(&escape::line(text))).unwrap_or(u16::MAX).min(line.width);
+        let start = line.x + (line.width - taken);
+        self.left(Rect { x: start, width: taken, ..line }, text, style);
+    }
+
+    /// Parts of a line, one behind the other; returns the columns that they took.
+    pub fn parts(&mut self, line: Rect, parts: &[(&str, Style)]) -> u16 {
+        let mut taken = 0;
+        for (text, style) in parts {
+            taken += self.left(after(line, taken), text, *style);
+        }
+        taken
+    }
+
+    /// Gives a line a style, whatever stands in it.
+    pub fn paint(&mut self, line: Rect, style: Style) {
+        self.buffer.set_style(line.intersection(self.buffer.area), style);
+    }
+}
+
+/// What is left of a line after so many columns.
+pub fn after(line: Rect, columns: u16) -> Rect {
+    let columns = columns.min(line.width);
+    Rect { x: line.x + columns, width: line.width - columns, ..line }
+}
+
+/// The line of an area, counted from its top; empty beyond its end.
+pub fn line_of(area: Rect, line: u16) -> Rect {
+    Rect { y: area.y.saturating_add(line), height: u16::from(line < area.height), ..area }
+}
+
+/// Columns that a text takes.
+pub fn width(text: &str) -> usize {
+    Span::raw(text).width()
+}
+
+/// Signs that stand for others where there is only ASCII. What is not in here is text, and stays as it is.
+const ASCII: [(&str, &str); 24] = [
+    ("●", "*"),
+    ("○", "."),
+    ("█", "#"),
+    ("░", "-"),
+    ("▌", ">"),
+    ("│", "|"),
+    ("─", "-"),
+    ("└", "+"),
+    ("┌", "+"),
+    ("┐", "+"),
+    ("┘", "+"),
+    ("…", "~"),
+    ("↑", "^"),
+    ("↓", "v"),
+    ("←", "<"),
+    ("→", ">"),
+    ("▁", "_"),
+    ("▂", "_"),
+    ("▃", "-"),
+    ("▄", "-"),
+    ("▅", "="),
+    ("▆", "="),
+    ("▇", "#"),
+    ("·", "-"),
+];
+
+/// Turns signs into ASCII, each in its cell.
+pub fn to_ascii(buffer: &mut Buffer) {
+    for cell in &mut buffer.content {
+        if let Some((_, plain)) = ASCII.iter().find(|(sign, _)| *sign == cell.symbol()) {
+            cell.set_symbol(plain);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drawn(columns: u16, draw: impl FnOnce(&mut Pen<'_>, Rect)) -> String {
+        let area = Rect::new(0, 0, columns, 1);
+        let mut buffer = Buffer::empty(area);
+        draw(&mut Pen { buffer: &mut buffer, palette: Palette { has_color: false, is_unicode: true } }, area);
+        // The cell behind a wide character is a blank of its own.
+        buffer.content.iter().map(ratatui::buffer::Cell::symbol).collect()
+    }
+
+    fn left(columns: u16, text: &str) -> String {
+        drawn(columns, |pen, line| _ = pen.left(line, text, Style::new()))
+    }
+
+    #[test]
+    fn text_is_cut_where_there_is_no_room() {
+        assert_eq!(left(5, "abc"), "abc  ");
+        assert_eq!(left(5, "abcdef"), "abcd…");
+        assert_eq!(left(1, "ab"), "…");
+        assert_eq!(left(0, "ab"), "");
+        // Two columns a character: three have no room, and half of one is none.
+        assert_eq!(left(6, "溶接機"), "溶 接 機 ");
+        assert_eq!(left(4, "溶接機"), "溶 … ");
+    }
+
+    #[test]
+    fn numbers_stand_on_the_right() {
+        let right = |text: &str| drawn(5, |pen, line| pen.right(line, text, Style::new()));
+        assert_eq!(right("1.0"), "  1.0");
+        assert_eq!(right("1234567"), "1234…");
+    }
+
+    #[test]
+    fn what_steers_a_terminal_is_shown_instead() {
+        assert_eq!(left(12, "a\x1b[2Jb"), "a\\x1b[2Jb   ");
+    }
+}
