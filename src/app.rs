@@ -11,6 +11,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
 
+use clap::ValueEnum as _;
 use clap::error::ErrorKind;
 
 use self::parser::Parser;
@@ -104,7 +105,7 @@ fn tell(screen: &Screen, Stopped { failure, envelope, told }: Stopped) -> Kind {
 fn refuse(args: &[OsString], error: &clap::Error, is_json: bool) -> Result<(), Kind> {
     let is_json = is_json || wants_json(args);
     let format = if is_json { Format::Json } else { Format::Table };
-    let screen = Screen::new(format, ColorChoice::Auto, false, 0);
+    let screen = Screen::new(format, color(args), false, 0);
     let rendered = error.render();
     if is_text(error) {
         let text = if screen.stdout_color() { rendered.ansi().to_string() } else { rendered.to_string() };
@@ -131,6 +132,17 @@ fn refusal(error: &clap::Error) -> Failure {
 /// Whether it is no mistake, but help or the version.
 fn is_text(error: &clap::Error) -> bool {
     matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion)
+}
+
+/// What a command line that was not parsed, such as that of a help, says about colour.
+fn color(args: &[OsString]) -> ColorChoice {
+    let mut words = args.iter().skip(1).map(|arg| arg.to_str().unwrap_or_default()).take_while(|arg| *arg != "--");
+    let value = words.by_ref().find_map(|word| match word.strip_prefix("--color")? {
+        "" => Some(None),
+        value => value.strip_prefix('=').map(Some),
+    });
+    let value = value.and_then(|value| value.or_else(|| words.next()));
+    value.and_then(|value| ColorChoice::from_str(value, false).ok()).unwrap_or(ColorChoice::Auto)
 }
 
 /// Whether a command line that could not be parsed asks for JSON, in any of the forms that flags have.
@@ -162,6 +174,16 @@ fn wants_json(args: &[OsString]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn colour_is_recognised_in_a_line_that_does_not_parse() {
+        let color = |line: &str| color(&line.split(' ').map(OsString::from).collect::<Vec<_>>());
+        assert_eq!(color("armctl --color always -h"), ColorChoice::Always);
+        assert_eq!(color("armctl x --color=never"), ColorChoice::Never);
+        for line in ["armctl -h", "armctl --color", "armctl --color blue", "armctl say -- --color always"] {
+            assert_eq!(color(line), ColorChoice::Auto, "{line}");
+        }
+    }
 
     #[test]
     fn json_is_recognised_in_a_line_that_does_not_parse() {

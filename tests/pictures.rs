@@ -1,0 +1,158 @@
+//! The pictures of the terminal in `docs/pictures/` are what the program prints.
+//!
+//! Each is a session that is typed into a shell, in a folder of its own, and drawn as a terminal of [`COLUMNS`] shows it.
+//! `ARMCTL_BLESS=1 cargo test --test pictures` draws them anew. What would differ from run to run is settled: the
+//! simulators begin as files say, and [`settled`] puts one time for all.
+#![cfg(unix)]
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use anstyle_svg::Term;
+
+/// Width of the terminal; longer lines wrap as they do there.
+const COLUMNS: usize = 90;
+
+/// The pictures: name, and what is typed.
+const PICTURES: [(&str, &[&str]); 5] = [
+    ("fleet", &["armctl status"]),
+    ("alarm", &["armctl -r weld2 yerc alarm list", "armctl -r tray toyo error show", "armctl explain yrcx 12.600"]),
+    (
+        "refused",
+        &["armctl -t udp://192.168.1.31 yerc servo on", "armctl -t udp://192.168.1.31 yerc servo on --dry-run"],
+    ),
+    (
+        "move",
+        &[
+            "armctl -r pick yrcx move --point 19 --speed 50 --report mm",
+            "armctl -r pick yrcx move --point 19 --speed 50 --dry-run",
+        ],
+    ),
+    ("check", &["cat pick.toyo", "armctl toyo program check pick.toyo"]),
+];
+
+/// What lies in the folder.
+const FILES: [(&str, &str); 5] = [
+    (
+        "robots.toml",
+        r#"
+robot = [
+    { name = "weld1", family = "yerc", target = "sim:" },
+    { name = "weld2", family = "yerc", target = "sim:?state=weld2.toml" },
+    { name = "press", family = "yerc", target = "sim:?state=press.toml" },
+    { name = "tray", family = "toyo", target = "sim:?state=tray.toml" },
+    { name = "lift", family = "toyo", target = "tcp://127.0.0.1:1" },
+    { name = "pick", family = "yrcx", target = "sim:" },
+]
+"#,
+    ),
+    ("weld2.toml", "mode = \"teach\"\nservo = false\nalarm = [{ code = 4315, data = 3, type = 1 }]\n"),
+    ("press.toml", "event = [{ at_ms = 0, do = \"hold external on\" }]\n"),
+    ("tray.toml", "error = \"28\"\n"),
+    (
+        "pick.toyo",
+        "      SPD V=5\n\
+         next: MOVP a PT=1 CN=0 S V=0 POST\n      \
+         CNT+ CN1=1\n      \
+         JMPP TAG=next CN1<3\n      \
+         OUT STN=0 PN1=.......2\n      \
+         END\n",
+    ),
+];
+
+#[test]
+fn pictures_are_current() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/pictures");
+    let bless = std::env::var_os("ARMCTL_BLESS").is_some();
+    let mut stale = Vec::new();
+    for (name, typed) in PICTURES {
+        let path = folder.join(format!("{name}.svg"));
+        let drawn = drawn(&session(typed));
+        if bless {
+            std::fs::create_dir_all(&folder).expect("the folder can be made");
+            std::fs::write(&path, drawn).expect("the picture can be written");
+        } else if std::fs::read_to_string(&path).ok().as_ref() != Some(&drawn) {
+            stale.push(name);
+        }
+    }
+    assert!(stale.is_empty(), "not as in docs/pictures; run `ARMCTL_BLESS=1 cargo test --test pictures`: {stale:?}");
+}
+
+#[test]
+fn every_picture_is_shown_somewhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let pages = ["README.md", "docs/yerc.md", "docs/yrcx.md", "docs/toyo.md", "docs/safety.md"];
+    let pages = pages.map(|page| std::fs::read_to_string(root.join(page)).expect("the page is there"));
+    for (name, _) in PICTURES {
+        assert!(pages.iter().any(|page| page.contains(&format!("pictures/{name}.svg)"))), "nobody shows {name}.svg");
+    }
+    let files = std::fs::read_dir(root.join("docs/pictures")).expect("the folder is there").count();
+    assert_eq!(files, PICTURES.len(), "a picture that nobody draws");
+}
+
+/// What stands on the terminal: the commands behind their prompts, and all they print.
+fn session(typed: &[&str]) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, content) in FILES {
+        std::fs::write(folder.path().join(name), content).expect("a file is written");
+    }
+    let mut shown = String::new();
+    for line in typed {
+        let script = format!("exec 2>&1; armctl() {{ \"$ARMCTL\" --color always \"$@\"; }}; {line}");
+        let mut shell = Command::new("sh");
+        shell.args(["-c", &script]).current_dir(&folder).stdin(Stdio::null()).env_clear();
+        shell.env("PATH", std::env::var_os("PATH").unwrap_or_default()).env("ARMCTL", env!("CARGO_BIN_EXE_armctl"));
+        shell.env("HOME", folder.path()).env("ARMCTL_CONFIG", "robots.toml").env("TZ", "UTC");
+        let output = shell.output().expect("sh runs");
+        let printed = String::from_utf8(output.stdout).expect("what is printed is UTF-8");
+        assert!(!printed.is_empty(), "{line} prints nothing");
+        let gap = if shown.is_empty() { "" } else { "\n" };
+        shown.push_str(&format!("{gap}\u{1b}[32m$\u{1b}[0m \u{1b}[1m{line}\u{1b}[0m\n{}", settled(&printed)));
+    }
+    shown
+}
+
+/// Text with one time for all that a motion may take.
+fn settled(text: &str) -> String {
+    let Some((before, rest)) = text.split_once("moved to point 19 in ") else { return text.to_owned() };
+    let (time, after) = rest.split_once(" s\n").expect("a time ends with its unit");
+    assert!(time.parse::<f64>().is_ok_and(|time| (0.3..3.0).contains(&time)), "{time} s");
+    format!("{before}moved to point 19 in 0.405 s\n{after}")
+}
+
+fn drawn(shown: &str) -> String {
+    let wrapped: String = shown.lines().map(|line| wrapped(line) + "\n").collect();
+    let term = Term::new().fg_color(GREY).bg_color(NIGHT).palette(anstyle_svg::WIN10_CONSOLE);
+    let svg = term.min_width_px(780).render_svg(&wrapped);
+    svg.lines().map(|line| line.trim_end().to_owned() + "\n").collect()
+}
+
+const GREY: anstyle::Color = anstyle::Color::Rgb(anstyle::RgbColor(0xcc, 0xcc, 0xcc));
+const NIGHT: anstyle::Color = anstyle::Color::Rgb(anstyle::RgbColor(0x16, 0x1b, 0x22));
+
+/// A line as the terminal breaks it: where it is full, whatever stands there.
+fn wrapped(line: &str) -> String {
+    let mut out = String::new();
+    let mut column = 0;
+    let mut is_escape = false;
+    for c in line.chars() {
+        is_escape |= c == '\u{1b}';
+        if !is_escape {
+            if column == COLUMNS {
+                out.push('\n');
+                column = 0;
+            }
+            column += 1;
+        }
+        is_escape &= !c.is_ascii_alphabetic();
+        out.push(c);
+    }
+    out
+}
+
+#[test]
+fn lines_wrap_as_on_a_terminal() {
+    let line = format!("\u{1b}[1m{}\u{1b}[0m", "x".repeat(COLUMNS));
+    assert_eq!(wrapped(&line), line);
+    assert_eq!(wrapped(&format!("{line}y")), format!("{line}\ny"));
+}
