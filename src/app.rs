@@ -51,7 +51,12 @@ fn exit(done: Result<(), Kind>) -> ExitCode {
 fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
     let name = args.first().and_then(|name| Path::new(name).file_stem()).and_then(|name| name.to_str());
     if let Some(family) = name.and_then(|name| name.parse::<Family>().ok()) {
-        args.insert(1, family.name().into());
+        // Usage lines begin with this name, and the word comes behind it.
+        args[0] = "armctl".into();
+        let asks_version = args.get(1).is_some_and(|word| word == "--version" || word == "-V");
+        if !asks_version {
+            args.insert(1, family.name().into());
+        }
     }
     args
 }

@@ -104,6 +104,7 @@ impl Failure {
             }
             ErrorKind::InvalidData => failure.hint("this is not the kind of file that is wanted here"),
             ErrorKind::IsADirectory => failure.hint("name a file, not a folder"),
+            ErrorKind::NotADirectory => failure.hint("check the path: a part of it is a file, not a folder"),
             ErrorKind::NotFound => failure.hint("check the path; missing folders are not made"),
             _ => failure,
         }

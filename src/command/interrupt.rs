@@ -4,6 +4,7 @@ use std::cell::OnceCell;
 use std::future::Future;
 
 use tokio::sync::watch;
+use tokio::task::coop::unconstrained;
 
 use crate::failure::{Failure, Kind};
 
@@ -27,7 +28,8 @@ pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failur
     tokio::select! {
         biased;
         done = work => Ok(done),
-        how = wait(asked, |_| true) => Err(Failure::new(Kind::Interrupted, how)),
+        // Work that has used up its turn, because its peer answers at once, must not use up this one's as well.
+        how = unconstrained(wait(asked, |_| true)) => Err(Failure::new(Kind::Interrupted, how)),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use comfy_table::presets::NOTHING;
 use comfy_table::{Attribute, CellAlignment, Color, ColumnConstraint, ContentArrangement};
+use dialoguer::console::measure_text_width;
 
 use super::escape;
 use super::view::{Cell, Section, Table, Tone, View};
@@ -66,6 +67,7 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
             }
         }
         Section::Table(Table { rows, empty, .. }) if rows.is_empty() => return format!("{empty}\n"),
+        Section::Table(table) if least_width(table) > usize::from(width) => return records(table, width, color),
         Section::Table(table) => {
             let header = table.columns.iter().enumerate().map(|(index, name)| {
                 let is_number = table.rows.iter().all(|row| row[index].is_number || row[index].text == "-");
@@ -79,13 +81,44 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
         }
     }
     for (index, column) in grid.column_iter_mut().enumerate() {
-        column.set_padding((0, 2));
-        let is_whole = matches!(section, Section::Table(table) if table.rows.iter().any(|row| row[index].is_whole));
+        column.set_padding((0, PADDING));
+        let is_whole = match section {
+            Section::Table(table) => table.rows.iter().any(|row| row[index].is_whole),
+            _ => index == 0,
+        };
         if is_whole {
             column.set_constraint(ColumnConstraint::ContentWidth);
         }
     }
     grid.lines().fold(String::new(), |text, line| text + line.trim_end() + "\n")
+}
+
+/// Blanks behind a column.
+const PADDING: u16 = 2;
+
+/// Longest run of characters that keeps together; what is longer, such as a frame in hex, is broken like nothing else.
+const WORD: usize = 16;
+
+/// The width below which a table would break words.
+fn least_width(table: &Table) -> usize {
+    let of_word = |word: &str| measure_text_width(word).min(WORD);
+    let of_text = |text: &str| escape::line(text).split(' ').map(of_word).max().unwrap_or_default();
+    let of_cell = |cell: &Cell| if cell.is_whole { measure_text_width(&cell.text) } else { of_text(&cell.text) };
+    let of_column = |(index, name): (usize, &&str)| {
+        let cells = table.rows.iter().map(|row| of_cell(&row[index]));
+        cells.chain([of_text(name)]).max().unwrap_or_default()
+    };
+    let columns: usize = table.columns.iter().enumerate().map(of_column).sum();
+    columns + usize::from(PADDING) * table.columns.len()
+}
+
+/// The rows one below the other, each as a list of fields: for a terminal that is too narrow for columns.
+fn records(table: &Table, width: u16, color: bool) -> String {
+    let rows = table.rows.iter().map(|row| {
+        let fields = table.columns.iter().copied().zip(row.iter().cloned()).collect();
+        section_text(&Section::Fields(fields), width, color)
+    });
+    rows.collect::<Vec<_>>().join("\n")
 }
 
 fn styled(cell: &Cell) -> comfy_table::Cell {
@@ -177,6 +210,17 @@ mod tests {
         let text = text(&View::table(table), 40, false);
         assert!(text.contains("2026/03/14 08:00\n"), "{text}");
         assert!(text.lines().all(|line| line.len() <= 40), "{text}");
+    }
+
+    #[test]
+    fn a_table_that_would_break_words_becomes_a_list() {
+        let mut table = Table::new(&["robot", "mode", "state"], "");
+        table.row(["weld1".into(), "play".into(), "stopped".into()]);
+        table.row(["weld2".into(), "auto".into(), "running".into()]);
+        let text = |width| text(&View::table(table.clone()), width, false);
+        assert_eq!(text(22), "ROBOT  MODE  STATE\nweld1  play  stopped\nweld2  auto  running\n");
+        let list = "robot  weld1\nmode   play\nstate  stopped\n\nrobot  weld2\nmode   auto\nstate  running\n";
+        assert_eq!(text(21), list);
     }
 
     #[test]

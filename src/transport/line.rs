@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
+use tokio::task::coop::consume_budget;
 use tokio::time::Instant;
 
 use super::fault::{LineFaultSpec, LineFaults, Passed};
@@ -68,6 +69,8 @@ impl<P: Peer> InProcessLine<P> {
 
     /// Waits for bytes of the peer, but not longer than `until`; `None` after silence.
     pub async fn receive(&mut self, buffer: &mut [u8], until: Instant) -> Option<usize> {
+        // A peer that answers at once leaves no pause in which Ctrl-C would be heard.
+        consume_budget().await;
         loop {
             let now = self.start.elapsed();
             self.wire.run(now, &mut self.peer);

@@ -5,6 +5,7 @@ use std::collections::BinaryHeap;
 use std::fmt;
 use std::time::Duration;
 
+use tokio::task::coop::consume_budget;
 use tokio::time::Instant;
 
 use super::fault::Faults;
@@ -77,6 +78,8 @@ impl<P: Peer> InProcess<P> {
 
     /// Waits for one datagram of the peer on `channel`; what comes on others is dropped, as by a closed socket.
     pub async fn receive(&mut self, channel: usize, buffer: &mut [u8]) -> usize {
+        // A peer that answers at once leaves no pause in which Ctrl-C would be heard.
+        consume_budget().await;
         loop {
             let now = self.start.elapsed();
             while let Some((channel, bytes)) = self.peer.transmit(now) {

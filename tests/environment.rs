@@ -1,0 +1,223 @@
+//! The program where it was not developed: terminals of any width and none, other locales, no home, a home that cannot
+//! be written, descriptors that are closed, and under the names of the families.
+#![cfg(unix)]
+
+use std::fs::File;
+use std::io::{ErrorKind, Read as _};
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Output, Stdio};
+use std::time::Duration;
+
+use serialport::{SerialPort as _, TTYPort};
+
+const BINARY: &str = env!("CARGO_BIN_EXE_armctl");
+
+/// A command without any variables of this process, in a folder of its own.
+fn armctl(line: &str, folder: &Path) -> Command {
+    let mut command = Command::new(BINARY);
+    command.args(line.split(' ')).current_dir(folder).env_clear().env("HOME", folder);
+    command.stdin(Stdio::null());
+    command
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("stdout is UTF-8")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("stderr is UTF-8")
+}
+
+/// A terminal of this many columns.
+struct Terminal {
+    screen: TTYPort,
+    name: String,
+    /// A terminal that nobody has open forgets what was written.
+    _open: TTYPort,
+}
+
+impl Terminal {
+    fn new(columns: u16) -> Self {
+        let (mut screen, open) = TTYPort::pair().expect("a pseudo-terminal");
+        screen.set_timeout(Duration::from_millis(20)).expect("a timeout");
+        let terminal = Self { screen, name: open.name().expect("it has a name"), _open: open };
+        let size = ["cols".to_owned(), columns.to_string(), "rows".to_owned(), "24".to_owned()];
+        let set = Command::new("stty").args(size).stdin(terminal.device()).status();
+        assert!(set.expect("stty runs").success());
+        terminal
+    }
+
+    fn device(&self) -> File {
+        File::options().read(true).write(true).open(&self.name).expect("the terminal opens")
+    }
+
+    /// Starts a command with the terminal as its stdin, stdout and stderr.
+    fn start(&self, mut command: Command) -> Child {
+        let child = command.stdin(self.device()).stdout(self.device()).stderr(self.device()).spawn();
+        child.expect("the binary starts")
+    }
+
+    /// What the command writes until `enough` of it is there, or it has ended.
+    fn read(&mut self, child: &mut Child, enough: impl Fn(&str) -> bool) -> (String, Option<ExitStatus>) {
+        let mut written = Vec::new();
+        loop {
+            let ended = child.try_wait().expect("it can be waited for");
+            let mut some = [0; 4096];
+            match self.screen.read(&mut some) {
+                Ok(count) => written.extend_from_slice(&some[..count]),
+                Err(error) if error.kind() == ErrorKind::TimedOut && ended.is_some() => {
+                    return (String::from_utf8(written).expect("what is shown is UTF-8"), ended);
+                }
+                Err(error) => assert_eq!(error.kind(), ErrorKind::TimedOut, "{error}"),
+            }
+            let text = String::from_utf8_lossy(&written);
+            if enough(&text) {
+                return (text.into_owned(), None);
+            }
+        }
+    }
+
+    fn run(&mut self, command: Command) -> String {
+        let mut child = self.start(command);
+        self.read(&mut child, |_| false).0
+    }
+}
+
+#[test]
+fn tables_fit_terminals_of_any_width() {
+    let folder = tempfile::tempdir().unwrap();
+    for columns in [40, 80, 300] {
+        let shown = Terminal::new(columns).run(armctl("--sim yerc alarm history --color never", folder.path()));
+        // What is wide on a terminal is shorter in characters.
+        assert!(shown.lines().all(|line| line.chars().count() <= usize::from(columns)), "{columns}:\n{shown}");
+        assert!(shown.contains("SYNCHRONIZING") && shown.contains("2025/11/02 06:12"), "{columns}:\n{shown}");
+        let is_table = shown.contains("CLASS");
+        assert_eq!(is_table, columns >= 80, "{columns}:\n{shown}");
+    }
+}
+
+#[test]
+fn colour_is_for_terminals_that_can() {
+    let folder = tempfile::tempdir().unwrap();
+    let shown = |line: &str, variables: &[(&str, &str)]| {
+        let mut command = armctl(line, folder.path());
+        command.envs(variables.iter().copied());
+        Terminal::new(80).run(command)
+    };
+    for line in ["--sim status", "--sim yerc job select NONE", "yerc -h", "-r none status"] {
+        let plain = |variables: &[(&str, &str)]| !shown(line, variables).contains('\u{1b}');
+        assert!(!plain(&[("TERM", "xterm")]), "{line} has no colour on a terminal");
+        assert!(!plain(&[("TERM", "xterm"), ("CI", "true")]), "{line} has no colour on a terminal of a CI");
+        assert!(!plain(&[("TERM", "xterm"), ("NO_COLOR", "")]), "{line}: an empty NO_COLOR is none");
+        assert!(plain(&[("TERM", "dumb")]), "{line} has colour on a dumb terminal");
+        assert!(plain(&[("TERM", "xterm"), ("NO_COLOR", "1")]), "{line} has colour against NO_COLOR");
+        let output = armctl(line, folder.path()).env("TERM", "xterm").env("CI", "true").output().unwrap();
+        assert!(!(stdout(&output) + &stderr(&output)).contains('\u{1b}'), "{line} has colour in a pipe");
+    }
+}
+
+#[test]
+fn names_are_the_same_in_every_locale() {
+    let folder = tempfile::tempdir().unwrap();
+    let listed = |locale: &str| {
+        let command = armctl("--sim yerc file list -o csv", folder.path()).env("LC_ALL", locale).output();
+        stdout(&command.unwrap())
+    };
+    let expected = listed("C");
+    assert!(expected.contains("テスト.JBI"), "{expected}");
+    for locale in ["ja_JP.UTF-8", "ja_JP.SJIS", "POSIX", "nowhere"] {
+        assert_eq!(listed(locale), expected, "{locale}");
+    }
+}
+
+#[test]
+fn what_needs_no_home_works_without_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let bare = |line: &str| armctl(line, folder.path()).env_remove("HOME").output().unwrap();
+    for line in ["--sim yerc status", "--sim yrcx status", "--sim toyo status", "help", "explain toyo 28", "-h"] {
+        assert_eq!(bare(line).status.code(), Some(0), "{line}: {}", stderr(&bare(line)));
+    }
+}
+
+#[test]
+fn a_home_that_cannot_be_written_is_said_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    // Permissions do not keep an administrator out; what is no folder keeps out everybody.
+    let home = folder.path().join("home");
+    std::fs::write(&home, "").unwrap();
+    let run = |line: &str| armctl(line, folder.path()).env("HOME", &home).output().unwrap();
+    assert_eq!(run("--sim yerc status").status.code(), Some(0));
+    let output = run("robots add cell1 udp://192.168.1.31");
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("robots.toml: ") && stderr(&output).contains("\nhint: "), "{}", stderr(&output));
+    assert!(!stderr(&output).contains("os error"), "{}", stderr(&output));
+}
+
+#[test]
+fn closed_descriptors_change_no_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |line: &str, closed: &str| {
+        let script = format!("exec {closed}; exec \"{BINARY}\" {line}");
+        let mut shell = Command::new("sh");
+        shell.args(["-c", &script]).env("HOME", folder.path()).env_remove("ARMCTL_TARGET").current_dir(folder.path());
+        shell.output().unwrap()
+    };
+    for closed in ["<&-", ">&-", "2>&-", "<&- >&- 2>&-", "2>/dev/null"] {
+        for (line, code) in [
+            ("--sim yerc status", 0),
+            ("-h", 0),
+            ("--sim yerc hold on --json", 0),
+            ("--sim yerc job select NONE", 3),
+            ("bogus", 2),
+            ("-t udp://192.0.2.1 yerc servo on", 7),
+        ] {
+            assert_eq!(run(line, closed).status.code(), Some(code), "{line} {closed}");
+        }
+    }
+}
+
+#[test]
+fn a_link_with_the_name_of_a_family_is_its_subcommand() {
+    let folder = tempfile::tempdir().unwrap();
+    for family in ["yerc", "yrcx", "toyo"] {
+        let link = folder.path().join(family);
+        std::os::unix::fs::symlink(BINARY, &link).unwrap();
+        let run = |arguments: &[&str]| Command::new(&link).args(arguments).env("HOME", folder.path()).output().unwrap();
+        let whole = armctl(&format!("--sim {family} status"), folder.path()).output().unwrap();
+        assert_eq!(stdout(&run(&["--sim", "status"])), stdout(&whole), "{family}");
+        assert!(stdout(&run(&["-h"])).contains(&format!("Usage: armctl {family} [OPTIONS] <COMMAND>")), "{family}");
+        let version = format!("armctl {}\n", env!("CARGO_PKG_VERSION"));
+        assert_eq!(stdout(&run(&["--version"])), version);
+        assert_eq!(run(&["bogus"]).status.code(), Some(2), "{family}");
+    }
+}
+
+#[test]
+fn long_work_shows_progress_and_leaves_the_terminal_as_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("long.toyo"), "OUT STN=0 PN1=.......1\n".repeat(300)).unwrap();
+    std::fs::write(folder.path().join("big.toml"), "[[file]]\nname = \"BIG.DAT\"\nsize = 268435456\n").unwrap();
+    for (line, progress) in [
+        ("-t sim:?baud=9600 toyo program put long.toyo", "steps"),
+        ("-t sim:?baud=9600 toyo backup saved", "0/"),
+        // A peer that answers at once.
+        ("-t sim:?state=big.toml yerc file get BIG.DAT", "BIG.DAT"),
+        ("-t sim:?state=big.toml yerc file backup copies", "BIG.DAT"),
+    ] {
+        let mut terminal = Terminal::new(80);
+        let mut command = armctl(line, folder.path());
+        command.env("TERM", "xterm");
+        let mut child = terminal.start(command);
+        let (before, ended) = terminal.read(&mut child, |text| text.contains(progress) && text.contains('\r'));
+        assert_eq!(ended, None, "{line} ended before it could be interrupted:\n{before}");
+        let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        assert!(interrupt.unwrap().success());
+        let (after, ended) = terminal.read(&mut child, |_| false);
+        assert_eq!(ended.and_then(|status| status.code()), Some(130), "{line}:\n{after}");
+        let all = before + &after;
+        assert!(all.rfind("\u{1b}[?25l") <= all.rfind("\u{1b}[?25h"), "{line} hides the cursor for good: {all:?}");
+        let (_, last) = all.rsplit_once("\u{1b}[2K").unwrap_or_default();
+        assert!(last.contains("interrupted:") && !last.contains('\r'), "{line} leaves its progress there: {all:?}");
+        assert!(!folder.path().join("BIG.DAT").exists(), "half a file is there");
+    }
+}
