@@ -171,7 +171,7 @@ impl Run {
             return Ok(false);
         }
         let envelope = stopped.envelope.as_deref().cloned();
-        self.emit(timed(envelope.unwrap_or_else(|| Envelope::failed(None, stopped.failure.clone()))))?;
+        self.emit(self.of_stream(envelope.unwrap_or_else(|| Envelope::failed(None, stopped.failure.clone()))))?;
         Ok(true)
     }
 
@@ -183,7 +183,7 @@ impl Run {
         } else {
             let envelope = Envelope::local(id, report.data()?);
             let envelope = Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope };
-            self.emit(if self.screen.format == Format::Jsonl { timed(envelope) } else { envelope })?;
+            self.emit(self.of_stream(envelope))?;
         }
         failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: !self.is_for_people() }))
     }
@@ -498,6 +498,11 @@ impl Run {
         let envelope = enveloped(robot, id, Ok(report))?;
         let is_stream = self.screen.format == Format::Jsonl || !matches!(place, Place::Alone);
         self.emit(if is_stream { timed(envelope) } else { envelope })
+    }
+
+    /// The envelope with the time, in a format that is a stream.
+    fn of_stream(&self, envelope: Envelope) -> Envelope {
+        if self.screen.format == Format::Jsonl { timed(envelope) } else { envelope }
     }
 
     /// Writes an envelope.

@@ -46,8 +46,8 @@ impl Assistant {
             words.splice(1..1, self.flags.iter().cloned());
             words.push(OsString::from(&typed));
             for candidate in complete(&words, words.len() - 1) {
-                let replacement = shlex::try_quote(&candidate.value).map_or_else(|_| String::new(), Cow::into_owned);
-                if !replacement.is_empty() && found.iter().all(|other| other.replacement != replacement) {
+                let Some(replacement) = quoted(&candidate.value) else { continue };
+                if found.iter().all(|other| other.replacement != replacement) {
                     found.push(Pair { display: candidate.value, replacement });
                 }
             }
@@ -59,6 +59,15 @@ impl Assistant {
         }
         (start, found)
     }
+}
+
+/// A word as it is typed; `None` for what cannot be.
+fn quoted(word: &str) -> Option<String> {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_=.,:/+@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return Some(word.to_owned());
+    }
+    shlex::try_quote(word).ok().map(Cow::into_owned)
 }
 
 /// Where the last word of a line begins, its quote included.
