@@ -28,12 +28,13 @@ const DOCUMENTED: [(&str, &str); 3] =
 /// Separates the commands of a block in the output of its shell.
 const MARK: &str = "\u{1}--next--";
 /// Pages with blocks.
-const PAGES: [&str; 7] = [
+const PAGES: [&str; 8] = [
     "README.md",
     "docs/yerc.md",
     "docs/toyo.md",
     "docs/yrcx.md",
     "docs/scripting.md",
+    "docs/watching.md",
     "docs/sessions.md",
     "docs/safety.md",
 ];

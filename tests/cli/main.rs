@@ -49,6 +49,7 @@ transcripts! {
     signals
     simulator
     status
+    top
     toyo_backups
     toyo_io
     toyo_motion

@@ -28,7 +28,7 @@ use self::eye::{News, Pace, follow};
 use self::keys::{Order, order};
 use self::model::Model;
 use self::view::Palette;
-use crate::command::interrupt::interruptible;
+use crate::command::interrupt::{catch_interrupts, interruptible};
 use crate::command::run::{Run, Stopped};
 use crate::failure::{Failure, Kind};
 use crate::output::Format;
@@ -79,6 +79,8 @@ impl Top {
             .map(|(index, (robot, at))| follow(index, robot, silent, share * at, pace.subscribe(), tell.clone()))
             .collect();
         drop(tell);
+        // From here on nothing may end the process that does not give the terminal back.
+        catch_interrupts();
         let palette = Palette { has_color: screen.stdout_color(), is_unicode: screen.is_unicode() };
         let ended = {
             let terminal = screen.fullscreen()?;

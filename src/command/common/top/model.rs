@@ -200,6 +200,10 @@ impl Model {
 
     /// Does what a key orders. What is about the process and not about the picture is left to the caller.
     pub fn obey(&mut self, now: Moment, order: Order) {
+        // Whatever is pressed, whoever has read the help wants it gone.
+        if std::mem::take(&mut self.has_help) {
+            return;
+        }
         match order {
             Order::Up(steps) if self.is_open => self.axis = self.axis.saturating_sub(steps),
             Order::Down(steps) if self.is_open => self.axis = self.axis.saturating_add(steps).min(self.last_axis()),
@@ -215,7 +219,7 @@ impl Model {
             Order::Pause => self.frozen = Some((now, self.robots.clone())),
             Order::Faster => self.every = nearest(self.every, true),
             Order::Slower => self.every = nearest(self.every, false),
-            Order::Help => self.has_help = !self.has_help,
+            Order::Help => self.has_help = true,
             Order::Filter => (self.is_typing, self.is_open) = (true, false),
             Order::Type(character) if self.filter.chars().count() < FILTER => self.filter.push(character),
             Order::Erase => _ = self.filter.pop(),
@@ -335,7 +339,7 @@ impl Seen {
         if let Contact::Fails(failure) = &self.contact {
             return (in_short(failure.kind).to_owned(), Tone::Bad);
         }
-        let Some(sample) = self.sample() else { return ("not asked yet".to_owned(), Tone::Plain) };
+        let Some(sample) = self.sample() else { return ("waiting".to_owned(), Tone::Plain) };
         match (sample.alarms.first(), sample.line.alarm, sample.line.error) {
             (Some(alarm), ..) => (format!("{} {}", alarm.code, alarm.text), Tone::Bad),
             (None, Some(true), _) => ("alarm".to_owned(), Tone::Bad),

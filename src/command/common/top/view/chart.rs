@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use ratatui::layout::Rect;
-use ratatui::style::Style;
+use ratatui::style::Color;
 use ratatui::symbols::Marker;
 use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::{Canvas, Line};
@@ -28,24 +28,34 @@ pub struct Chart<'a> {
     pub points: &'a VecDeque<(f64, f64)>,
 }
 
-/// Draws it: a heading, the greatest and the least value at the left, the line, and the time below.
-pub fn draw(pen: &mut Pen<'_>, area: Rect, chart: &Chart<'_>, now: Moment, every: Duration) {
-    let quiet = pen.palette.quiet();
+impl Chart<'_> {
+    /// Columns of the numbers at the side.
+    pub fn side(&self) -> u16 {
+        let (bottom, top) = self.numbers();
+        u16::try_from(width(&top).max(width(&bottom))).unwrap_or(u16::MAX)
+    }
+
+    /// The least and the greatest value, as they stand at the side.
+    fn numbers(&self) -> (String, String) {
+        let (least, most) = range(self.points);
+        let text = |value: f64| format!("{value:.*}", usize::from(self.decimals));
+        (text(least), text(most))
+    }
+}
+
+/// Draws it: a heading, the greatest and the least value in `side` columns at the left, and the line.
+pub fn draw(pen: &mut Pen<'_>, area: Rect, chart: &Chart<'_>, side: u16, now: Moment, every: Duration) {
+    let (quiet, style) = (pen.palette.quiet(), pen.palette.heading());
     let time = window(every);
     let heading = line_of(area, 0);
-    pen.paint(heading, pen.palette.heading());
-    pen.parts(
-        heading,
-        &[(chart.of, pen.palette.heading()), ("  ", pen.palette.heading()), (chart.what, pen.palette.heading())],
-    );
-    pen.right(heading, &format!("last {}", whole(time)), pen.palette.heading());
+    pen.paint(heading, style);
+    pen.parts(heading, &[(chart.of, style), ("  ", style), (chart.what, style)]);
+    pen.right(heading, &format!("last {}", whole(time)), style);
     if area.height < 3 || chart.points.is_empty() {
         return;
     }
-    let (least, most) = range(chart.points);
-    let text = |value: f64| format!("{value:.*}", usize::from(chart.decimals));
-    let (top, bottom) = (text(most), text(least));
-    let side = u16::try_from(width(&top).max(width(&bottom))).unwrap_or_default().min(area.width / 2);
+    let (bottom, top) = chart.numbers();
+    let side = side.min(area.width / 2);
     let first = line_of(area, 1);
     let last = line_of(area, area.height - 1);
     pen.right(Rect { width: side, ..first }, &top, quiet);
@@ -55,33 +65,18 @@ pub fn draw(pen: &mut Pen<'_>, area: Rect, chart: &Chart<'_>, now: Moment, every
         pen.left(Rect { width: place.width.min(2), ..place }, " │", quiet);
     }
     let picture = after(Rect { y: first.y, height: area.height - 1, ..area }, side + 2);
-    let line = pen.palette.tone(Tone::Good).fg;
-    plot(
-        pen,
-        picture,
-        chart.points,
-        (now.as_secs_f64(), time.as_secs_f64()),
-        (least, most),
-        Style { fg: line, ..Style::new() },
-    );
+    let color = pen.palette.tone(Tone::Good).fg.unwrap_or_default();
+    plot(pen, picture, chart.points, (now.as_secs_f64(), time.as_secs_f64()), color);
 }
 
-fn plot(
-    pen: &mut Pen<'_>,
-    area: Rect,
-    points: &VecDeque<(f64, f64)>,
-    time: (f64, f64),
-    values: (f64, f64),
-    style: Style,
-) {
+fn plot(pen: &mut Pen<'_>, area: Rect, points: &VecDeque<(f64, f64)>, (now, long): (f64, f64), color: Color) {
     let area = area.intersection(pen.buffer.area);
     if area.is_empty() {
         return;
     }
-    let (now, long) = time;
+    let (least, most) = range(points);
     let marker = if pen.palette.is_unicode { Marker::Braille } else { Marker::Custom('*') };
-    let color = style.fg.unwrap_or_default();
-    let canvas = Canvas::default().marker(marker).x_bounds([now - long, now]).y_bounds([values.0, values.1]);
+    let canvas = Canvas::default().marker(marker).x_bounds([now - long, now]).y_bounds([least, most]);
     let canvas = canvas.paint(|context| {
         for ((x1, y1), (x2, y2)) in points.iter().zip(points.iter().skip(1)) {
             context.draw(&Line::new(*x1, *y1, *x2, *y2, color));

@@ -14,6 +14,8 @@ use crate::output::view::Tone;
 /// Columns of the axes beside a chart, and the least that a chart gets.
 const AXES: u16 = 46;
 const CHART: u16 = 24;
+/// Lines from which on there are empty ones between the parts.
+const AIRY: u16 = 28;
 /// The least lines of a chart.
 const CHART_LINES: u16 = 5;
 
@@ -26,10 +28,10 @@ pub fn head(pen: &mut Pen<'_>, line: Rect, model: &Model, seen: &Seen, now: Mome
         (seen.name.as_str(), pen.palette.accent()),
         ("  ", quiet),
         (seen.family.name(), Style::new()),
-        ("  ", quiet),
-        (seen.place.as_str(), quiet),
         ("  answer ", quiet),
         (answered.as_str(), style),
+        ("  ", quiet),
+        (seen.place.as_str(), quiet),
     ];
     pen.parts(Rect { width: line.width.saturating_sub(14), ..line }, &parts);
     pace(pen, line, model);
@@ -43,8 +45,11 @@ pub fn body(pen: &mut Pen<'_>, area: Rect, model: &Model, seen: &Seen, now: Mome
         return;
     };
     let mut rest = area;
-    rest = below(rest, lamps(pen, rest, &whole.lamps));
-    rest = below(rest, alarms(pen, rest, sample));
+    // Air, where there is room for it.
+    let air = u16::from(area.height >= AIRY);
+    rest = below(rest, air);
+    rest = below(rest, lamps(pen, rest, &whole.lamps) + air);
+    rest = below(rest, alarms(pen, rest, sample) + air);
     let signals = signal_lines(&whole.banks, rest.width);
     let wanted = u16::try_from(whole.axes.len()).unwrap_or(u16::MAX).saturating_add(1).max(if whole.axes.is_empty() {
         2
@@ -153,11 +158,13 @@ fn axes(pen: &mut Pen<'_>, area: Rect, model: &Model, seen: &Seen, whole: &Whole
     let has_torque = whole.torque_unit.filter(|_| !track.torques.is_empty());
     let lines = if has_torque.is_some() { area.height / 2 } else { area.height };
     let position = Chart { of: &axis.name, what: axis.unit, decimals: axis.decimals.min(1), points: &track.positions };
-    chart::draw(pen, Rect { height: lines, ..right }, &position, now, model.every);
-    if let Some(unit) = has_torque {
-        let what = format!("torque, {unit}");
-        let torque = Chart { of: &axis.name, what: &what, decimals: 0, points: &track.torques };
-        chart::draw(pen, below(right, lines), &torque, now, model.every);
+    let what = format!("torque, {}", has_torque.unwrap_or_default());
+    let torque = Chart { of: &axis.name, what: &what, decimals: 0, points: &track.torques };
+    // Both have their numbers in the same columns, so that what happened at the same time stands above each other.
+    let side = if has_torque.is_some() { position.side().max(torque.side()) } else { position.side() };
+    chart::draw(pen, Rect { height: lines, ..right }, &position, side, now, model.every);
+    if has_torque.is_some() {
+        chart::draw(pen, below(right, lines), &torque, side, now, model.every);
     }
 }
 

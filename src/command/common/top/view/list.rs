@@ -51,9 +51,9 @@ pub fn head(pen: &mut Pen<'_>, line: Rect, model: &Model) {
         }
     };
     told(robots.len() - silent - waiting, "answer", Tone::Good);
-    told(alarms, "with an alarm", Tone::Bad);
+    told(alarms, if alarms == 1 { "alarm" } else { "alarms" }, Tone::Bad);
     told(silent, "silent", Tone::Bad);
-    told(waiting, "not heard yet", Tone::Warning);
+    told(waiting, "waiting", Tone::Warning);
     if !model.filter.is_empty() && !model.is_typing {
         parts.push((format!(" · only '{}'", model.filter), pen.palette.accent()));
     }
@@ -138,7 +138,7 @@ fn columns(width: u16, robots: &[Seen]) -> Vec<(Column, Rect)> {
         (Column::Alarm, 0, 20),
         (Column::Position { decimals: 1 }, 26, 110),
         (Column::Position { decimals: 0 }, 17, 80),
-        (Column::Answer, 9, 60),
+        (Column::Answer, 7, 60),
         (Column::Past, u16::try_from(PAST).unwrap_or_default(), 120),
     ];
     let has_fine = width >= 110;
@@ -177,7 +177,7 @@ impl Column {
             Self::Alarm => "ALARM",
             Self::Position { .. } => "X Y Z (mm)",
             Self::Answer => "ANSWER",
-            Self::Past => "PAST",
+            Self::Past => "LAST ANSWERS",
         }
     }
 

@@ -135,12 +135,12 @@ fn frame(pen: &mut Pen<'_>, area: Rect) {
     Block::bordered().border_style(pen.palette.quiet()).render(area, pen.buffer);
 }
 
-/// When a robot answered last, and how fast: `4 ms`, or `12 s ago` where it is late.
+/// When a robot answered last, and how fast: `4.1 ms`, or `12s ago` where it is late.
 fn answer(pen: &Pen<'_>, seen: &Seen, now: Moment, every: Duration) -> (String, Style) {
     let Some(age) = seen.age(now) else { return ("-".to_owned(), pen.palette.quiet()) };
     if seen.sample().is_none() || seen.is_old(now, every) {
         let tone = if seen.sample().is_none() { Tone::Bad } else { Tone::Warning };
-        return (format!("{} ago", whole(age)), pen.palette.tone(tone));
+        return (format!("{} ago", short(age)), pen.palette.tone(tone));
     }
     match seen.sample().and_then(|sample| sample.answered_in) {
         Some(time) => (milliseconds(time), Style::new()),
@@ -151,6 +151,15 @@ fn answer(pen: &Pen<'_>, seen: &Seen, now: Moment, every: Duration) -> (String, 
 fn milliseconds(time: Duration) -> String {
     let milliseconds = time.as_secs_f64() * 1000.0;
     if milliseconds < 10.0 { format!("{milliseconds:.1} ms") } else { format!("{milliseconds:.0} ms") }
+}
+
+/// A time in two digits and a letter, as long as it is less than four days.
+fn short(time: Duration) -> String {
+    match time.as_secs() {
+        seconds @ 0..100 => format!("{seconds}s"),
+        seconds @ 100..6000 => format!("{}m", seconds / 60),
+        seconds => format!("{}h", seconds / 3600),
+    }
 }
 
 /// A time in its greatest unit.

@@ -148,5 +148,5 @@ fn a_pause_is_seen() {
 fn what_is_late_says_so() {
     let (model, now) = four();
     let late = picture(&model, now + Duration::from_secs(90), 80, 24, RICH);
-    assert!(late.contains("90 s ago"), "{late}");
+    assert!(late.contains("90s ago"), "{late}");
 }

@@ -1,0 +1,251 @@
+//! `armctl top` on a terminal, against simulated controllers on the loopback: what it shows, what keys do, that the
+//! terminal is as before on every way out, and that nothing leaves but reads.
+#![cfg(unix)]
+
+mod proxy;
+mod terminal;
+
+use std::io::{BufRead as _, BufReader};
+use std::net::SocketAddr;
+use std::process::{Child, Command, Stdio};
+
+use tempfile::TempDir;
+
+use proxy::Sent;
+use terminal::Terminal;
+
+/// A simulated controller, as long as it is wanted.
+struct Simulator {
+    process: Child,
+    address: SocketAddr,
+    /// What follows the address in its URL.
+    settings: String,
+}
+
+impl Simulator {
+    fn start(family: &str) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.args(["sim", family, "--bind", "127.0.0.1:0"]).stdin(Stdio::null()).stdout(Stdio::piped());
+        let mut process = command.spawn().expect("the simulator starts");
+        let mut line = String::new();
+        BufReader::new(process.stdout.take().expect("a pipe")).read_line(&mut line).expect("it says where it is");
+        let (_, place) = line.trim_end().split_once("://").expect("a URL");
+        let (address, settings) = place.split_once('?').unwrap_or((place, ""));
+        Self { process, address: address.parse().expect("an address"), settings: settings.to_owned() }
+    }
+}
+
+impl Drop for Simulator {
+    fn drop(&mut self) {
+        self.process.kill().unwrap_or_default();
+        let _ended = self.process.wait();
+    }
+}
+
+/// A user with an inventory of these targets, robot1 and so on.
+struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    fn new(targets: &[String]) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let robots = (1..).zip(targets).map(|(number, target)| {
+            let (family, target) = target.split_once(' ').expect("family and target");
+            format!("[[robot]]\nname = \"robot{number}\"\nfamily = \"{family}\"\ntarget = \"{target}\"\n")
+        });
+        std::fs::write(folder.path().join("robots.toml"), robots.collect::<String>()).expect("written");
+        Self { folder }
+    }
+
+    fn command(&self, words: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.env_clear().env("HOME", self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path());
+        command.env("ARMCTL_CONFIG", self.folder.path().join("robots.toml"));
+        command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8").args(words);
+        command
+    }
+
+    fn top(&self, words: &[&str]) -> Terminal {
+        Terminal::start(self.command(&[&["top"], words].concat()), 100, 30).expect("a terminal")
+    }
+}
+
+/// A simulator of each family in the process itself.
+fn simulated() -> Desk {
+    Desk::new(&["yerc sim:", "toyo sim:", "yrcx sim:"].map(str::to_owned))
+}
+
+#[test]
+fn robots_are_listed_and_opened_and_q_ends_it() {
+    let desk = simulated();
+    let mut top = desk.top(&["--watch", "100ms"]);
+    top.shows("3 robots · 3 answer");
+    top.shows("robot2  toyo");
+    assert!(top.picture.is_alternate && !top.picture.has_cursor && top.picture.has_color);
+    top.press("\x1b[B");
+    top.press("\r");
+    top.until("the screen of robot2", |picture| picture.text().contains("robot2  toyo  answer"));
+    top.shows("SOFT LIMITS");
+    top.press("n");
+    top.shows("robot3  yrcx");
+    top.shows("TORQUE");
+    top.press("\x7f");
+    top.shows("3 robots · 3 answer");
+    top.press("?");
+    top.shows("Nothing here can move a robot");
+    top.press("?");
+    top.press("/yer\r");
+    top.until("only one robot", |picture| !picture.text().contains("robot2") && picture.text().contains("only 'yer'"));
+    top.press("q");
+    assert_eq!(top.end().code(), Some(0));
+    assert!(top.is_as_before());
+}
+
+#[test]
+fn a_single_robot_has_the_screen_for_itself() {
+    let desk = simulated();
+    let mut top = desk.top(&["-r", "robot1"]);
+    top.shows("SIGNALS");
+    top.press("q");
+    assert_eq!(top.end().code(), Some(0));
+}
+
+#[test]
+fn the_terminal_is_as_before_on_every_way_out() {
+    let desk = simulated();
+    let ends: [(&str, fn(&mut Terminal)); 4] = [
+        ("Ctrl-C", |top| top.press("\x03")),
+        ("Ctrl-C", |top| top.signal("INT")),
+        ("SIGTERM", |top| top.signal("TERM")),
+        ("SIGHUP", |top| top.signal("HUP")),
+    ];
+    for (said, end) in ends {
+        let mut top = desk.top(&[]);
+        top.shows("3 answer");
+        end(&mut top);
+        assert_eq!(top.end().code(), Some(130), "{said}");
+        assert!(top.is_as_before(), "{said}");
+        assert!(String::from_utf8_lossy(&top.written).contains(said), "it says why it ended: {said}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn ctrl_z_suspends_it_and_it_goes_on() {
+    let desk = simulated();
+    let mut top = desk.top(&[]);
+    top.shows("3 answer");
+    top.press("\x1a");
+    let stat = format!("/proc/{}/stat", top.child.id());
+    let is_stopped = || std::fs::read_to_string(&stat).expect("it is there").contains(") T ");
+    while !is_stopped() {
+        std::thread::yield_now();
+    }
+    top.until("the usual screen", |picture| !picture.is_alternate);
+    assert!(top.is_as_before());
+    top.signal("CONT");
+    top.until("the picture again", |picture| picture.is_alternate);
+    top.shows("3 answer");
+    top.press("q");
+    assert_eq!(top.end().code(), Some(0));
+    assert!(top.is_as_before());
+}
+
+#[test]
+fn without_colour_and_beyond_ascii_nothing_is_told_that_the_terminal_has_not() {
+    let desk = simulated();
+    for (variable, value, words) in [("NO_COLOR", "1", &[][..]), ("LANG", "C", &["--color", "never"])] {
+        let mut command = desk.command(&[&["top"], words].concat());
+        command.env(variable, value);
+        let mut top = Terminal::start(command, 80, 24).expect("a terminal");
+        top.shows("3 answer");
+        top.press("q");
+        assert_eq!(top.end().code(), Some(0));
+        assert!(!top.picture.has_color, "{variable}");
+        assert_eq!(top.written.is_ascii(), variable == "LANG");
+    }
+}
+
+#[test]
+fn only_reads_leave_whatever_is_pressed() {
+    let (yerc, toyo, yrcx) = (Simulator::start("yerc"), Simulator::start("toyo"), Simulator::start("yrcx"));
+    let (yerc_at, to_yerc) = proxy::udp(yerc.address);
+    let (toyo_at, to_toyo) = proxy::tcp(toyo.address);
+    let (yrcx_at, to_yrcx) = proxy::tcp(yrcx.address);
+    let targets = [
+        format!("yerc udp://{yerc_at}?{}", yerc.settings),
+        format!("toyo tcp://{toyo_at}"),
+        format!("yrcx eip://{yrcx_at}"),
+    ];
+    let desk = Desk::new(&targets);
+    let mut top = desk.top(&["--watch", "50ms"]);
+    top.shows("3 robots · 3 answer");
+    for robot in ["robot1", "robot2", "robot3"] {
+        top.press("\r");
+        top.until(robot, |picture| {
+            picture.text().contains("SIGNALS") && picture.text().starts_with(&format!(" {robot}"))
+        });
+        // Every character that is a key or none, but those that end it or choose another robot.
+        top.press("\x1b[A\x1b[B\x1b[5~\x1b[6~\x1b[H\x1b[F");
+        top.press(&(' '..='~').filter(|key| !"qQ/np?h".contains(*key)).collect::<String>());
+        top.press("  \x7f");
+        top.shows("3 robots · 3 answer");
+        top.press("\x1b[B");
+        top.until("the cursor is there", |picture| {
+            robot == "robot3" || !picture.text().contains(&format!("▌ {robot}"))
+        });
+    }
+    top.press("q");
+    assert_eq!(top.end().code(), Some(0));
+    reads_of_yerc(&to_yerc);
+    reads_of_toyo(&to_toyo);
+    reads_of_yrcx(&to_yrcx);
+}
+
+/// Status, alarm, axes, positions, errors of position, torque, I/O: by their numbers and the services that read (FS and DX
+/// 3.3).
+fn reads_of_yerc(sent: &Sent) {
+    let frames = sent.pieces();
+    assert!(frames.len() > 20);
+    for frame in frames {
+        let command = u16::from_le_bytes([frame[24], frame[25]]);
+        assert!(matches!(command, 0x70 | 0x72 | 0x75 | 0x76 | 0x77 | 0x300 | 0x30A), "{command:#x}");
+        assert!(matches!(frame[29], 0x01 | 0x0E | 0x33), "service {:#x} of {command:#x}", frame[29]);
+    }
+}
+
+/// Words that read (TO 2-2, 2-4, 2-8).
+fn reads_of_toyo(sent: &Sent) {
+    let text = String::from_utf8(sent.pieces().concat()).expect("the protocol is text");
+    let words: Vec<&str> = text.split("\r\n").filter_map(|block| block.strip_prefix('@')?.get(..4)).collect();
+    assert!(words.len() > 20);
+    for word in words {
+        assert!(["STAS", "MPST", "SYSP", "RPAR", "MINP", "MOUT"].contains(&word), "{word}");
+    }
+}
+
+/// Encapsulation commands and CIP services that leave nothing behind: no connection is opened that the controller would
+/// miss (volume 2, 2-3; volume 1, appendix A).
+fn reads_of_yrcx(sent: &Sent) {
+    const REGISTER: u16 = 0x65;
+    const UNREGISTER: u16 = 0x66;
+    const SEND: u16 = 0x6F;
+    let mut bytes = &sent.pieces().concat()[..];
+    let mut asked = 0;
+    while let [low, high, short, long, ..] = *bytes {
+        let (command, length) = (u16::from_le_bytes([low, high]), usize::from(u16::from_le_bytes([short, long])));
+        let (frame, rest) = bytes.split_at(24 + length);
+        bytes = rest;
+        match command {
+            REGISTER | UNREGISTER => {}
+            // Behind the header: interface, timeout, two items; the second one is the request.
+            SEND => {
+                assert_eq!(frame[40], 0x0E, "only Get_Attribute_Single");
+                asked += 1;
+            }
+            other => panic!("encapsulation command {other:#x}"),
+        }
+    }
+    assert!(asked > 3);
+}

@@ -1,0 +1,217 @@
+//! A terminal for a program: a pseudo-terminal, and the picture that the program draws on it.
+
+use std::fs::File;
+use std::io::{Read as _, Write as _};
+use std::os::unix::process::CommandExt as _;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::Duration;
+
+use rustix::termios::{LocalModes, OptionalActions, Termios, Winsize, tcgetattr, tcsetattr, tcsetwinsize};
+use serialport::{SerialPort as _, TTYPort};
+
+/// How long a read waits before it looks whether the program is still there, and how often it does.
+const LOOK: Duration = Duration::from_secs(1);
+const LOOKS: usize = 60;
+
+/// A program on a terminal of its own.
+pub struct Terminal {
+    /// Where what the program writes comes out.
+    master: TTYPort,
+    /// The terminal itself, kept open to look at its modes.
+    slave: File,
+    /// Keeps the terminal there.
+    _port: TTYPort,
+    before: Termios,
+    pub child: Child,
+    pub picture: Picture,
+    /// All that was written.
+    pub written: Vec<u8>,
+}
+
+impl Terminal {
+    /// Starts it, in a process group of its own.
+    pub fn start(mut command: Command, columns: u16, lines: u16) -> std::io::Result<Self> {
+        let (mut master, port) = TTYPort::pair()?;
+        master.set_timeout(LOOK)?;
+        let name = port.name().expect("a pseudo-terminal has a name");
+        let slave = File::options().read(true).write(true).open(name)?;
+        // As a shell has it: lines, echo, signals from keys.
+        let mut modes = tcgetattr(&slave)?;
+        modes.local_modes |= LocalModes::ICANON | LocalModes::ECHO | LocalModes::ISIG;
+        tcsetattr(&slave, OptionalActions::Now, &modes)?;
+        tcsetwinsize(&slave, Winsize { ws_row: lines, ws_col: columns, ws_xpixel: 0, ws_ypixel: 0 })?;
+        let before = tcgetattr(&slave)?;
+        command.stdin(Stdio::from(slave.try_clone()?)).stdout(Stdio::from(slave.try_clone()?));
+        command.stderr(Stdio::from(slave.try_clone()?)).process_group(0);
+        let child = command.spawn()?;
+        let picture = Picture::new(columns.into(), lines.into());
+        Ok(Self { master, slave, _port: port, before, child, picture, written: Vec::new() })
+    }
+
+    /// Reads until the picture is as it shall be.
+    pub fn until(&mut self, what: &str, is_so: impl Fn(&Picture) -> bool) {
+        while !is_so(&self.picture) {
+            let read = self.read();
+            assert!(read, "it never came to this: {what}\n{}", self.picture.text());
+        }
+    }
+
+    /// Reads until the picture has this text.
+    pub fn shows(&mut self, text: &str) {
+        self.until(text, |picture| picture.text().contains(text));
+    }
+
+    /// Takes what was written; `false` if nothing comes any more.
+    pub fn read(&mut self) -> bool {
+        for _ in 0..LOOKS {
+            if self.take() {
+                return true;
+            }
+            if self.child.try_wait().is_ok_and(|ended| ended.is_some()) {
+                return self.take();
+            }
+        }
+        false
+    }
+
+    /// Takes what has been written, or is in a moment; `false` if nothing is.
+    fn take(&mut self) -> bool {
+        let mut buffer = [0; 4096];
+        match self.master.read(&mut buffer) {
+            Ok(0) | Err(_) => false,
+            Ok(len) => {
+                self.written.extend(&buffer[..len]);
+                self.picture.take(&buffer[..len]);
+                true
+            }
+        }
+    }
+
+    /// Presses keys.
+    pub fn press(&mut self, keys: &str) {
+        self.master.write_all(keys.as_bytes()).expect("the terminal takes keys");
+    }
+
+    /// Sends a signal to the program.
+    pub fn signal(&self, signal: &str) {
+        let pid = self.child.id().to_string();
+        assert!(Command::new("kill").args(["-s", signal, &pid]).status().expect("kill runs").success());
+    }
+
+    /// Whether the terminal is as it was before the program: its modes, the screen, the cursor.
+    pub fn is_as_before(&self) -> bool {
+        let now = tcgetattr(&self.slave).expect("a terminal has modes");
+        let modes = |modes: &Termios| (modes.local_modes, modes.input_modes, modes.output_modes, modes.control_modes);
+        modes(&now) == modes(&self.before) && !self.picture.is_alternate && self.picture.has_cursor
+    }
+
+    /// Waits for its end, and takes the rest of what it wrote.
+    pub fn end(&mut self) -> ExitStatus {
+        let status = self.child.wait().expect("it ends");
+        // All that was written is there by now.
+        self.master.set_timeout(Duration::ZERO).expect("a terminal takes a timeout");
+        while self.take() {}
+        status
+    }
+}
+
+impl Drop for Terminal {
+    fn drop(&mut self) {
+        // It may have ended already.
+        self.child.kill().unwrap_or_default();
+        let _ended = self.child.wait();
+    }
+}
+
+/// What a terminal shows: as much of one as a program that draws with a cursor needs.
+pub struct Picture {
+    columns: usize,
+    cells: Vec<char>,
+    at: (usize, usize),
+    /// What of a sequence or character has come.
+    begun: Vec<u8>,
+    /// Whether this is the screen of programs that fill it.
+    pub is_alternate: bool,
+    pub has_cursor: bool,
+    /// Whether it was told of colours.
+    pub has_color: bool,
+}
+
+impl Picture {
+    pub fn new(columns: usize, lines: usize) -> Self {
+        Self {
+            columns,
+            cells: vec![' '; columns * lines],
+            at: (0, 0),
+            begun: Vec::new(),
+            is_alternate: false,
+            has_cursor: true,
+            has_color: false,
+        }
+    }
+
+    /// What is seen, a line a line.
+    pub fn text(&self) -> String {
+        let lines = self.cells.chunks(self.columns).map(|line| line.iter().collect::<String>());
+        lines.map(|line| line.trim_end().to_owned() + "\n").collect()
+    }
+
+    fn take(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.begun.push(*byte);
+            let begun = &self.begun;
+            let is_whole = match begun[..] {
+                [0x1b] => false,
+                [0x1b, b'[', .., last] if begun.len() > 2 => (0x40..=0x7e).contains(&last),
+                [0x1b, b'['] => false,
+                [0x1b, _, ..] => true,
+                _ => std::str::from_utf8(begun).is_ok() || begun.len() > 3,
+            };
+            if is_whole {
+                let whole = std::mem::take(&mut self.begun);
+                self.act(&String::from_utf8_lossy(&whole));
+            }
+        }
+    }
+
+    fn act(&mut self, what: &str) {
+        let Some(sequence) = what.strip_prefix("\x1b[") else {
+            return match what {
+                "\r" => self.at.0 = 0,
+                "\n" => self.at.1 += 1,
+                text => text.chars().filter(|char| !char.is_control()).for_each(|char| self.put(char)),
+            };
+        };
+        let numbers =
+            || sequence.trim_end_matches(char::is_alphabetic).split(';').map(|text| text.parse().unwrap_or(0));
+        match sequence.chars().last() {
+            Some('H') => {
+                let mut place = numbers().map(|number: usize| number.max(1) - 1);
+                let line = place.next().unwrap_or_default();
+                self.at = (place.next().unwrap_or_default(), line);
+            }
+            Some('J') => self.cells.fill(' '),
+            Some('m') => {
+                self.has_color |= numbers()
+                    .any(|number: usize| (30..=38).contains(&number) || (40..=48).contains(&number) || number >= 90)
+            }
+            Some('h' | 'l') => {
+                let is_on = sequence.ends_with('h');
+                match sequence.trim_end_matches(['h', 'l']) {
+                    "?1049" => self.is_alternate = is_on,
+                    "?25" => self.has_cursor = is_on,
+                    _ => {}
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn put(&mut self, char: char) {
+        let (column, line) = self.at;
+        if let Some(cell) = self.cells.get_mut(line * self.columns + column) {
+            *cell = char;
+        }
+        self.at.0 += 1;
+    }
+}
