@@ -8,7 +8,7 @@ use super::overview::OverviewReport;
 use crate::output::view::Tone;
 
 /// How much is asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Depth {
     /// What a line of a list shows.
     Line,

@@ -85,7 +85,13 @@ impl Fullscreen {
     /// Takes the terminal anew, and forgets what it shows: somebody else may have written on it.
     pub fn refresh(&mut self) -> Result<(), Failure> {
         restore();
-        take().and_then(|()| self.terminal.clear()).map_err(|error| lost(&error))
+        // Not `clear`, which asks the terminal where its cursor is: the answer would come among the keys.
+        let anew = || {
+            take()?;
+            let size = self.terminal.size()?;
+            self.terminal.resize(size.into())
+        };
+        anew().map_err(|error| lost(&error))
     }
 
     /// Gives the terminal back and suspends the process, as Ctrl-Z does. Returns when it goes on.

@@ -189,7 +189,7 @@ fn only_reads_leave_whatever_is_pressed() {
         // Every character that is a key or none, but those that end it or choose another robot.
         top.press("\x1b[A\x1b[B\x1b[5~\x1b[6~\x1b[H\x1b[F");
         top.press(&(' '..='~').filter(|key| !"qQ/np?h".contains(*key)).collect::<String>());
-        top.press("  \x7f");
+        top.press(" \x7f");
         top.shows("3 robots · 3 answer");
         top.press("\x1b[B");
         top.until("the cursor is there", |picture| {

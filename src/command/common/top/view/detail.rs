@@ -41,7 +41,8 @@ pub fn head(pen: &mut Pen<'_>, line: Rect, model: &Model, seen: &Seen, now: Mome
 pub fn body(pen: &mut Pen<'_>, area: Rect, model: &Model, seen: &Seen, now: Moment) {
     let Some(sample) = seen.sample() else { return trouble(pen, area, seen) };
     let Some(whole) = &sample.whole else {
-        pen.left(after(line_of(area, 1), 2), "looking", pen.palette.quiet());
+        let why = if model.is_paused() { "not looked at in full before the pause; Space goes on" } else { "looking" };
+        pen.left(after(line_of(area, 1), 2), why, pen.palette.quiet());
         return;
     };
     let mut rest = area;
