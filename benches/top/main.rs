@@ -15,7 +15,7 @@ mod common;
 mod measure;
 #[cfg(unix)]
 #[allow(dead_code, reason = "the tests use the rest")]
-#[path = "../../tests/top/terminal.rs"]
+#[path = "../../tests/support/terminal.rs"]
 mod terminal;
 
 #[cfg(unix)]

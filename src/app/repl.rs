@@ -98,14 +98,12 @@ impl Repl {
         let terminal = Terminal::save();
         let (mut editor, say) = Editor::start(&self.screen, Assistant::new(&self.meaning, &self.globals))?;
         let (holder, thread) = Holder::start(say)?;
-        let outcome = self.prompt(&mut editor, &holder).await;
-        // The editor may still wait for a key.
-        terminal.restore();
+        let outcome = self.prompt(&mut editor, &terminal, &holder).await;
         thread.end().await;
         outcome
     }
 
-    async fn prompt(&mut self, editor: &mut Editor, holder: &Holder) -> Result<(), Stopped> {
+    async fn prompt(&mut self, editor: &mut Editor, terminal: &Terminal, holder: &Holder) -> Result<(), Stopped> {
         if let Some(robot) = &self.robot
             && !self.globals.dry_run
         {
@@ -117,10 +115,12 @@ impl Repl {
                 Some(robot) if !self.globals.dry_run => look(robot, &self.line(holder, "repl"), &self.screen).await,
                 _ => None,
             };
-            let prompt = Prompt::new(self.meaning.prefix(), self.robot.as_ref(), seen.as_ref(), self.screen.stdout_color());
+            let prompt =
+                Prompt::new(self.meaning.prefix(), self.robot.as_ref(), seen.as_ref(), self.screen.stdout_color());
             let typed = tokio::select! {
                 typed = editor.read(prompt) => typed,
                 how = asked_to_end() => {
+                    terminal.take_back().await;
                     // The cursor still stands behind what was being typed.
                     self.screen.ask_note("");
                     return Err(ended(how));

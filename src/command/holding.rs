@@ -217,8 +217,15 @@ async fn hold(
         move |text: &str| say(&format!("{label}: {text}"))
     };
     let is_held = held.borrow().contains(&key);
-    let attempt =
-        async { if is_held { Ok(None) } else { Holding::open(&robot, &access, &screen, tell).await.map(Some) } };
+    let attempt = async {
+        match Place::find() {
+            _ if !is_held => Holding::open(&robot, &access, &screen, tell).await.map(Some),
+            Ok(Some(place)) if place.spot(&key).socket().exists() => Ok(None),
+            // A line that goes around the link that is held would meet another simulator, or open a second connection.
+            _ => Err(Failure::local(format!("{label}: somebody has removed the socket of the link that is held"))
+                .hint("leave, and begin again")),
+        }
+    };
     let attempt = tokio::select! {
         attempt = attempt => attempt,
         () = done.closed() => return,

@@ -86,7 +86,7 @@ impl Fullscreen {
     pub fn refresh(&mut self) -> Result<(), Failure> {
         restore();
         // Not `clear`, which asks the terminal where its cursor is: the answer would come among the keys.
-        let anew = || {
+        let mut anew = || {
             take()?;
             let size = self.terminal.size()?;
             self.terminal.resize(size.into())

@@ -3,6 +3,7 @@
 #![cfg(unix)]
 
 mod proxy;
+#[path = "../support/terminal.rs"]
 mod terminal;
 
 use std::io::{BufRead as _, BufReader};

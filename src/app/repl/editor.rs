@@ -110,8 +110,8 @@ fn editor(screen: &Screen, assistant: Assistant) -> rustyline::Result<LineEditor
         .completion_type(CompletionType::List)
         .bell_style(BellStyle::None)
         .color_mode(if screen.stdout_color() { ColorMode::Enabled } else { ColorMode::Disabled })
-        // Prompts are no data: stdout may be a file.
-        .behavior(Behavior::PreferTerm)
+        // Prompts are no data: where stdout is a file, they go to the terminal all the same.
+        .behavior(if screen.is_stdout_terminal() { Behavior::Stdio } else { Behavior::PreferTerm })
         .build();
     let mut editor = LineEditor::with_config(config)?;
     editor.set_helper(Some(assistant));

@@ -48,7 +48,8 @@ impl Meaning {
         let family = self.family();
         let mut beginnings = vec![self.args(words)];
         if family.is_some() && !words.iter().any(|word| self.parser.owner(word, family).is_some()) {
-            beginnings.push(std::iter::once("armctl").chain(words.iter().map(String::as_str)).map(OsString::from).collect());
+            beginnings
+                .push(std::iter::once("armctl").chain(words.iter().map(String::as_str)).map(OsString::from).collect());
         }
         beginnings
     }

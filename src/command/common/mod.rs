@@ -1,7 +1,7 @@
 //! Commands that are about no single controller.
 
-pub mod batch;
 pub mod backup;
+pub mod batch;
 pub mod completions;
 pub mod decode;
 mod explain;

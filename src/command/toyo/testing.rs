@@ -220,7 +220,9 @@ fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<F
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Toyo))?.remove(0);
-    let Top::Toyo(OfToyo::Toyo { verb: Some(Verb::Command(verb)) }) = cli.command else { unreachable!("the words follow toyo") };
+    let Top::Toyo(OfToyo::Toyo { verb: Some(Verb::Command(verb)) }) = cli.command else {
+        unreachable!("the words follow toyo")
+    };
     Ok((robot, verb.command()))
 }
 

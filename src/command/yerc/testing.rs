@@ -140,7 +140,9 @@ fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<F
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let flags = Options { encoding: cli.globals.encoding, ..Options::default() };
     let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(Name::Yerc))?.remove(0);
-    let Top::Yerc(OfYerc::Yerc { verb: Some(Verb::Command(verb)) }) = cli.command else { unreachable!("the words follow yerc") };
+    let Top::Yerc(OfYerc::Yerc { verb: Some(Verb::Command(verb)) }) = cli.command else {
+        unreachable!("the words follow yerc")
+    };
     Ok((robot, verb.command()))
 }
 

@@ -360,7 +360,9 @@ fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<F
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Yrcx))?.remove(0);
-    let Top::Yrcx(OfYrcx::Yrcx { unit, verb: Some(Verb::Command(verb)) }) = cli.command else { unreachable!("the words follow yrcx") };
+    let Top::Yrcx(OfYrcx::Yrcx { unit, verb: Some(Verb::Command(verb)) }) = cli.command else {
+        unreachable!("the words follow yrcx")
+    };
     Ok((robot, unit.of(verb)))
 }
 

@@ -6,7 +6,7 @@ use std::os::unix::process::CommandExt as _;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::Duration;
 
-use rustix::termios::{LocalModes, OptionalActions, Termios, Winsize, tcgetattr, tcsetattr, tcsetwinsize};
+use rustix::termios::{InputModes, LocalModes, OptionalActions, Termios, Winsize, tcgetattr, tcsetattr, tcsetwinsize};
 use serialport::{SerialPort as _, TTYPort};
 
 /// How long a read waits before it looks whether the program is still there, and how often it does.
@@ -26,6 +26,8 @@ pub struct Terminal {
     pub picture: Picture,
     /// All that was written.
     pub written: Vec<u8>,
+    /// How much of it, without escape sequences, was read by [`Terminal::says`].
+    heard: usize,
 }
 
 impl Terminal {
@@ -38,6 +40,7 @@ impl Terminal {
         // As a shell has it: lines, echo, signals from keys.
         let mut modes = tcgetattr(&slave)?;
         modes.local_modes |= LocalModes::ICANON | LocalModes::ECHO | LocalModes::ISIG;
+        modes.input_modes |= InputModes::ICRNL;
         tcsetattr(&slave, OptionalActions::Now, &modes)?;
         tcsetwinsize(&slave, Winsize { ws_row: lines, ws_col: columns, ws_xpixel: 0, ws_ypixel: 0 })?;
         let before = tcgetattr(&slave)?;
@@ -45,7 +48,7 @@ impl Terminal {
         command.stderr(Stdio::from(slave.try_clone()?)).process_group(0);
         let child = command.spawn()?;
         let picture = Picture::new(columns.into(), lines.into());
-        Ok(Self { master, slave, _port: port, before, child, picture, written: Vec::new() })
+        Ok(Self { master, slave, _port: port, before, child, picture, written: Vec::new(), heard: 0 })
     }
 
     /// Reads until the picture is as it shall be.
@@ -59,6 +62,19 @@ impl Terminal {
     /// Reads until the picture has this text.
     pub fn shows(&mut self, text: &str) {
         self.until(text, |picture| picture.text().contains(text));
+    }
+
+    /// Reads until this text comes, after what was waited for before: for programs that write line after line.
+    pub fn says(&mut self, text: &str) {
+        loop {
+            let written = plain(&self.written);
+            if let Some(at) = written[self.heard..].find(text) {
+                self.heard += at + text.len();
+                return;
+            }
+            let read = self.read();
+            assert!(read, "it never said {text:?}, but\n{written}");
+        }
     }
 
     /// Takes what was written; `false` if nothing comes any more.
@@ -135,6 +151,18 @@ pub struct Picture {
     pub has_cursor: bool,
     /// Whether it was told of colours.
     pub has_color: bool,
+}
+
+/// What was written without the sequences that move the cursor and colour, and without what is not whole yet.
+fn plain(written: &[u8]) -> String {
+    let whole = written.utf8_chunks().next().map_or("", |chunk| chunk.valid());
+    let text = whole.trim_end_matches('\x1b');
+    let mut parts = text.split("\x1b[");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |text, part| {
+        let rest = part.trim_start_matches(|c: char| c.is_ascii_digit() || "?;<=>".contains(c));
+        text + rest.get(1..).unwrap_or_default()
+    })
 }
 
 impl Picture {

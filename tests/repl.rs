@@ -1,0 +1,168 @@
+//! `armctl repl` on a terminal: prompt, completion, history, Ctrl-C, questions, the link that others share, every way out.
+#![cfg(unix)]
+
+#[path = "support/terminal.rs"]
+mod terminal;
+
+use std::io::{BufRead as _, BufReader};
+use std::process::{Child, Command, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use terminal::Terminal;
+
+/// A user with a home of his own.
+struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    fn new() -> Self {
+        Self { folder: tempfile::tempdir().expect("a folder") }
+    }
+
+    fn command(&self, line: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.env_clear().env("HOME", self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path());
+        command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8").args(line.split(' '));
+        command
+    }
+
+    /// At the prompt.
+    fn repl(&self, line: &str) -> Terminal {
+        let mut repl = Terminal::start(self.command(line), 100, 30).expect("a terminal");
+        repl.says("leaves.");
+        repl
+    }
+
+    /// The data of a command elsewhere.
+    fn data(&self, line: &str) -> Value {
+        let output = self.command(&format!("{line} --json")).output().expect("it runs");
+        assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice::<Value>(&output.stdout).expect("JSON")["data"].clone()
+    }
+}
+
+/// A simulated controller of its own, and its URL.
+struct Simulator {
+    process: Child,
+    url: String,
+}
+
+impl Simulator {
+    fn start(family: &str) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.args(["sim", family, "--bind", "127.0.0.1:0"]).stdin(Stdio::null()).stdout(Stdio::piped());
+        let mut process = command.spawn().expect("the simulator starts");
+        let mut line = String::new();
+        BufReader::new(process.stdout.take().expect("a pipe")).read_line(&mut line).expect("it says where it is");
+        let at = line.find("://").expect("a URL");
+        let start = line[..at].rfind(' ').map_or(0, |space| space + 1);
+        Self { process, url: line[start..].trim_end().to_owned() }
+    }
+}
+
+impl Drop for Simulator {
+    fn drop(&mut self) {
+        self.process.kill().unwrap_or_default();
+        let _ended = self.process.wait();
+    }
+}
+
+#[test]
+fn the_prompt_tells_how_the_robot_is_and_lines_change_it() {
+    let desk = Desk::new();
+    let mut repl = desk.repl("yerc --sim");
+    repl.says("sim [simulated, servo on] yerc>");
+    repl.press("servo off\r");
+    repl.says("servo power is switched off");
+    repl.says("sim [simulated, servo off] yerc>");
+    repl.press("job select NONE\r");
+    repl.says("no such job");
+    repl.press("sta\ttus --jq .data.servo_on\r");
+    repl.says("false");
+    repl.press("exit\r");
+    assert_eq!(repl.end().code(), Some(0));
+    assert!(repl.is_as_before());
+}
+
+#[test]
+fn words_and_names_that_the_robot_holds_are_completed() {
+    let desk = Desk::new();
+    let mut repl = desk.repl("toyo repl --sim");
+    repl.press("param get soft-limit-p\t\r");
+    repl.says("P01  soft-limit-plus");
+    repl.press("robots l\t\r");
+    repl.says("no robots");
+    repl.says("> ");
+    repl.press("\x04");
+    assert_eq!(repl.end().code(), Some(0));
+}
+
+#[test]
+fn ctrl_c_stops_the_motion_and_not_the_prompt() {
+    let desk = Desk::new();
+    let mut repl = desk.repl("yerc repl --sim");
+    repl.press("move relative --z 400 --speed 1mm/s\r");
+    repl.says("R1 x=");
+    repl.signal("INT");
+    repl.says("the robot was stopped: HOLD is on");
+    repl.says("[simulated, servo on, hold] yerc>");
+    repl.press("hold off\r");
+    repl.says("hold is off");
+    repl.says("yerc> ");
+    repl.press("half a line");
+    repl.says("half a line");
+    repl.press("\x03");
+    repl.says("yerc> ");
+    repl.press("status --jq .ok\r");
+    repl.says("true");
+    repl.says("> ");
+    repl.press("\x04");
+    assert_eq!(repl.end().code(), Some(0));
+    assert!(repl.is_as_before());
+}
+
+#[test]
+fn asked_to_end_it_leaves_the_terminal_as_it_was() {
+    for signal in ["TERM", "HUP"] {
+        let desk = Desk::new();
+        let mut repl = desk.repl("yrcx repl --sim");
+        repl.press("half a line");
+        repl.says("half a line");
+        repl.signal(signal);
+        repl.says(signal);
+        assert_eq!(repl.end().code(), Some(130), "{signal}");
+        assert!(repl.is_as_before(), "{signal}");
+    }
+}
+
+#[test]
+fn a_real_robot_is_moved_when_the_question_is_answered_over_a_link_that_others_share() {
+    let (desk, simulator) = (Desk::new(), Simulator::start("toyo"));
+    let mut repl = desk.repl(&format!("-t {} repl", simulator.url));
+    repl.press("home\r");
+    repl.says("Go on? [y/N]");
+    repl.press("n\r");
+    repl.says("not confirmed; nothing was sent");
+    let session = desk.data("session list")["sessions"][0].clone();
+    assert_eq!((session["pid"].as_u64(), session["link"].as_str()), (Some(repl.child.id().into()), Some("up")));
+    assert_eq!(desk.data(&format!("-t {} toyo status", simulator.url))["pages"].is_null(), false);
+    repl.press("exit\r");
+    assert_eq!(repl.end().code(), Some(0));
+    assert_eq!(desk.data("session list")["sessions"].as_array().map(Vec::len), Some(0));
+}
+
+#[test]
+fn lines_are_remembered_until_the_next_time() {
+    let desk = Desk::new();
+    for (typed, shown) in [("explain yerc 2060\r", "0x2060"), ("\x1b[A\r", "0x2060")] {
+        let mut repl = desk.repl("repl");
+        repl.press(typed);
+        repl.says(shown);
+        repl.says("> ");
+        repl.press("\x04");
+        assert_eq!(repl.end().code(), Some(0));
+    }
+}
