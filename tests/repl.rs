@@ -113,7 +113,8 @@ fn ctrl_c_stops_the_motion_and_not_the_prompt() {
     repl.says("hold is off");
     repl.says("yerc> ");
     repl.press("half a line");
-    repl.says("half a line");
+    // The grey rest of a line that was typed before comes and goes meanwhile.
+    repl.says("a line");
     repl.press("\x03");
     repl.says("yerc> ");
     repl.press("status --jq .ok\r");
