@@ -110,15 +110,15 @@ fn controllers(effort: &Effort) -> anyhow::Result<Vec<(&'static str, String)>> {
 type Tell = mpsc::Sender<String>;
 
 /// Serves a controller on a thread of its own, and waits until it says where it is.
-fn served(serve: fn(Tell) -> anyhow::Result<()>) -> anyhow::Result<String> {
+fn served(serve: fn(&Tell) -> anyhow::Result<()>) -> anyhow::Result<String> {
     let (tell, told) = mpsc::channel();
-    thread::spawn(move || serve(tell));
+    thread::spawn(move || serve(&tell));
     told.recv().context("a simulator did not start")
 }
 
 const ANYWHERE: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 0);
 
-fn yerc_controller(tell: Tell) -> anyhow::Result<()> {
+fn yerc_controller(tell: &Tell) -> anyhow::Result<()> {
     let start = yerc::simulated::start(None, Model::Dx200, None)?;
     crate::common::runtime()?.block_on(async {
         let mut server = Server::bind([ANYWHERE, ANYWHERE], None).await?;
@@ -130,7 +130,7 @@ fn yerc_controller(tell: Tell) -> anyhow::Result<()> {
     })
 }
 
-fn toyo_controller(tell: Tell) -> anyhow::Result<()> {
+fn toyo_controller(tell: &Tell) -> anyhow::Result<()> {
     let start = toyo::simulated::start(None, None, None)?;
     crate::common::runtime()?.block_on(async {
         let (mut server, local) = StreamServer::tcp(ANYWHERE, None, None).await?;

@@ -189,9 +189,8 @@ impl Picture {
             self.begun.push(*byte);
             let begun = &self.begun;
             let is_whole = match begun[..] {
-                [0x1b] => false,
-                [0x1b, b'[', .., last] if begun.len() > 2 => (0x40..=0x7e).contains(&last),
-                [0x1b, b'['] => false,
+                [0x1b] | [0x1b, b'['] => false,
+                [0x1b, b'[', .., last] => (0x40..=0x7e).contains(&last),
                 [0x1b, _, ..] => true,
                 _ => std::str::from_utf8(begun).is_ok() || begun.len() > 3,
             };
@@ -220,8 +219,8 @@ impl Picture {
             }
             Some('J') => self.cells.fill(' '),
             Some('m') => {
-                self.has_color |= numbers()
-                    .any(|number: usize| (30..=38).contains(&number) || (40..=48).contains(&number) || number >= 90)
+                let is_color = |number: usize| matches!(number, 30..=38 | 40..=48 | 90..);
+                self.has_color |= numbers().any(is_color);
             }
             Some('h' | 'l') => {
                 let is_on = sequence.ends_with('h');

@@ -115,16 +115,15 @@ fn a_single_robot_has_the_screen_for_itself() {
 #[test]
 fn the_terminal_is_as_before_on_every_way_out() {
     let desk = simulated();
-    let ends: [(&str, fn(&mut Terminal)); 4] = [
-        ("Ctrl-C", |top| top.press("\x03")),
-        ("Ctrl-C", |top| top.signal("INT")),
-        ("SIGTERM", |top| top.signal("TERM")),
-        ("SIGHUP", |top| top.signal("HUP")),
-    ];
-    for (said, end) in ends {
+    // A key, or a signal.
+    let ends = [("Ctrl-C", None), ("Ctrl-C", Some("INT")), ("SIGTERM", Some("TERM")), ("SIGHUP", Some("HUP"))];
+    for (said, signal) in ends {
         let mut top = desk.top(&[]);
         top.shows("3 answer");
-        end(&mut top);
+        match signal {
+            Some(signal) => top.signal(signal),
+            None => top.press("\x03"),
+        }
         assert_eq!(top.end().code(), Some(130), "{said}");
         assert!(top.is_as_before(), "{said}");
         assert!(String::from_utf8_lossy(&top.written).contains(said), "it says why it ended: {said}");

@@ -157,7 +157,7 @@ impl View<'_> {
                 biased;
                 event = events.recv() => {
                     let Some(event) = event else { return Err(Failure::new(Kind::Interrupted, "the terminal was closed")) };
-                    if self.heed(event)? {
+                    if self.heed(&event)? {
                         return Ok(());
                     }
                     // Several keys that came together make one picture.
@@ -192,9 +192,9 @@ impl View<'_> {
     }
 
     /// Does what an event asks for; whether it is the end.
-    fn heed(&mut self, event: Event) -> Result<bool, Failure> {
+    fn heed(&mut self, event: &Event) -> Result<bool, Failure> {
         let Event::Key(key) = event else { return Ok(false) };
-        match order(key, self.model.is_typing) {
+        match order(*key, self.model.is_typing) {
             Some(Order::Quit) => return Ok(true),
             Some(Order::Interrupt) => return Err(Failure::new(Kind::Interrupted, "Ctrl-C")),
             Some(Order::Suspend) => self.terminal.suspend()?,

@@ -108,15 +108,12 @@ fn first_line(cursor: usize, robots: usize, lines: usize) -> usize {
 /// What is wrong with the robot at the cursor.
 fn trouble(pen: &mut Pen<'_>, line: Rect, model: &Model) {
     let Some(seen) = model.chosen() else { return };
-    let (text, tone) = match &seen.contact {
-        Contact::Fails(failure) => {
-            let hint = failure.hint.as_ref().map(|hint| format!("; {hint}")).unwrap_or_default();
-            (format!("{}{hint}", failure.message), Tone::Bad)
-        }
-        _ => {
-            let (alarm, tone) = seen.alarm();
-            (if alarm.is_empty() { seen.place.clone() } else { format!("{}: {alarm}", seen.name) }, tone)
-        }
+    let (text, tone) = if let Contact::Fails(failure) = &seen.contact {
+        let hint = failure.hint.as_ref().map(|hint| format!("; {hint}")).unwrap_or_default();
+        (format!("{}{hint}", failure.message), Tone::Bad)
+    } else {
+        let (alarm, tone) = seen.alarm();
+        (if alarm.is_empty() { seen.place.clone() } else { format!("{}: {alarm}", seen.name) }, tone)
     };
     let style = if tone == Tone::Plain { pen.palette.quiet() } else { pen.palette.tone(tone) };
     pen.left(after(line, 1), &text, style);

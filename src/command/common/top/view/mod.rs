@@ -28,15 +28,12 @@ pub fn draw(frame: &mut Frame<'_>, model: &Model, now: Moment, palette: Palette)
 fn render(buffer: &mut Buffer, area: Rect, model: &Model, now: Moment, palette: Palette) {
     let mut pen = Pen { buffer, palette };
     let [head, body, foot] = rows(area);
-    match model.chosen().filter(|_| model.is_open) {
-        Some(seen) => {
-            detail::head(&mut pen, head, model, seen, now);
-            detail::body(&mut pen, body, model, seen, now);
-        }
-        None => {
-            list::head(&mut pen, head, model);
-            list::body(&mut pen, body, model, now);
-        }
+    if let Some(seen) = model.chosen().filter(|_| model.is_open) {
+        detail::head(&mut pen, head, model, seen, now);
+        detail::body(&mut pen, body, model, seen, now);
+    } else {
+        list::head(&mut pen, head, model);
+        list::body(&mut pen, body, model, now);
     }
     keys(&mut pen, foot, model);
     if model.has_help {
@@ -144,7 +141,8 @@ fn answer(pen: &Pen<'_>, seen: &Seen, now: Moment, every: Duration) -> (String, 
     }
     match seen.sample().and_then(|sample| sample.answered_in) {
         Some(time) => (milliseconds(time), Style::new()),
-        None => ("-".to_owned(), pen.palette.quiet()),
+        // Nothing is asked: the controller shows itself.
+        None => ("live".to_owned(), pen.palette.quiet()),
     }
 }
 
