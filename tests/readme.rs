@@ -81,6 +81,37 @@ fn console_blocks_print_what_they_show() {
 }
 
 #[test]
+fn links_lead_somewhere() {
+    let anchor = |heading: &str| -> String {
+        let kept = heading.to_lowercase();
+        kept.chars()
+            .filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'))
+            .collect::<String>()
+            .replace(' ', "-")
+    };
+    let mut wrong = Vec::new();
+    for page in PAGES.iter().chain(&["CONTRIBUTING.md", "CHANGELOG.md", "docs/architecture.md"]) {
+        let path = root().join(page);
+        let text = std::fs::read_to_string(&path).expect("the page is there");
+        let links = text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(link, _)| link);
+        for link in links.filter(|link| !link.contains("://")) {
+            let (file, place) = link.split_once('#').map_or((link, None), |(file, place)| (file, Some(place)));
+            let there = if file.is_empty() { path.clone() } else { path.with_file_name(file) };
+            let is_there = place.map_or(there.exists(), |place| {
+                let page = std::fs::read_to_string(&there).unwrap_or_default();
+                page.lines()
+                    .filter(|line| line.starts_with('#'))
+                    .any(|line| anchor(line.trim_start_matches('#').trim()) == place)
+            });
+            if !is_there {
+                wrong.push(format!("{page}: {link}"));
+            }
+        }
+    }
+    assert_eq!(wrong, [""; 0], "links that lead nowhere");
+}
+
+#[test]
 fn recipes_work_with_jq_itself() {
     const PAGE: &str = "docs/scripting.md";
     if Command::new("jq").arg("--version").stdout(Stdio::null()).status().is_err() {
