@@ -96,6 +96,8 @@ impl Command for Backup {
         let controller = Controller::ask(link).await?;
         let mut work = Vec::new();
         let mut refused = Vec::new();
+        // The file service may be busy with what somebody else broke off.
+        let looking = screen.spinner("looking for files");
         for kind in &types {
             match transfer::list(link, *kind).await {
                 Ok(names) => work.extend(names.into_iter().map(|name| (*kind, name))),
@@ -103,6 +105,7 @@ impl Command for Backup {
                 Err(failure) => return Err(transfer::about(&kind.filter(), failure)),
             }
         }
+        drop(looking);
         let shown = |name: &[u8]| link.encoding.decode(name);
         let names: Vec<String> = work.iter().map(|(_, name)| shown(name)).collect();
         only.check(names.iter().map(String::as_str))?;

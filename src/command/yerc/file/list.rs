@@ -26,13 +26,15 @@ impl Command for List {
     const ID: &'static str = "yerc.file.list";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Listing, Failure> {
-        let Context { link, .. } = context;
+        let Context { link, screen, .. } = context;
         let types = TypeArg::chosen(&self.types);
         if link.is_dry() {
             transfer::foresee_all(link, types.iter().map(|kind| files::list(*kind)));
             return Ok(Listing::default());
         }
         let mut listing = Listing::default();
+        // The file service may be busy with what somebody else broke off.
+        let _looking = screen.spinner("looking for files");
         for kind in &types {
             let listed = transfer::list(link, *kind).await;
             match listed.map_err(|failure| transfer::about(&kind.filter(), failure)) {
