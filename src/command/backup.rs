@@ -138,11 +138,12 @@ impl Item {
         self.left_out = left_out.to_vec();
     }
 
-    fn result(&self, done: &str) -> Cell {
+    /// In words; `done` now, or before.
+    fn result(&self, [done, before]: [&str; 2]) -> Cell {
         let counted = |n: usize, words: &str| (n > 0).then(|| format!("{n} {words}"));
         let counts = match (self.written, self.unchanged) {
             (None, None) => None,
-            (Some(0) | None, _) => Some("nothing differed".to_owned()),
+            (Some(0) | None, _) => Some(NO_DIFFERENCE.to_owned()),
             (written, unchanged) => {
                 let parts = [counted(written.unwrap_or(0), "written"), counted(unchanged.unwrap_or(0), "unchanged")];
                 Some(parts.into_iter().flatten().collect::<Vec<_>>().join(", "))
@@ -151,14 +152,14 @@ impl Item {
         let cell = match (self.state, &self.error) {
             (State::Failed, error) => {
                 let error = error.as_ref().map_or("failed", |error| error.message.as_str());
-                let before = counts.filter(|_| self.written > Some(0)).map(|counts| format!("{counts}; then "));
-                Cell::from(before.unwrap_or_default() + error).tone(Tone::Bad)
+                let counts = counts.filter(|_| self.written > Some(0)).map(|counts| format!("{counts}; then "));
+                Cell::from(counts.unwrap_or_default() + error).tone(Tone::Bad)
             }
             (State::NotTried, _) => {
                 let counts = counts.map(|counts| format!("{counts}; the rest "));
                 Cell::from(counts.unwrap_or_default() + "not tried").tone(Tone::Warning)
             }
-            (State::Kept, _) => Cell::from("kept"),
+            (State::Kept, _) => Cell::from(before),
             (State::Done, _) => Cell::from(counts.unwrap_or_else(|| done.to_owned())).tone(Tone::Good),
         };
         let notes = self.notes.iter().fold(String::new(), |text, note| text + ", " + note);
@@ -174,6 +175,8 @@ impl Item {
     }
 }
 
+/// Said where nothing had to be written.
+const NO_DIFFERENCE: &str = "nothing differed";
 /// Longer lists of what was left out do not fit a table.
 const MOST_KEYS: usize = 6;
 
@@ -220,10 +223,10 @@ impl Items {
         self.failed + self.not_tried == 0
     }
 
-    fn view(&self, done: &str) -> View {
+    fn view(&self, words: [&str; 2]) -> View {
         let mut table = Table::new(&["name", "result"], "nothing");
         for item in &self.files {
-            table.row([item.name.as_str().into(), item.result(done)]);
+            table.row([item.name.as_str().into(), item.result(words)]);
         }
         View::table(table)
     }
@@ -267,7 +270,7 @@ impl BackedUp {
 
 impl Report for BackedUp {
     fn view(&self) -> View {
-        self.items.view("saved")
+        self.items.view(["saved", "kept"])
     }
 
     fn failure(&self) -> Option<Failure> {
@@ -300,7 +303,7 @@ pub const POWER_CYCLE: &str = "machine parameters were changed: switch the contr
 
 impl Report for Restored {
     fn view(&self) -> View {
-        self.items.view("written")
+        self.items.view(["written", NO_DIFFERENCE])
     }
 
     fn failure(&self) -> Option<Failure> {
@@ -357,9 +360,9 @@ mod tests {
         let mut item = Item { state: State::Done, written: Some(0), unchanged: Some(9), ..Item::pending("p") };
         let left_out = |key: usize| LeftOut { key: key.to_string(), why: String::new() };
         item.left_out = (1..3).map(left_out).collect();
-        assert_eq!(item.result("").text, "nothing differed; without 1, 2");
+        assert_eq!(item.result(["", ""]).text, "nothing differed; without 1, 2");
         item.left_out = (1..30).map(left_out).collect();
-        assert_eq!(item.result("").text, "nothing differed; without 29 values, 1 to 29");
+        assert_eq!(item.result(["", ""]).text, "nothing differed; without 29 values, 1 to 29");
     }
 
     #[test]

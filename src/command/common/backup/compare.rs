@@ -121,16 +121,16 @@ impl Differences {
     }
 
     fn summary(&self) -> String {
-        let differing = self.count(&[State::Changed, State::OnlyOld, State::OnlyNew]);
         let named = [
-            (differing, "differ"),
-            (self.count(&[State::Unknown]), "could not be compared"),
-            (self.count(&[State::WithinTolerance]), "are the same within the tolerance"),
-            (self.count(&[State::Same]), "are the same"),
+            (self.count(&[State::Changed, State::OnlyOld, State::OnlyNew]), "different"),
+            (self.count(&[State::Unknown]), "not compared"),
+            (self.count(&[State::WithinTolerance]), "the same within the tolerance"),
+            (self.count(&[State::Same]), "the same"),
         ];
         let parts = named.iter().filter(|(count, _)| *count > 0).map(|(count, words)| format!("{count} {words}"));
         let parts: Vec<String> = parts.collect();
-        format!("{} and {}: of {} files {}", self.old, self.new, self.files.len(), parts.join(", "))
+        let files = if self.files.len() == 1 { "file" } else { "files" };
+        format!("{} and {}: {} {files}, {}", self.old, self.new, self.files.len(), parts.join(", "))
     }
 }
 
@@ -274,7 +274,11 @@ impl FileDifference {
         Self { error: Some(failure), ..Self::new(name, State::Unknown) }
     }
 
-    fn result(&self) -> Cell {
+    fn result(&self, old: &Of, new: &Of) -> Cell {
+        let only = |of: &Of| match &of.folder {
+            Some(folder) => Cell::from(format!("only in {folder}")).tone(Tone::Warning),
+            None => Cell::from("only on the controller").tone(Tone::Warning),
+        };
         let count = |change| {
             let lines = self.hunks.iter().flatten().flat_map(|hunk| &hunk.lines);
             lines.filter(|line| line.change == change).count()
@@ -282,8 +286,8 @@ impl FileDifference {
         match (self.state, &self.error) {
             (State::Same, _) => Cell::from("the same").tone(Tone::Good),
             (State::WithinTolerance, _) => Cell::from("the same within the tolerance").tone(Tone::Good),
-            (State::OnlyOld, _) => Cell::from("in the old one only").tone(Tone::Warning),
-            (State::OnlyNew, _) => Cell::from("in the new one only").tone(Tone::Warning),
+            (State::OnlyOld, _) => only(old),
+            (State::OnlyNew, _) => only(new),
             (State::Unknown, error) => {
                 let why = error.as_ref().map_or("", |error| error.message.as_str());
                 Cell::from(format!("not compared: {why}")).tone(Tone::Bad)
@@ -292,7 +296,7 @@ impl FileDifference {
             (State::Changed, _) if self.only_line_endings => Cell::from("only line endings differ").tone(Tone::Bad),
             (State::Changed, _) => {
                 let (less, more) = (count(Change::Removed), count(Change::Added));
-                Cell::from(format!("differs: {less} lines less, {more} more")).tone(Tone::Bad)
+                Cell::from(format!("differs: -{less} +{more} lines")).tone(Tone::Bad)
             }
         }
     }
@@ -311,7 +315,7 @@ impl Report for Differences {
         }
         let mut table = Table::new(&["name", "result"], "");
         for file in self.files.iter().filter(|file| file.state != State::Same) {
-            table.row([file.name.as_str().into(), file.result()]);
+            table.row([file.name.as_str().into(), file.result(&self.old, &self.new)]);
         }
         if !table.rows.is_empty() {
             view = view.and(Section::Table(table));
