@@ -222,7 +222,7 @@ fn a_folder_that_was_tampered_with_is_not_written_back() {
 fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
     let mut desk = Desk::new("");
     desk.data("backup @/saved");
-    let mut other = Desk::new("[[robot]]\nkind = \"scara\"\nmax_payload_g = 10\npayload_g = 0\n");
+    let mut other = Desk::new("stock = false\n[[robot]]\nkind = \"scara\"\nmax_payload_g = 10\npayload_g = 0\n");
     let saved = desk.path("saved");
     let other_robot = other.failure(&format!("restore {}", saved.display()));
     assert_eq!(other_robot.kind, Kind::RefusedHere, "{other_robot}");
