@@ -34,6 +34,7 @@ transcripts! {
     exit_codes
     explain
     files
+    fleet_backups
     fleets
     help
     information
