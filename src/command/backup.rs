@@ -231,8 +231,8 @@ impl Items {
         View::table(table)
     }
 
-    /// The gravest failure, and how many there are; of equally grave ones, the first. `again` says how it goes on.
-    fn failure(&self, again: &str) -> Option<Failure> {
+    /// The gravest failure, and how many there are; of equally grave ones, the first.
+    fn gravest(&self) -> Option<Failure> {
         let failures = self.files.iter().filter_map(|item| Some((&item.name, item.error.as_ref()?)));
         let (name, gravest) = failures.rev().max_by_key(|(_, failure)| gravity(failure.kind))?;
         let total = self.files.len();
@@ -240,8 +240,14 @@ impl Items {
             0 => format!("{} of {total} failed", self.failed),
             left => format!("{} of {total} failed, {left} not tried", self.failed),
         };
-        let hint = gravest.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}\n{again}"));
-        Some(Failure { message: format!("{failed}: {name}: {}", gravest.message), ..gravest.clone() }.hint(hint))
+        Some(Failure { message: format!("{failed}: {name}: {}", gravest.message), ..gravest.clone() })
+    }
+
+    /// The same with how it goes on.
+    fn failure(&self, again: &str) -> Option<Failure> {
+        let failure = self.gravest()?;
+        let hint = failure.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}\n{again}"));
+        Some(failure.hint(hint))
     }
 }
 
@@ -265,6 +271,11 @@ impl BackedUp {
     pub fn new(folder: &Path, scope: Vec<String>, complete: bool, items: Items) -> Self {
         let manifest = folder.join(MANIFEST).display().to_string();
         Self { folder: folder.display().to_string(), manifest, complete, scope, items }
+    }
+
+    /// The gravest failure of a file or part.
+    pub fn gravest(&self) -> Option<Failure> {
+        self.items.gravest()
     }
 }
 

@@ -4,7 +4,7 @@
 use std::collections::HashSet;
 use std::fs;
 use std::io::{ErrorKind, Read as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
 use schemars::JsonSchema;
@@ -222,9 +222,22 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
 /// Reads the list in `folder`, which must be there.
 pub fn existing<C: About>(folder: &Path) -> Result<Manifest<C>, Failure> {
     read(folder)?.ok_or_else(|| {
-        Failure::local(format!("{} holds no {MANIFEST}", folder.display()))
-            .hint("name the folder of a backup; `armctl backup` makes one")
+        let failure = Failure::local(format!("{} holds no {MANIFEST}", folder.display()));
+        match folders_in(folder).first() {
+            Some(one) => {
+                failure.hint(format!("it has the backups of several robots: name one, as in {}", one.display()))
+            }
+            None => failure.hint("name the folder of a backup; `armctl backup` makes one"),
+        }
     })
+}
+
+/// The folders of backups in a folder, one a robot.
+pub fn folders_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut found: Vec<PathBuf> = entries.filter(|path| path.join(MANIFEST).exists()).collect();
+    found.sort();
+    found
 }
 
 /// Looks into a folder that a backup shall go to: the backup that it holds, if it holds one. Anything else must not be

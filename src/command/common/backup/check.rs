@@ -1,6 +1,6 @@
 //! `armctl backup --check`: whether the files of a backup are still what was saved.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -37,7 +37,10 @@ struct Backup {
 impl Checked {
     /// The backup in a folder, or those in the folders in it, one a robot.
     pub fn of(folder: &Path) -> Result<Self, Failure> {
-        let backups = folders(folder)?.iter().map(|folder| Backup::of(folder)).collect::<Result<Vec<_>, _>>()?;
+        let several = if folder.join(MANIFEST).exists() { Vec::new() } else { manifest::folders_in(folder) };
+        // Without any, the folder itself is asked for its list, and says that it has none.
+        let folders = if several.is_empty() { vec![folder.to_owned()] } else { several };
+        let backups = folders.iter().map(|folder| Backup::of(folder)).collect::<Result<Vec<_>, _>>()?;
         Ok(Self { sound: backups.iter().all(|backup| backup.damaged.is_empty()), backups })
     }
 }
@@ -55,22 +58,6 @@ impl Backup {
             robot: list.robot,
         })
     }
-}
-
-/// The folders with a list: this one, or those in it.
-fn folders(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let has_list = |folder: &Path| folder.join(MANIFEST).exists();
-    let failed = |error: &std::io::Error| Failure::io(folder.display(), error);
-    let mut found = Vec::new();
-    if !has_list(folder) {
-        for entry in std::fs::read_dir(folder).map_err(|error| failed(&error))? {
-            found.push(entry.map_err(|error| failed(&error))?.path());
-        }
-        found.retain(|folder| has_list(folder));
-        found.sort();
-    }
-    // Without any, the folder itself is asked for its list, and says that it has none.
-    Ok(if found.is_empty() { vec![folder.to_owned()] } else { found })
 }
 
 impl Report for Checked {
@@ -93,7 +80,10 @@ impl Report for Checked {
 
     fn failure(&self) -> Option<Failure> {
         let first = self.backups.iter().flat_map(|backup| &backup.damaged).next()?;
-        let count: usize = self.backups.iter().map(|backup| backup.damaged.len()).sum();
-        Some(Failure { message: format!("{count} files are not what was saved: {}", first.message), ..first.clone() })
+        let (damaged, all) = self
+            .backups
+            .iter()
+            .fold((0, 0), |(damaged, all), backup| (damaged + backup.damaged.len(), all + backup.files));
+        Some(Failure { message: format!("{damaged} of {all} files damaged: {}", first.message), ..first.clone() })
     }
 }

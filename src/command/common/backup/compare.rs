@@ -202,7 +202,8 @@ fn of_files(
         _ => {
             let side = if entry.is_some() { new } else { old };
             let why = if side.manifest.complete { "it was not asked for" } else { "the backup is not whole" };
-            let failure = Failure::local(format!("{} does not have it: {why}", Of::new(side)));
+            let why = format!("{} does not have it: {why}", Of::new(side));
+            let failure = Failure::new(Kind::ConditionNotMet, why);
             return FileDifference::unknown(name, failure.hint("`armctl backup --resume` completes a backup"));
         }
     };
@@ -249,7 +250,7 @@ fn both(
 fn copy<'e>(side: &Side, entry: &'e Entry) -> Result<&'e Saved, Failure> {
     let copy = entry.copy.as_ref().ok_or_else(|| {
         let why = entry.error.as_ref().map_or("no reason is told", |reason| &reason.message);
-        Failure::new(Kind::Refused, format!("{} does not have it: {why}", Of::new(side)))
+        Failure::new(Kind::ConditionNotMet, format!("{} does not have it: {why}", Of::new(side)))
             .hint("look into manifest.json: what a controller refused is not in its backup")
     })?;
     copy.check(&side.folder)?;

@@ -104,11 +104,15 @@ impl Command for Diff {
         let temporary = tempfile::tempdir().map_err(|error| Failure::io("a folder for a while", &error))?;
         let folder = temporary.path().join("controller");
         let making = Making { folder: folder.clone(), scope: Some(self.scope(&old)), resume: false, force: false };
-        make(context, making).await.map_err(|failure| match failure.kind {
-            // What was read so far is of no use.
-            Kind::Interrupted => Failure::new(Kind::Interrupted, "interrupted; nothing was compared"),
-            _ => failure,
-        })?;
+        // What was read so far is of no use; but what a controller refuses to tell is a difference.
+        let unread = match make(context, making).await {
+            Ok(made) => made.gravest().filter(|failure| failure.kind != Kind::Refused),
+            Err(failure) if failure.kind == Kind::Interrupted => Some(Failure::new(failure.kind, "interrupted")),
+            Err(failure) => Some(failure),
+        };
+        if let Some(failure) = unread {
+            return Err(Failure { message: format!("nothing was compared: {}", failure.message), ..failure });
+        }
         let new = Side { manifest: manifest::existing(&folder)?, folder, is_controller: true };
         self.compare(&old, &new)
     }

@@ -287,20 +287,20 @@ pub async fn read_records(
     let (mut rows, mut refused, mut asked) = (Vec::new(), Vec::new(), Vec::new());
     let mut gap = wanted.gap_before;
     for number in &wanted.numbers {
-        let is_meant = wanted.always.contains(number);
-        if !is_meant && wanted.gap.is_some_and(|most| gap >= most) {
+        let is_over = wanted.gap.is_some_and(|most| gap >= most);
+        if is_over && !wanted.always.contains(number) {
             continue;
         }
         match ask(link, &records.read(*number)?).await? {
             Ok(values) => {
-                gap = if is_meant { gap } else { 0 };
+                gap = if is_over { gap } else { 0 };
                 // A point without a comment has an empty one.
                 if values.text(Key::Comment) != Some("") {
                     rows.push(records.row(*number, &values));
                 }
             }
             Err(alarm) => {
-                gap += usize::from(!is_meant);
+                gap += usize::from(!is_over);
                 refused.push((*number, alarm));
             }
         }

@@ -1,6 +1,7 @@
 //! `yrcx backup`.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -214,9 +215,7 @@ impl Saving<'_> {
             }
             let is_saved = manifest.entry(&part.to_string()).is_some_and(|entry| entry.copy.is_some());
             let defined = if is_saved { content::defined(part, self.folder)? } else { Vec::new() };
-            // How many are not defined up to the end of this thousand.
-            let last = defined.iter().rev().find(|number| !of_pallets.contains(number)).or(defined.last());
-            gap = last.map_or(gap + usize::from(THOUSAND), |last| usize::try_from(within.end - 1 - last).unwrap_or(0));
+            gap = gap_after(gap, within, &defined);
             let comments = Part::Comments(thousand);
             if !defined.is_empty() && self.asked.has(comments) {
                 if self.part(manifest, comments, Some(Wanted::all(defined))).await? == Had::End {
@@ -270,5 +269,32 @@ impl Saving<'_> {
             None => Wanted::all(records.all()?),
         };
         content::read_records(self.link, self.screen, records, &wanted).await
+    }
+}
+
+/// How many in a row are not defined at the end of a range, after `gap` before it; at least [`GAP`] if so many came in it.
+fn gap_after(gap: usize, within: Range<i32>, defined: &[i32]) -> usize {
+    let mut next = within.start;
+    let mut gap = gap;
+    for number in defined {
+        gap += usize::try_from(number - next).unwrap_or(0);
+        if gap >= GAP {
+            return gap;
+        }
+        (gap, next) = (0, number + 1);
+    }
+    gap + usize::try_from(within.end - next).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gap_goes_on_from_range_to_range() {
+        assert_eq!(gap_after(0, 0..1000, &[]), 1000);
+        assert_eq!(gap_after(0, 0..300, &[0, 100, 200, 250]), 49);
+        assert_eq!(gap_after(49, 300..400, &[351]), 100, "it ended before 351, which a pallet named");
+        assert_eq!(gap_after(49, 300..400, &[350]), 49);
     }
 }
