@@ -34,7 +34,7 @@ impl Desk {
             format!("sim:?state={}", file.display())
         };
         let (robot, _) = resolved(&target, &["status"]).unwrap();
-        let access = Access { granted: Risk::Motion, dry_run: false, trace: None, need: Need::Command };
+        let access = Access { granted: Risk::Motion, dry_run: false, trace: None, need: Need::Command, typed: None };
         let link = runtime.block_on(Family::connect(&robot, access, &quiet())).unwrap();
         Self { folder, runtime, robot, link }
     }
