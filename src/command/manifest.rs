@@ -224,9 +224,7 @@ pub fn existing<C: About>(folder: &Path) -> Result<Manifest<C>, Failure> {
     read(folder)?.ok_or_else(|| {
         let failure = Failure::local(format!("{} holds no {MANIFEST}", folder.display()));
         match folders_in(folder).first() {
-            Some(one) => {
-                failure.hint(format!("it has the backups of several robots: name one, as in {}", one.display()))
-            }
+            Some(one) => failure.hint(format!("the backups are in its folders: name one, as in {}", one.display())),
             None => failure.hint("name the folder of a backup; `armctl backup` makes one"),
         }
     })

@@ -23,7 +23,7 @@ use crate::settings::Robot;
 /// Saves points, pallets, shifts, hands, variables, parameters in a folder of text files.
 #[derive(Debug, Args)]
 #[command(after_help = "Programs are out of reach of remote commands: keep them with the controller's own tools.\n\n\
-                  A point takes as long as a remote command, a tenth of a second at an RPI of 20 ms. Without --points they \
+                  A point takes as long as a remote command: 60 ms and more at an RPI of 20 ms. Without --points they \
                   are read from 0 on until 100 in a row are not defined; besides, the points of pallets. manifest.json \
                   says which were read. A controller refuses what is not defined, and may note that in its history of \
                   alarms.")]
