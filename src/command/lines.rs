@@ -116,7 +116,7 @@ impl TextDifference {
 
 /// The unified form under the names of the two. A CR LF is what lines of a controller end in, so only other ends are shown,
 /// and a bare LF only beside lines that have CR LF.
-pub fn unified(old: String, new: String, hunks: &[Hunk]) -> Vec<Cell> {
+pub fn unified(old: &str, new: &str, hunks: &[Hunk]) -> Vec<Cell> {
     let mut shown =
         vec![Cell::from(format!("--- {old}")).tone(Tone::Bad), Cell::from(format!("+++ {new}")).tone(Tone::Good)];
     let marks_lf = hunks.iter().flat_map(|hunk| &hunk.lines).any(|line| line.ending == Ending::CrLf);

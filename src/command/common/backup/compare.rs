@@ -100,7 +100,7 @@ impl Differences {
             .hint("compare backups of one family"));
         }
         let both = a.files.iter().chain(&b.files).map(|entry| entry.name.as_str());
-        only.check(both.chain([CONTROLLER]))?;
+        only.check(&both.chain([CONTROLLER]).collect::<Vec<_>>())?;
         let mut files: Vec<FileDifference> = Vec::new();
         if only.has(CONTROLLER) {
             files.extend(of_controllers(a, b)?);
@@ -312,7 +312,7 @@ impl Report for Differences {
                 "" => format!("{of}: {}", file.name),
                 own => of.of(own),
             };
-            view = view.and(Section::Lines(unified(named(&self.old), named(&self.new), hunks)));
+            view = view.and(Section::Lines(unified(&named(&self.old), &named(&self.new), hunks)));
         }
         let mut table = Table::new(&["name", "result"], "");
         for file in self.files.iter().filter(|file| file.state != State::Same) {

@@ -78,7 +78,8 @@ impl Tolerance {
     /// The new text, with the old line in place of each that is the same position but for a little. Files that hold no
     /// positions stay as they are.
     pub fn align(self, entry: &Entry, old: &[u8], new: &[u8]) -> Vec<u8> {
-        let is_table = entry.copy.as_ref().is_some_and(|copy| copy.file.ends_with(".csv"));
+        let ending = entry.copy.as_ref().and_then(|copy| copy.file.rsplit_once('.'));
+        let is_table = ending.is_some_and(|(_, ending)| ending == "csv");
         let kind = entry.holds.split(' ').next().unwrap_or_default();
         match (is_table, kind) {
             (true, "points" | "shifts" | "hands") => {
@@ -129,7 +130,7 @@ impl Tolerance {
 }
 
 /// What tells a position of a job or variable file from the others, as `C00001`, `BC00001`, `P001` do.
-fn position_key<'l>(line: &'l str) -> Option<&'l str> {
+fn position_key(line: &str) -> Option<&str> {
     let (name, _) = line.split_once('=')?;
     let digits = name.trim_start_matches(['B', 'E', 'C', 'P', 'X']);
     let is_position = !digits.is_empty() && digits.len() < name.len();
@@ -161,7 +162,7 @@ fn aligned(
 type Place = (String, String);
 
 /// The lines of a text, each with its place if it is a position.
-fn placed<'t>(text: &'t [u8], key: impl Fn(&str) -> Option<&str>) -> Vec<(Option<Place>, &'t [u8])> {
+fn placed(text: &[u8], key: impl Fn(&str) -> Option<&str>) -> Vec<(Option<Place>, &[u8])> {
     let mut headline = String::new();
     let mut lines = Vec::new();
     for line in text.split_inclusive(|byte| *byte == b'\n') {

@@ -173,7 +173,7 @@ impl From<PartResult> for Item {
         let count = |cells: u32| usize::try_from(cells).unwrap_or(usize::MAX);
         let (written, unchanged) =
             cells.map(|cells| (count(cells.cells_written), count(cells.cells_unchanged))).unzip();
-        Self { state, file, left_out, written, unchanged, error, ..Self::pending(part) }
+        Self { state, file, written, unchanged, left_out, error, ..Self::pending(part) }
     }
 }
 

@@ -129,7 +129,7 @@ impl Restore {
         let mut parts = Part::all(&tasks, &tasks);
         parts.retain(|part| manifest.entry(&part.to_string()).is_some_and(|entry| entry.copy.is_some()));
         let names: Vec<String> = parts.iter().map(ToString::to_string).collect();
-        self.patterns.check(names.iter().map(String::as_str))?;
+        self.patterns.check(&names)?;
         parts.retain(|part| self.only.is_empty() || self.only.iter().any(|only| only.has(*part)));
         parts.retain(|part| self.patterns.has(&part.to_string()));
         if parts.is_empty() {

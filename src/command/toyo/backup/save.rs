@@ -113,7 +113,7 @@ impl Backup {
         let mut chosen = parts(link, &controller, scope.iter().any(|word| word == CURRENT_TASK)).await?;
         let only = Only::of_scope(&scope);
         let names: Vec<String> = chosen.iter().map(ToString::to_string).collect();
-        only.check(names.iter().map(String::as_str))?;
+        only.check(&names)?;
         chosen.retain(|part| only.has(&part.to_string()));
         make_folder(folder)?;
         let mut manifest = Manifest::new(robot, controller.clone(), scope);

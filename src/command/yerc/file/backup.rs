@@ -108,7 +108,7 @@ impl Command for Backup {
         drop(looking);
         let shown = |name: &[u8]| link.encoding.decode(name);
         let names: Vec<String> = work.iter().map(|(_, name)| shown(name)).collect();
-        only.check(names.iter().map(String::as_str))?;
+        only.check(&names)?;
         work.retain(|(_, name)| only.has(&shown(name)));
         make_folder(&folder)?;
         let mut manifest = Manifest::new(robot, controller, scope.clone());

@@ -169,7 +169,7 @@ impl Report for Difference {
             Some(hunks) if !self.equal && self.only_line_endings == Some(false) => {
                 let hunks: Vec<lines::Hunk> = hunks.iter().map(lines::Hunk::from).collect();
                 let old = format!("{} (controller)", self.name.name);
-                View::default().and(Section::Lines(lines::unified(old, self.path.clone(), &hunks)))
+                View::default().and(Section::Lines(lines::unified(&old, &self.path, &hunks)))
             }
             Some(hunks) if !self.equal => {
                 let ends = |bare: Change| {

@@ -22,6 +22,7 @@ use crate::failure::{Failure, Kind};
 
 /// Sends the files of a backup back.
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub struct Restore {
     /// Folder of the backup
     folder: PathBuf,
@@ -160,7 +161,7 @@ impl Restore {
             }
         }
         let copied = || manifest.files.iter().filter(|entry| entry.copy.is_some());
-        self.patterns.check(copied().map(|entry| entry.name.as_str()))?;
+        self.patterns.check(&copied().map(|entry| entry.name.as_str()).collect::<Vec<_>>())?;
         let mut chosen = Vec::new();
         for entry in copied().filter(|entry| self.patterns.has(&entry.name)) {
             let file = controller_file(entry)?;

@@ -328,7 +328,7 @@ fn bar(screen: &Screen, what: &str, count: usize) -> Progress {
 
 async fn info(link: &mut Link, controller: &Controller) -> Result<String, Failure> {
     let mut text = String::from("# What the controller is. Nothing of it is written back.\n");
-    let mut line = |name: &str, value: String| text.push_str(&format!("{name} = {value:?}\n"));
+    let mut add = |name: &str, value: String| text.push_str(&format!("{name} = {value:?}\n"));
     for (command, keys) in
         [(Command::Versions, &VERSIONS[..]), (Command::Slots, &[Key::Slot1, Key::Slot2, Key::Slot3, Key::Slot4][..])]
     {
@@ -336,9 +336,11 @@ async fn info(link: &mut Link, controller: &Controller) -> Result<String, Failur
         let order = if command == Command::Slots { draft.with(Key::Controller, 1) } else { draft }.build()?;
         match ask(link, &order).await? {
             Ok(values) => {
-                keys.iter().for_each(|key| line(key.name(), shown(command, &values, *key).unwrap_or_default()))
+                for key in keys {
+                    add(key.name(), shown(command, &values, *key).unwrap_or_default());
+                }
             }
-            Err(alarm) => line(order.row().id, format!("refused with alarm {alarm}")),
+            Err(alarm) => add(order.row().id, format!("refused with alarm {alarm}")),
         }
     }
     for Robot { robot, robot_type, axes } in &controller.robots {
@@ -379,7 +381,7 @@ async fn settings(link: &mut Link, controller: &Controller) -> Result<(String, V
             }
         }
     }
-    keep_writable(&mut rows, &mut left_out, |row| setting_store(row));
+    keep_writable(&mut rows, &mut left_out, setting_store);
     Ok((rows::write(&SETTING_COLUMNS, &rows), left_out))
 }
 
@@ -401,9 +403,10 @@ async fn parameters(
     let mut wanted = Vec::new();
     for Robot { robot, axes, .. } in &controller.robots {
         for parameter in PARAMETERS.iter().filter(|parameter| parameter.name != "WEIGHT") {
-            match parameter.per_axis {
-                true => wanted.extend(axes.iter().map(|axis| (*robot, parameter.name, axis.to_string()))),
-                false => wanted.push((*robot, parameter.name, String::new())),
+            if parameter.per_axis {
+                wanted.extend(axes.iter().map(|axis| (*robot, parameter.name, axis.to_string())));
+            } else {
+                wanted.push((*robot, parameter.name, String::new()));
             }
         }
     }
@@ -419,7 +422,7 @@ async fn parameters(
         }
         progress.advance(1);
     }
-    keep_writable(&mut rows, &mut left_out, |row| parameter_store(row));
+    keep_writable(&mut rows, &mut left_out, parameter_store);
     Ok((rows::write(&PARAMETER_COLUMNS, &rows), left_out))
 }
 
@@ -453,11 +456,16 @@ pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
     let path = folder.join(part.file());
     let text = std::fs::read_to_string(&path).map_err(|error| Failure::io(path.display(), &error))?;
     let wrong = |why: String| Failure::usage(format!("{}: {why}", path.display())).hint("make a new backup");
-    let (columns, store): (Vec<&str>, Box<dyn Fn(&Row) -> Result<Store, Failure>>) = match (part, part.records()) {
-        (_, Some(records)) => (records.names(), Box::new(|row| records.store(row))),
-        (Part::Settings, _) => (SETTING_COLUMNS.into(), Box::new(setting_store)),
-        (Part::Parameters, _) => (PARAMETER_COLUMNS.into(), Box::new(parameter_store)),
+    let columns = match (part, part.records()) {
+        (_, Some(records)) => records.names(),
+        (Part::Settings, _) => SETTING_COLUMNS.into(),
+        (Part::Parameters, _) => PARAMETER_COLUMNS.into(),
         _ => return Ok(Vec::new()),
+    };
+    let store = |row: &Row| match part.records() {
+        Some(records) => records.store(row),
+        None if part == Part::Settings => setting_store(row),
+        None => parameter_store(row),
     };
     let mut seen = BTreeSet::new();
     let mut stores = Vec::new();

@@ -82,7 +82,7 @@ impl Command for Restore {
         let manifest: manifest::Manifest<Controller> = manifest::existing(&folder)?;
         let only = Only(self.only.clone());
         let saved = || manifest.files.iter().filter(|entry| entry.copy.is_some());
-        only.check(saved().map(|entry| entry.name.as_str()))?;
+        only.check(&saved().map(|entry| entry.name.as_str()).collect::<Vec<_>>())?;
         let mut jobs = Vec::new();
         for part in Part::in_order_of_writing().filter(|part| only.has(&part.to_string()) && *part != Part::Info) {
             let Some(copy) = manifest.entry(&part.to_string()).and_then(|entry| entry.copy.as_ref()) else { continue };

@@ -119,7 +119,7 @@ impl Asked {
         let points = Some(Numbers::of(&ranges).into_iter().collect()).filter(|_| !ranges.is_empty());
         let only = Only::of_scope(scope);
         let names: Vec<String> = Part::all().map(|part| part.to_string()).collect();
-        only.check(names.iter().map(String::as_str))?;
+        only.check(&names)?;
         Ok(Self { only, points })
     }
 
@@ -217,10 +217,9 @@ impl Saving<'_> {
             let defined = if is_saved { content::defined(part, self.folder)? } else { Vec::new() };
             gap = gap_after(gap, within, &defined);
             let comments = Part::Comments(thousand);
-            if !defined.is_empty() && self.asked.has(comments) {
-                if self.part(manifest, comments, Some(Wanted::all(defined))).await? == Had::End {
-                    return Ok(false);
-                }
+            let is_wanted = !defined.is_empty() && self.asked.has(comments);
+            if is_wanted && self.part(manifest, comments, Some(Wanted::all(defined))).await? == Had::End {
+                return Ok(false);
             }
         }
         Ok(true)
