@@ -16,6 +16,15 @@ use crate::transport::session::wire::Peer;
 
 /// The session that holds the robot's link, if there is one and `--no-session` does not go around it.
 pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
+    let attached = attach_if_there(robot, access, screen).await?;
+    if attached.is_none() && robot.sessions == Sessions::Only {
+        let failure = Failure::new(Kind::NoAnswer, format!("{}: no session holds its link", robot.label()));
+        return Err(failure.hint("`armctl session open` opens one"));
+    }
+    Ok(attached)
+}
+
+async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
     if robot.sessions == Sessions::None || access.dry_run {
         return Ok(None);
     }

@@ -9,6 +9,8 @@ pub enum ValueKind {
     Robot,
     /// A robot of the inventory, or a target URL.
     RobotOrUrl,
+    /// A robot whose link a session holds.
+    Session,
     /// A tag of the inventory.
     Tag,
     /// A target URL.
@@ -21,6 +23,10 @@ pub enum ValueKind {
     Schema,
     /// A code that `explain` explains.
     Code(Family),
+    /// A job of a yerc controller.
+    YercJob,
+    /// A file of a yerc controller.
+    YercFile,
     /// The beginning of a reference to variables of a yerc controller: `B`.
     YercVariable,
     /// A parameter of a Toyo controller, by name or id.
@@ -35,8 +41,18 @@ pub enum ValueKind {
     YrcxInputState,
     /// A dedicated signal that a YRCX shows.
     YrcxOutput,
+    /// A port of a YRCX.
+    YrcxPort,
+    /// A port of a YRCX that can be switched.
+    YrcxOutputPort,
     /// A parameter of a YRCX.
     YrcxParameter,
+    /// A task of a YRCX.
+    YrcxTask,
+    /// A program of a YRCX by its number.
+    YrcxProgram,
+    /// A program of a YRCX by its name.
+    YrcxProgramName,
     /// A static variable of a YRCX.
     YrcxVariable,
 }

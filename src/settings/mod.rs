@@ -121,6 +121,8 @@ pub enum Sessions {
     None,
     /// Those of this user.
     Shared,
+    /// The same, and no other way: what is held by none is not reached.
+    Only,
     /// The same, but simulators are this process's own, where it runs several command lines.
     OwnSimulators,
 }

@@ -5,6 +5,7 @@
 
 use std::ffi::{OsStr, OsString};
 use std::sync::Arc;
+use std::time::Duration;
 
 use clap::builder::ArgExt;
 use clap::{Arg, ArgAction, ArgMatches, Command, CommandFactory as _};
@@ -12,7 +13,7 @@ use clap_complete::engine::{ArgValueCompleter, CompletionCandidate};
 
 use super::Candidate;
 use super::values::{self, Context};
-use crate::cli::Cli;
+use crate::cli::{Cli, Globals};
 use crate::command::ValueKind;
 
 /// How candidates are marked, on their way through the engine, behind which more must follow.
@@ -22,11 +23,16 @@ const BEGUN: &str = "begun";
 impl ArgExt for ValueKind {}
 
 /// What could stand behind `before`, where `current` was typed; `None` where that cannot be told.
-pub(super) fn complete(mut before: Vec<OsString>, current: &OsStr) -> Option<Vec<Candidate>> {
+pub(super) fn complete(
+    mut before: Vec<OsString>,
+    current: &OsStr,
+    all: Option<&Globals>,
+    patience: Duration,
+) -> Option<Vec<Candidate>> {
     let mut root = Cli::command().ignore_errors(true);
     let matches = root.try_get_matches_from_mut(&before).ok()?;
     let path = path(&matches);
-    let context = Arc::new(Context::new(&matches));
+    let context = Arc::new(Context::new(&matches, all, patience));
     let mut narrowed = narrow(&root, &path, &context)?;
     // They are many, and the process ends: see `words` of app.rs.
     std::mem::forget(root);

@@ -3,7 +3,7 @@ use super::*;
 /// The candidates for the word behind the last blank.
 fn found(line: &str) -> Vec<String> {
     let words: Vec<OsString> = line.split(' ').map(Into::into).collect();
-    complete(&words, words.len() - 1).into_iter().map(|candidate| candidate.value).collect()
+    complete(&words, words.len() - 1, None).into_iter().map(|candidate| candidate.value).collect()
 }
 
 #[test]
@@ -47,6 +47,8 @@ fn values_are_those_of_their_kind() {
         ("armctl yrcx io set alarm-res", &["alarm-reset=on", "alarm-reset=off"]),
         ("armctl yrcx param get TOLE,OUT", &["TOLE,OUTPOS"]),
         ("armctl yrcx var get SGR3", &["SGR3", "SGR30", "SGR31"]),
+        ("armctl yrcx port set DO2", &["DO2", "DO20", "DO27"]),
+        ("armctl yrcx port get LO", &["LO0", "LO1"]),
         ("armctl yerc var get B", &["B", "BP"]),
         ("armctl yerc --target s", &["sim:", "serial://"]),
         ("armctl session open --family t", &["toyo"]),
@@ -70,7 +72,7 @@ fn robots_and_tags_are_those_of_the_inventory() {
     let config = file.to_str().unwrap();
     let candidates = |line: &str| {
         let words: Vec<OsString> = line.replace("ROBOTS", config).split(' ').map(Into::into).collect();
-        let found = complete(&words, words.len() - 1);
+        let found = complete(&words, words.len() - 1, None);
         found.into_iter().map(|found| (found.value, found.help.unwrap_or_default())).collect::<Vec<_>>()
     };
     let pair = |value: &str, help: &str| (value.to_owned(), help.to_owned());
@@ -100,6 +102,39 @@ fn every_line_has_an_answer() {
     ] {
         found(line);
     }
-    assert_eq!(complete(&[], 0), []);
-    assert_eq!(complete(&["armctl".into()], 7), complete(&["armctl".into(), "".into()], 1));
+    assert_eq!(complete(&[], 0, None), []);
+    assert_eq!(complete(&["armctl".into()], 7, None), complete(&["armctl".into(), "".into()], 1, None));
+}
+
+/// The same with the help of each; a busy machine has time to answer.
+fn asked(line: &str) -> Vec<(String, String)> {
+    let words: Vec<OsString> = line.split(' ').map(Into::into).collect();
+    let found = complete_within(&words, words.len() - 1, None, Duration::from_secs(60));
+    found.into_iter().map(|found| (found.value, found.help.unwrap_or_default())).collect()
+}
+
+#[test]
+fn simulators_tell_what_they_have() {
+    let has = |line: &str, value: &str, help: &str| {
+        let found = asked(line);
+        assert!(found.contains(&(value.to_owned(), help.to_owned())), "{line}: {found:?}");
+    };
+    has("armctl --sim yerc job select TE", "TESTJOB", "");
+    has("armctl -t sim: yerc file get ", "TOOL.CND", "cnd");
+    has("yerc --sim file delete test", "TESTJOB.JBI", "jbi");
+    has("armctl yrcx --sim program show --task ", "1", "stop");
+    has("armctl yrcx program run --sim --name M", "MAIN", "program 1: task 1, stop");
+    has("armctl yrcx program run --sim --program=", "--program=1", "MAIN: task 1, stop");
+}
+
+#[test]
+fn no_link_is_opened_for_a_candidate() {
+    // Whoever listens there hears nothing.
+    let socket = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
+    socket.set_nonblocking(true).unwrap();
+    let target = format!("udp://{}", socket.local_addr().unwrap());
+    for line in ["armctl -t TARGET yerc job select W", "armctl -t TARGET --no-session yerc file get W"] {
+        assert_eq!(asked(&line.replace("TARGET", &target)), []);
+    }
+    assert_eq!(socket.recv(&mut [0; 64]).unwrap_err().kind(), std::io::ErrorKind::WouldBlock);
 }

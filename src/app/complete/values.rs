@@ -2,11 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
+use std::time::Duration;
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args as _, Command, FromArgMatches as _};
 
 use super::Candidate;
+use super::live::{self, Wish};
+use crate::app::ready::{Need, sources};
 use crate::cli::Globals;
 use crate::command::ValueKind;
 use crate::command::common::{help, schema};
@@ -17,18 +20,24 @@ use crate::controller::toyo::table::parameters::PARAMETERS;
 use crate::controller::yerc::status;
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::controller::yrcx::{alarm, table};
+use crate::settings::Sources;
 use crate::settings::inventory::{Inventory, Location};
 use crate::settings::target::Family;
+use crate::transport::session::place::{Place, Spot};
 
 /// What the rest of the line says about robots and settings.
 #[derive(Debug)]
 pub(super) struct Context {
     globals: Option<Globals>,
+    /// Whether it is a line among others of this process.
+    is_among: bool,
+    /// How long a controller may take.
+    patience: Duration,
 }
 
 impl Context {
     /// From what could be parsed of a line. Flags of one command with a mistake leave those of every command as they are.
-    pub fn new(matches: &ArgMatches) -> Self {
+    pub fn new(matches: &ArgMatches, all: Option<&Globals>, patience: Duration) -> Self {
         let command = Globals::augment_args(Command::new("armctl"));
         let given = command.get_arguments().flat_map(|argument| {
             let id = argument.get_id().as_str();
@@ -48,7 +57,16 @@ impl Context {
         let words: Vec<_> = std::iter::once("armctl".into()).chain(given).collect();
         let parsed = command.try_get_matches_from(words);
         let globals = parsed.and_then(|matches| Globals::from_arg_matches(&matches)).ok();
-        Self { globals }
+        let globals = globals.map(|globals| if let Some(all) = all { globals.within(all) } else { globals });
+        Self { globals, is_among: all.is_some(), patience }
+    }
+
+    fn sources(&self) -> Option<Sources> {
+        sources(self.globals.clone()?, Need::Inventory, self.is_among).ok()
+    }
+
+    fn live(&self, wish: Wish) -> Vec<Candidate> {
+        self.sources().map_or_else(Vec::new, |sources| live::values(wish, &sources, self.patience))
     }
 
     fn inventory(&self) -> Option<Inventory> {
@@ -84,6 +102,11 @@ fn all(kind: ValueKind, context: &Context) -> Vec<Candidate> {
         ValueKind::HelpWord => help::topics().map(|(name, about)| Candidate::new(name, about)).collect(),
         ValueKind::Schema => schema::all().iter().map(|entry| Candidate::new(entry.id, "")).collect(),
         ValueKind::Code(family) => codes(family),
+        ValueKind::YercJob => context.live(Wish::Jobs),
+        ValueKind::YercFile => context.live(Wish::Files),
+        ValueKind::YrcxTask => context.live(Wish::Tasks),
+        ValueKind::YrcxProgram => context.live(Wish::Programs),
+        ValueKind::YrcxProgramName => context.live(Wish::ProgramNames),
         ValueKind::YercVariable => variable_kinds(),
         ValueKind::ToyoParameter => PARAMETERS.iter().map(|row| Candidate::new(row.name, row.about)).collect(),
         ValueKind::ToyoInstruction => INSTRUCTIONS.iter().map(|row| Candidate::new(row.word, row.about)).collect(),
@@ -94,6 +117,9 @@ fn all(kind: ValueKind, context: &Context) -> Vec<Candidate> {
         ValueKind::YrcxParameter => {
             table::parameter::PARAMETERS.iter().map(|row| Candidate::new(row.name, row.meaning)).collect()
         }
+        ValueKind::YrcxPort => ports(false),
+        ValueKind::YrcxOutputPort => ports(true),
+        ValueKind::Session => sessions(),
         ValueKind::YrcxVariable => static_variables(),
     }
 }
@@ -165,6 +191,28 @@ fn signals(side: Side, ending: &str) -> Vec<Candidate> {
     dedicated
         .map(|row| Candidate::new(format!("{}{ending}", row.name), format!("{}: {}", row.text, row.effect)))
         .collect()
+}
+
+/// Ports of eight signals; those that can be switched, or all.
+fn ports(can_switch: bool) -> Vec<Candidate> {
+    let all = |letters: &'static str, from: u16, to: u16, about: &'static str| {
+        let numbers = (from..=to).filter(|number| number % 10 < 8);
+        numbers.map(move |number| Candidate::new(format!("{letters}{number}"), about))
+    };
+    let first = if can_switch { 2 } else { 0 };
+    let outputs = all("DO", first, 27, "parallel outputs")
+        .chain(all("MO", first, 27, "internal outputs"))
+        .chain(all("SO", first, 27, "serial outputs"))
+        .chain(all("LO", 0, 1, "arm lock outputs"))
+        .chain(all("TO", 0, 0, "timer outputs"));
+    let inputs = all("DI", 0, 27, "parallel inputs").chain(all("SI", 0, 27, "serial inputs"));
+    if can_switch { outputs.collect() } else { inputs.chain(outputs).collect() }
+}
+
+/// Whose link is held by a session.
+fn sessions() -> Vec<Candidate> {
+    let spots = Place::find().ok().flatten().and_then(|place| place.spots().ok()).unwrap_or_default();
+    spots.iter().filter_map(Spot::owner).map(|info| Candidate::new(info.robot, info.target)).collect()
 }
 
 /// `SGI0` to `SGR31`.

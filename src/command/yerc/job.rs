@@ -12,6 +12,7 @@ use super::Family;
 use super::link::{Link, Refusal};
 use super::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost};
 use super::orders::{refuse_controls, usage};
+use crate::command::ValueKind;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::text::{Encoding, Name};
@@ -161,6 +162,7 @@ impl Report for Jobs {
 #[derive(Debug, Args)]
 pub struct Select {
     /// Its name, without .JBI
+    #[arg(add = ValueKind::YercJob)]
     name: String,
     /// Line to start at
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=9999))]

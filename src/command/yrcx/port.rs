@@ -8,6 +8,7 @@ use super::numbers::{named, single};
 use super::several::ask_all;
 use super::single::Single;
 use super::{Family, link};
+use crate::command::ValueKind;
 use crate::command::orders::Done;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::{Draft, Order};
@@ -103,7 +104,7 @@ impl Place {
 #[command(after_help = NAMES)]
 pub struct Get {
     /// Ports, or signals of them
-    #[arg(required = true, value_name = "PORT", value_delimiter = ',', value_parser = place)]
+    #[arg(required = true, value_name = "PORT", value_delimiter = ',', value_parser = place, add = ValueKind::YrcxPort)]
     places: Vec<Place>,
 }
 
@@ -165,7 +166,7 @@ impl Report for Ports {
 #[command(after_help = NAMES)]
 pub struct Set {
     /// A port, or a signal of one
-    #[arg(value_name = "PORT", value_parser = signal_or_port)]
+    #[arg(value_name = "PORT", value_parser = signal_or_port, add = ValueKind::YrcxOutputPort)]
     place: Place,
     /// For a port 0 to 255, also as 0x07 or 0b00000111; for a signal on or off
     #[arg(value_name = "VALUE", value_parser = value)]

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::single::Single;
 use super::{Family, link};
+use crate::command::ValueKind;
 use crate::command::orders::Done;
 use crate::command::{Report, commands};
 use crate::controller::yrcx::order::Draft;
@@ -39,13 +40,13 @@ commands! {
 #[group(required = true, multiple = false)]
 struct Which {
     /// Program by its number, 1 to 100
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", add = ValueKind::YrcxProgram)]
     program: Option<String>,
     /// Program by its name: the first 16 of A-Z, 0-9 and _
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", add = ValueKind::YrcxProgramName)]
     name: Option<String>,
     /// Program by the task that it is registered in, 1 to 16
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", add = ValueKind::YrcxTask)]
     task: Option<String>,
 }
 
@@ -54,13 +55,13 @@ struct Which {
 #[group(required = true, multiple = false)]
 struct WhichOrAll {
     /// Program by its number, 1 to 100
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", add = ValueKind::YrcxProgram)]
     program: Option<String>,
     /// Program by its name: the first 16 of A-Z, 0-9 and _
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", add = ValueKind::YrcxProgramName)]
     name: Option<String>,
     /// Program by the task that it is registered in, 1 to 16
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", add = ValueKind::YrcxTask)]
     task: Option<String>,
     /// All programs that are registered
     #[arg(long)]
@@ -110,10 +111,10 @@ impl WhichOrAll {
 #[group(required = true, multiple = false)]
 struct Registered {
     /// Program by its number, 1 to 100
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", add = ValueKind::YrcxProgram)]
     program: Option<String>,
     /// Program by its name: the first 16 of A-Z, 0-9 and _
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", add = ValueKind::YrcxProgramName)]
     name: Option<String>,
 }
 

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::list::spots;
 use crate::command::Report;
+use crate::command::ValueKind;
 use crate::command::attach::{no_place, refused};
 use crate::command::run::{Run, Stopped};
 use crate::failure::{Failure, Kind};
@@ -20,6 +21,7 @@ use crate::transport::session::wire::Info;
 #[derive(Debug, Args)]
 pub struct Close {
     /// Robots whose sessions shall end, by name or target URL; -r, -t and --all name them, too
+    #[arg(add = ValueKind::Session)]
     names: Vec<String>,
     /// Although a motion is under way, which a controller then breaks off
     #[arg(long)]

@@ -5,6 +5,7 @@ use clap::Args;
 use super::name::{self, Shown};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
+use crate::command::ValueKind;
 use crate::command::yerc::Family;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -15,7 +16,7 @@ use crate::failure::Failure;
 #[derive(Debug, Args)]
 pub struct Delete {
     /// Names in full, such as TESTJOB.JBI
-    #[arg(required = true, value_name = "NAME")]
+    #[arg(required = true, value_name = "NAME", add = ValueKind::YercFile)]
     names: Vec<String>,
 }
 

@@ -10,6 +10,7 @@ use super::compare::{Comparer, Comparison};
 use super::content::Content;
 use super::name::{self, Shown};
 use super::transfer;
+use crate::command::ValueKind;
 use crate::command::lines::{self, Change, Ending, Line, MOST_TEXT, TextDifference};
 use crate::command::local::{local_name, own_folder};
 use crate::command::yerc::Family;
@@ -21,6 +22,7 @@ use crate::output::view::{Section, View};
 #[derive(Debug, Args)]
 pub struct Diff {
     /// Name on the controller
+    #[arg(add = ValueKind::YercFile)]
     name: String,
     /// Local file; without it, the one of that name in this folder
     #[arg(value_name = "FILE")]

@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::name::{self, Shown};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
+use crate::command::ValueKind;
 use crate::command::local::{LocalNames, Target, make_folder, own_folder};
 use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
@@ -23,7 +24,7 @@ use crate::output::{Screen, escape};
 #[derive(Debug, Args)]
 pub struct Get {
     /// Names in full, such as TESTJOB.JBI
-    #[arg(required = true, value_name = "NAME")]
+    #[arg(required = true, value_name = "NAME", add = ValueKind::YercFile)]
     names: Vec<String>,
     /// Folder to put them in; - writes one file to stdout
     #[arg(long, value_name = "DIR", default_value = ".")]
