@@ -2,13 +2,19 @@
 
 use std::ffi::OsString;
 
-use clap::{Command, CommandFactory as _, FromArgMatches as _, Subcommand};
+use clap::error::ErrorKind;
+use clap::{ArgMatches, Args as _, Command, CommandFactory as _, FromArgMatches, Subcommand};
 
 use crate::cli::{Cli, OfToyo, OfYerc, OfYrcx, Top, Words};
+use crate::command::Noun as _;
+use crate::command::common::Common;
+use crate::command::toyo::Toyo;
+use crate::command::yerc::Yerc;
+use crate::command::yrcx::{Unit, Yrcx};
 use crate::settings::target::Family;
 
-/// Reads command lines. To lay out all commands takes longer than all the rest of a short one, so a line that names a
-/// family is tried on that family alone, and what was laid out serves the next line, too.
+/// Reads command lines. To lay out all commands takes longer than all the rest of a short one, so a line is tried on the
+/// words that it names alone. What was laid out as a whole serves the next line, too.
 #[derive(Debug, Default)]
 pub struct Parser {
     yerc: Option<Command>,
@@ -18,17 +24,19 @@ pub struct Parser {
 }
 
 impl Parser {
-    /// Reads a line, the program's name included. What does not parse as one of its family is left to the whole, which
+    /// Reads a line, the program's name included. What does not parse on the words it names is left to the whole, which
     /// knows more to say about it.
     pub fn parse(&mut self, args: &[OsString]) -> Result<Cli, clap::Error> {
-        let family = args.iter().skip(1).find_map(|word| word.to_str()?.parse::<Family>().ok());
-        let tried = match family {
-            Some(Family::Yerc) => words::<OfYerc>(&mut self.yerc, args).map(|words| words.into_top(Top::Yerc)),
-            Some(Family::Yrcx) => words::<OfYrcx>(&mut self.yrcx, args).map(|words| words.into_top(Top::Yrcx)),
-            Some(Family::Toyo) => words::<OfToyo>(&mut self.toyo, args).map(|words| words.into_top(Top::Toyo)),
-            None => return words(&mut self.all, args),
+        let narrowed = match first(args) {
+            Some(First::Family(Family::Yerc)) => named::<OfYerc>(args).map(|words| words.into_top(Top::Yerc)),
+            Some(First::Family(Family::Yrcx)) => named::<OfYrcx>(args).map(|words| words.into_top(Top::Yrcx)),
+            Some(First::Family(Family::Toyo)) => named::<OfToyo>(args).map(|words| words.into_top(Top::Toyo)),
+            Some(First::Common) => {
+                read(&mut Words::<Common>::command(), args).ok().map(|words| words.into_top(Top::Common))
+            }
+            None => None,
         };
-        tried.or_else(|_| words(&mut self.all, args))
+        narrowed.map_or_else(|| words(&mut self.all, args), Ok)
     }
 
     /// Whose command a word is: of this family, of all (`None`), or of nobody.
@@ -59,14 +67,125 @@ fn laid_out<C: Subcommand>(command: &mut Option<Command>) -> &mut Command {
 }
 
 fn words<C: Subcommand>(command: &mut Option<Command>, args: &[OsString]) -> Result<Words<C>, clap::Error> {
-    let command = laid_out::<C>(command);
+    read(laid_out::<C>(command), args)
+}
+
+fn read<C: Subcommand>(command: &mut Command, args: &[OsString]) -> Result<Words<C>, clap::Error> {
     let parsed = command.try_get_matches_from_mut(args);
     let words = parsed.and_then(|mut matches| Words::from_arg_matches_mut(&mut matches));
     words.map_err(|error| error.format(command))
 }
 
+/// Whose the first word of a line is, as far as can be told without knowing which words are values of flags.
+enum First {
+    Family(Family),
+    Common,
+}
+
+fn first(args: &[OsString]) -> Option<First> {
+    args.iter().skip(1).filter_map(|word| word.to_str()).find_map(|word| match word.parse() {
+        Ok(family) => Some(First::Family(family)),
+        Err(_) => Common::has_subcommand(word).then_some(First::Common),
+    })
+}
+
+/// A family whose words can be laid out as far as a line names them.
+trait Narrow: Subcommand {
+    fn lay_out(is_named: &dyn Fn(&str) -> bool) -> Command;
+}
+
+impl Narrow for OfYerc {
+    fn lay_out(is_named: &dyn Fn(&str) -> bool) -> Command {
+        Yerc::lay_out(Command::new(Family::Yerc.name()), is_named)
+    }
+}
+
+impl Narrow for OfYrcx {
+    fn lay_out(is_named: &dyn Fn(&str) -> bool) -> Command {
+        Yrcx::lay_out(Unit::augment_args(Command::new(Family::Yrcx.name())), is_named)
+    }
+}
+
+impl Narrow for OfToyo {
+    fn lay_out(is_named: &dyn Fn(&str) -> bool) -> Command {
+        Toyo::lay_out(Command::new(Family::Toyo.name()), is_named)
+    }
+}
+
+/// The line, read on the words that it names; `None` where that is not enough.
+fn named<C: Narrow>(args: &[OsString]) -> Option<Words<C>> {
+    let is_named = |name: &str| args.iter().any(|word| word == name);
+    let mut command = Words::<Nothing>::command().subcommand(C::lay_out(&is_named));
+    let words = read(&mut command, args).ok();
+    std::mem::forget(command);
+    words
+}
+
+/// No words at all.
+enum Nothing {}
+
+impl Subcommand for Nothing {
+    fn augment_subcommands(command: Command) -> Command {
+        command
+    }
+
+    fn augment_subcommands_for_update(command: Command) -> Command {
+        command
+    }
+
+    fn has_subcommand(_: &str) -> bool {
+        false
+    }
+}
+
+impl FromArgMatches for Nothing {
+    fn from_arg_matches(_: &ArgMatches) -> Result<Self, clap::Error> {
+        Err(clap::Error::new(ErrorKind::InvalidSubcommand))
+    }
+
+    fn update_from_arg_matches(&mut self, _: &ArgMatches) -> Result<(), clap::Error> {
+        match *self {}
+    }
+}
+
 impl<C: Subcommand> Words<C> {
     fn into_top(self, top: impl FnOnce(C) -> Top) -> Cli {
         Words { globals: self.globals, command: top(self.command) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Names and arguments of a command and all its verbs.
+    fn shape(command: &Command) -> Vec<String> {
+        let own = command.get_arguments().map(|argument| argument.get_id().to_string());
+        let verbs = command.get_subcommands().filter(|verb| verb.get_name() != "repl");
+        let verbs = verbs.flat_map(|verb| shape(verb).into_iter().map(|word| format!("{} {word}", verb.get_name())));
+        std::iter::once(String::new()).chain(own).chain(verbs).collect()
+    }
+
+    #[test]
+    fn what_is_named_is_laid_out_as_in_the_whole() {
+        let whole = Cli::command();
+        let all = [OfYerc::lay_out(&|_| true), OfYrcx::lay_out(&|_| true), OfToyo::lay_out(&|_| true)];
+        for family in all {
+            let wanted = whole.find_subcommand(family.get_name()).unwrap();
+            assert_eq!(shape(&family), shape(wanted));
+        }
+        let narrow = OfYerc::lay_out(&|name| ["job", "select"].contains(&name));
+        assert_eq!(narrow.get_subcommands().count(), 1);
+    }
+
+    #[test]
+    fn a_line_is_read_on_the_words_it_names() {
+        let args = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
+        assert!(named::<OfYerc>(&args("armctl yerc --sim job select --line 3 WELD -q")).is_some());
+        assert!(named::<OfYrcx>(&args("armctl --sim yrcx --unit 2 point get 5")).is_some());
+        for left_to_the_whole in ["armctl yerc", "armctl yerc stat", "armctl yerc status -h", "armctl yerc repl"] {
+            let is_read = named::<OfYerc>(&args(left_to_the_whole)).is_some();
+            assert_eq!(is_read, left_to_the_whole == "armctl yerc", "{left_to_the_whole}");
+        }
     }
 }

@@ -343,9 +343,15 @@ pub trait Noun<F: Family> {
     fn command(self) -> Box<dyn AnyCommand<F>>;
     /// The schemas of all its reports.
     fn schemas() -> Vec<SchemaEntry>;
+    /// Its part of the command line, as far as words are named: what a line does not name, it does not need.
+    fn lay_out(command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command;
 }
 
-impl<C: Command + 'static> Noun<C::Family> for C {
+impl<C: Command + clap::Args + 'static> Noun<C::Family> for C {
+    fn lay_out(command: clap::Command, _is_named: &dyn Fn(&str) -> bool) -> clap::Command {
+        C::augment_args(command)
+    }
+
     fn command(self) -> Box<dyn AnyCommand<C::Family>> {
         Box::new(self)
     }
@@ -356,6 +362,10 @@ impl<C: Command + 'static> Noun<C::Family> for C {
 }
 
 impl<F: Family, C: Desk + clap::Args + 'static> Noun<F> for AtDesk<C> {
+    fn lay_out(command: clap::Command, _is_named: &dyn Fn(&str) -> bool) -> clap::Command {
+        <Self as clap::Args>::augment_args(command)
+    }
+
     fn command(self) -> Box<dyn AnyCommand<F>> {
         Box::new(self)
     }
@@ -363,6 +373,16 @@ impl<F: Family, C: Desk + clap::Args + 'static> Noun<F> for AtDesk<C> {
     fn schemas() -> Vec<SchemaEntry> {
         vec![SchemaEntry::of::<C::Report>(C::ID)]
     }
+}
+
+/// How a variant is typed: `PositionError` as `position-error`.
+fn word(variant: &str) -> String {
+    let mut word = String::with_capacity(variant.len() + 2);
+    for (index, c) in variant.char_indices() {
+        word.extend((index > 0 && c.is_ascii_uppercase()).then_some('-'));
+        word.push(c.to_ascii_lowercase());
+    }
+    word
 }
 
 /// Declares a clap enum of nouns or verbs: doc comment, name, and the type that holds its arguments.
@@ -377,6 +397,18 @@ macro_rules! commands {
         }
 
         impl $crate::command::Noun<$family> for $name {
+            fn lay_out(mut command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command {
+                $(
+                    let name = $crate::command::word(stringify!($variant));
+                    if is_named(&name) {
+                        let verb = clap::Command::new(name);
+                        let verb = <$arguments as $crate::command::Noun<$family>>::lay_out(verb, is_named);
+                        command = command.subcommand(verb);
+                    }
+                )*
+                command
+            }
+
             fn command(self) -> Box<dyn $crate::command::AnyCommand<$family>> {
                 match self {
                     $(Self::$variant(arguments) => $crate::command::Noun::<$family>::command(arguments),)*
@@ -401,6 +433,10 @@ pub struct Verbs<V: clap::Subcommand> {
 }
 
 impl<F: Family, V: Noun<F> + clap::Subcommand> Noun<F> for Verbs<V> {
+    fn lay_out(command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command {
+        V::lay_out(command.subcommand_required(true), is_named)
+    }
+
     fn command(self) -> Box<dyn AnyCommand<F>> {
         self.verb.command()
     }

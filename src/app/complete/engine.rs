@@ -13,7 +13,7 @@ use clap_complete::engine::{ArgValueCompleter, CompletionCandidate};
 
 use super::Candidate;
 use super::values::{self, Context};
-use crate::cli::{Cli, Globals};
+use crate::cli::Cli;
 use crate::command::ValueKind;
 
 /// How candidates are marked, on their way through the engine, behind which more must follow.
@@ -26,13 +26,13 @@ impl ArgExt for ValueKind {}
 pub(super) fn complete(
     mut before: Vec<OsString>,
     current: &OsStr,
-    all: Option<&Globals>,
+    is_among: bool,
     patience: Duration,
 ) -> Option<Vec<Candidate>> {
     let mut root = Cli::command().ignore_errors(true);
     let matches = root.try_get_matches_from_mut(&before).ok()?;
     let path = path(&matches);
-    let context = Arc::new(Context::new(&matches, all, patience));
+    let context = Arc::new(Context::new(&matches, is_among, patience));
     let mut narrowed = narrow(&root, &path, &context)?;
     // They are many, and the process ends: see `words` of app.rs.
     std::mem::forget(root);

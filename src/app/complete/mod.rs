@@ -1,12 +1,12 @@
 //! Completion: what could stand at the cursor of a command line, with live values.
 //!
 //! ```text
-//! complete(words: &[OsString], index: usize, all: Option<&Globals>) -> Vec<Candidate { value, help, is_begun }>
+//! complete(words: &[OsString], index: usize, is_among: bool) -> Vec<Candidate { value, help, is_begun }>
 //! ```
 //!
 //! `words[0]` is the program (`armctl`, or `yerc` where it was started under that name), `words[index]` the word at the
 //! cursor as far as it was typed, maybe empty. The shells' scripts (`shell.rs`) and the line editor of `armctl repl` call
-//! the same function; the editor adds the flags that were given to all its lines. It prints nothing and fails at nothing: where nothing is known there are no candidates.
+//! the same function. It prints nothing and fails at nothing: where nothing is known there are no candidates.
 //!
 //! Arguments only name the [`ValueKind`] of their values: `#[arg(add = ValueKind::Robot)]`. Which values a kind has is in
 //! `values.rs`, those that only a controller knows in `live.rs`; the library that knows words and flags is unstable and stays in `engine.rs`.
@@ -22,7 +22,6 @@ use std::time::Duration;
 pub use shell::answer;
 
 use super::with_family;
-use crate::cli::Globals;
 
 /// Something that could stand at the cursor.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -46,19 +45,20 @@ impl Candidate {
     }
 }
 
-/// What could stand at `words[index]`, best first; in a line among others, with the flags that were given to all of them.
-pub fn complete(words: &[OsString], index: usize, all: Option<&Globals>) -> Vec<Candidate> {
-    complete_within(words, index, all, live::PATIENCE)
+/// What could stand at `words[index]`, best first; `is_among` other lines of this process, as at the prompt, where
+/// simulators live on from one line to the next.
+pub fn complete(words: &[OsString], index: usize, is_among: bool) -> Vec<Candidate> {
+    complete_within(words, index, is_among, live::PATIENCE)
 }
 
-fn complete_within(words: &[OsString], index: usize, all: Option<&Globals>, patience: Duration) -> Vec<Candidate> {
+fn complete_within(words: &[OsString], index: usize, is_among: bool, patience: Duration) -> Vec<Candidate> {
     let before: Vec<OsString> = words.iter().take(index).cloned().collect();
     let current = words.get(index).cloned().unwrap_or_default();
     if before.is_empty() {
         return Vec::new();
     }
     let before = with_family(before);
-    engine::complete(before, &current, all, patience).unwrap_or_default()
+    engine::complete(before, &current, is_among, patience).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -34,13 +34,13 @@ pub fn answer(args: &[OsString]) -> Option<String> {
         (Shell::Powershell, [before @ .., last]) => {
             let last = last.to_str().and_then(|last| last.strip_prefix('+')).unwrap_or_default();
             let words: Vec<OsString> = before.iter().cloned().chain([last.into()]).collect();
-            lines(&complete(&words, before.len(), None), described)
+            lines(&complete(&words, before.len(), false), described)
         }
-        (Shell::Fish, words) => lines(&complete(words, words.len() - 1, None), described),
+        (Shell::Fish, words) => lines(&complete(words, words.len() - 1, false), described),
         (Shell::Zsh, words) => {
-            lines(&complete(words, words.len() - 1, None), |found| format!("{}{}", sign(found), described(found)))
+            lines(&complete(words, words.len() - 1, false), |found| format!("{}{}", sign(found), described(found)))
         }
-        (Shell::Elvish, words) => lines(&complete(words, words.len() - 1, None), |found| found.value.clone()),
+        (Shell::Elvish, words) => lines(&complete(words, words.len() - 1, false), |found| found.value.clone()),
     })
 }
 
@@ -69,7 +69,7 @@ fn bash(line: &str, piece: &str, width: Option<usize>) -> String {
     let index = words.len() - 1;
     let current = words[index].to_string_lossy().into_owned();
     let words: Vec<OsString> = words.into_iter().collect();
-    let found = complete(&words, index, None);
+    let found = complete(&words, index, false);
     // The part of the word that bash took for words of their own.
     let piece = if quote.is_some() { piece.trim_start_matches(['"', '\'']) } else { piece };
     let kept = Split::of(piece).words.pop().map_or(0, |piece| piece.len());

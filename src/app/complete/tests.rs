@@ -3,7 +3,7 @@ use super::*;
 /// The candidates for the word behind the last blank.
 fn found(line: &str) -> Vec<String> {
     let words: Vec<OsString> = line.split(' ').map(Into::into).collect();
-    complete(&words, words.len() - 1, None).into_iter().map(|candidate| candidate.value).collect()
+    complete(&words, words.len() - 1, false).into_iter().map(|candidate| candidate.value).collect()
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn robots_and_tags_are_those_of_the_inventory() {
     let config = file.to_str().unwrap();
     let candidates = |line: &str| {
         let words: Vec<OsString> = line.replace("ROBOTS", config).split(' ').map(Into::into).collect();
-        let found = complete(&words, words.len() - 1, None);
+        let found = complete(&words, words.len() - 1, false);
         found.into_iter().map(|found| (found.value, found.help.unwrap_or_default())).collect::<Vec<_>>()
     };
     let pair = |value: &str, help: &str| (value.to_owned(), help.to_owned());
@@ -102,14 +102,14 @@ fn every_line_has_an_answer() {
     ] {
         found(line);
     }
-    assert_eq!(complete(&[], 0, None), []);
-    assert_eq!(complete(&["armctl".into()], 7, None), complete(&["armctl".into(), "".into()], 1, None));
+    assert_eq!(complete(&[], 0, false), []);
+    assert_eq!(complete(&["armctl".into()], 7, false), complete(&["armctl".into(), "".into()], 1, false));
 }
 
 /// The same with the help of each; a busy machine has time to answer.
 fn asked(line: &str) -> Vec<(String, String)> {
     let words: Vec<OsString> = line.split(' ').map(Into::into).collect();
-    let found = complete_within(&words, words.len() - 1, None, Duration::from_secs(60));
+    let found = complete_within(&words, words.len() - 1, false, Duration::from_secs(60));
     found.into_iter().map(|found| (found.value, found.help.unwrap_or_default())).collect()
 }
 

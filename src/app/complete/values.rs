@@ -37,7 +37,7 @@ pub(super) struct Context {
 
 impl Context {
     /// From what could be parsed of a line. Flags of one command with a mistake leave those of every command as they are.
-    pub fn new(matches: &ArgMatches, all: Option<&Globals>, patience: Duration) -> Self {
+    pub fn new(matches: &ArgMatches, is_among: bool, patience: Duration) -> Self {
         let command = Globals::augment_args(Command::new("armctl"));
         let given = command.get_arguments().flat_map(|argument| {
             let id = argument.get_id().as_str();
@@ -57,8 +57,7 @@ impl Context {
         let words: Vec<_> = std::iter::once("armctl".into()).chain(given).collect();
         let parsed = command.try_get_matches_from(words);
         let globals = parsed.and_then(|matches| Globals::from_arg_matches(&matches)).ok();
-        let globals = globals.map(|globals| if let Some(all) = all { globals.within(all) } else { globals });
-        Self { globals, is_among: all.is_some(), patience }
+        Self { globals, is_among, patience }
     }
 
     fn sources(&self) -> Option<Sources> {

@@ -42,18 +42,20 @@ impl Assistant {
         let Ok(before) = words::split(before) else { return (start, Vec::new()) };
         let typed = typed.trim_start_matches(['\'', '"']).replace('\\', "");
         let mut found: Vec<Pair> = Vec::new();
+        let mut is_whole = false;
         for mut words in self.meaning.borrow_mut().beginnings(&before) {
             words.splice(1..1, self.flags.iter().cloned());
             words.push(OsString::from(&typed));
-            for candidate in complete(&words, words.len() - 1) {
+            for candidate in complete(&words, words.len() - 1, true) {
                 let Some(replacement) = quoted(&candidate.value) else { continue };
                 if found.iter().all(|other| other.replacement != replacement) {
+                    is_whole = !candidate.is_begun;
                     found.push(Pair { display: candidate.value, replacement });
                 }
             }
         }
         if let [only] = &mut found[..]
-            && !only.replacement.ends_with(['=', '/', ':'])
+            && is_whole
         {
             only.replacement.push(' ');
         }
