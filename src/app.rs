@@ -2,6 +2,7 @@
 
 mod batch;
 mod complete;
+mod misplaced;
 mod parser;
 mod ready;
 mod repl;

@@ -216,6 +216,25 @@ fn both_licences_are_there() {
     }
 }
 
+/// Where what follows a mistake says more than a hint could: the usage, the caller, each use of a helper.
+const HINT_ELSEWHERE: [&str; 3] = ["app/repl.rs", "command/yrcx/backup/content.rs", "settings/inventory.rs"];
+
+#[test]
+fn every_mistake_has_a_hint() {
+    let mut wrong = Vec::new();
+    for source in sources() {
+        let is_test = source.name.contains("test") || HINT_ELSEWHERE.contains(&source.name.as_str());
+        let code = source.code.split("#[cfg(test)]").next().unwrap_or_default();
+        for (at, _) in code.match_indices("Failure::usage(").filter(|_| !is_test) {
+            let rest: String = code[at..].chars().take(500).collect();
+            if !rest.contains(".hint(") {
+                wrong.push(format!("src/{}:{}: what can be done about it?", source.name, code[..at].lines().count()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 #[test]
 fn completions_are_for_all_names_of_the_program() {
     use armctl::command::common::completions::Shell;

@@ -5,6 +5,7 @@ use std::ffi::OsString;
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Args as _, Command, CommandFactory as _, FromArgMatches, Subcommand};
 
+use super::misplaced;
 use crate::cli::{Cli, OfToyo, OfYerc, OfYrcx, Top, Words};
 use crate::command::Noun as _;
 use crate::command::common::Common;
@@ -36,7 +37,11 @@ impl Parser {
             }
             None => None,
         };
-        narrowed.map_or_else(|| words(&mut self.all, args), Ok)
+        if let Some(cli) = narrowed {
+            return Ok(cli);
+        }
+        let all = laid_out::<Top>(&mut self.all);
+        read(all, args).map_err(|error| misplaced::explained(error, args, all))
     }
 
     /// Whose command a word is: of this family, of all (`None`), or of nobody.
@@ -64,10 +69,6 @@ impl Parser {
 
 fn laid_out<C: Subcommand>(command: &mut Option<Command>) -> &mut Command {
     command.get_or_insert_with(Words::<C>::command)
-}
-
-fn words<C: Subcommand>(command: &mut Option<Command>, args: &[OsString]) -> Result<Words<C>, clap::Error> {
-    read(laid_out::<C>(command), args)
 }
 
 fn read<C: Subcommand>(command: &mut Command, args: &[OsString]) -> Result<Words<C>, clap::Error> {

@@ -7,6 +7,7 @@
 use std::time::Duration;
 
 mod entries;
+pub mod nearest;
 pub mod text;
 pub mod toyo;
 pub mod units;

@@ -50,7 +50,9 @@ impl Filter {
 
     /// Every value that the filter makes of `input`.
     pub fn apply(&self, input: &Value) -> Result<Vec<Value>, Failure> {
-        let wrong = |what: String| Failure::usage(format!("jq filter '{}': {what}", self.text));
+        let wrong = |what: String| {
+            Failure::usage(format!("jq filter '{}': {what}", self.text)).hint("--json shows what the filter is given")
+        };
         let input: Val = serde_json::from_value(input.clone()).map_err(|error| wrong(error.to_string()))?;
         let context = Ctx::<data::JustLut<Val>>::new(&self.program.lut, Vars::new([]));
         let results = self.program.id.run((context, input)).map(unwrap_valr);

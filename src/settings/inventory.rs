@@ -24,6 +24,7 @@ use toml::Spanned;
 
 use super::duration;
 use super::target::{Family, Target};
+use crate::controller::nearest::nearest;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
 use crate::failure::{Failure, plain};
@@ -213,12 +214,6 @@ impl Inventory {
 pub fn is_name(name: &str) -> bool {
     let plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
     !name.is_empty() && name.len() <= 64 && name.chars().all(plain)
-}
-
-/// The nearest of `known` to a mistyped `word`, if it is near enough to be meant.
-pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let scored = known.into_iter().map(|candidate| (strsim::jaro_winkler(word, candidate), candidate));
-    scored.filter(|(score, _)| *score > 0.75).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, candidate)| candidate)
 }
 
 /// Glob match with `*` and `?`.

@@ -9,10 +9,11 @@ pub mod target;
 use std::fmt;
 use std::time::Duration;
 
+use crate::controller::nearest::nearest;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
 use crate::failure::Failure;
-use inventory::{Entry, Inventory, Options, nearest};
+use inventory::{Entry, Inventory, Options};
 use target::{Family, Target};
 
 /// Where a setting came from.
@@ -266,6 +267,16 @@ impl Sources {
         }
         if selection.all || (selection.robots.is_empty() && !selection.tags.is_empty()) {
             chosen = self.inventory.robots.iter().collect();
+        }
+        for tag in &selection.tags {
+            let known = || self.inventory.robots.iter().flat_map(|robot| &robot.tags).map(String::as_str);
+            if !known().any(|known| known == tag) {
+                let failure = Failure::usage(format!("no robot of the inventory has the tag '{tag}'"));
+                return Err(match nearest(tag, known()) {
+                    Some(near) => failure.hint(format!("did you mean '{near}'?")),
+                    None => failure.hint("`armctl robots list` shows the robots with their tags"),
+                });
+            }
         }
         chosen.retain(|robot| selection.tags.iter().all(|tag| robot.tags.contains(tag)));
         // A family's command over a mixed fleet is for its own robots; that one was named in vain is an error below.

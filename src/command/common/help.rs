@@ -5,9 +5,9 @@ use clap::{Args, CommandFactory as _};
 use crate::cli::Cli;
 use crate::command::ValueKind;
 use crate::command::run::Run;
+use crate::controller::nearest::nearest;
 use crate::controller::{toyo, yerc, yrcx};
 use crate::failure::{Failure, Kind};
-use crate::settings::inventory::nearest;
 
 /// Explains a topic, or a command.
 #[derive(Debug, Args)]

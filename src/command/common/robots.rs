@@ -13,9 +13,10 @@ use toml_edit::{ArrayOfTables, DocumentMut, Item, value};
 use crate::command::Report;
 use crate::command::ValueKind;
 use crate::command::run::{Run, Stopped};
+use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Table, View};
-use crate::settings::inventory::{Inventory, is_name, nearest};
+use crate::settings::inventory::{Inventory, is_name};
 use crate::settings::target::{Family, Target};
 use crate::settings::{Setting, duration};
 
@@ -193,9 +194,12 @@ fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static 
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
         Err(error) => return Err(Failure::io(path.display(), &error)),
     };
-    let mut document: DocumentMut =
-        text.parse().map_err(|error| Failure::usage(format!("{}: {error}", path.display())))?;
-    change(&mut document).map_err(|why| Failure::usage(format!("{}: {why}", path.display())))?;
+    let wrong = |why: &dyn std::fmt::Display| {
+        Failure::usage(format!("{}: {why}", path.display()))
+            .hint("correct the file: `armctl help inventory` shows its form")
+    };
+    let mut document: DocumentMut = text.parse().map_err(|error| wrong(&error))?;
+    change(&mut document).map_err(|why| wrong(&why))?;
     let text = document.to_string();
     // What would not be read again is not written.
     Inventory::parse(&text, &path.display().to_string())?;

@@ -10,9 +10,9 @@ use crate::command::toyo::{self, Toyo};
 use crate::command::yerc::{self, Yerc};
 use crate::command::yrcx::{self, Yrcx};
 use crate::command::{Noun, SchemaEntry};
+use crate::controller::nearest::nearest;
 use crate::failure::Failure;
 use crate::output::envelope::{Envelope, ErrorBody};
-use crate::settings::inventory::nearest;
 
 /// Prints the schema of `data` in the envelope, or the names of all reports.
 ///

@@ -34,7 +34,9 @@ impl Copy {
     pub async fn make(self, link: &mut Link, screen: &Screen) -> Result<Copied, Failure> {
         let Self { what, from, to, order, reads: [source, target] } = self;
         if from == to {
-            return Err(Failure::usage(format!("{what} {from} cannot be copied to itself")));
+            return Err(
+                Failure::usage(format!("{what} {from} cannot be copied to itself")).hint("name two different ones")
+            );
         }
         if link.is_dry() {
             for (reads, about) in [(&source, "what is copied"), (&target, "what it replaces")] {

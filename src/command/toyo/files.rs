@@ -21,7 +21,8 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
         File::open(path).map_err(failed)?.take(MOST).read_to_end(&mut bytes).map_err(failed)?;
     }
     if bytes.len() as u64 == MOST {
-        return Err(Failure::usage(format!("{} is larger than all that a controller can hold", shown(path))));
+        return Err(Failure::usage(format!("{} is larger than all that a controller can hold", shown(path)))
+            .hint("check that it is the file that was meant"));
     }
     Ok(bytes)
 }

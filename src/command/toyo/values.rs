@@ -9,9 +9,9 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::link::Link;
+use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::{Field, Form, Number, Value};
 use crate::controller::toyo::layout::{Layout, Record};
-use crate::controller::toyo::nearest::nearest;
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
 

@@ -149,11 +149,13 @@ impl Axes {
             Key::AXES.get(number.checked_sub(1)?).copied()
         };
         let keys: Option<Vec<Key>> = axes.split(',').map(key).collect();
-        let mut keys =
-            keys.ok_or_else(|| Failure::usage(format!("'{axes}' is no list of axes of 1 to 4, as in 1,3")))?;
+        let mut keys = keys.ok_or_else(|| {
+            Failure::usage(format!("'{axes}' is no list of axes of 1 to 4, as in 1,3"))
+                .hint("name axes by their numbers, with commas between")
+        })?;
         keys.sort_unstable();
         if keys.windows(2).any(|pair| pair[0] == pair[1]) {
-            return Err(Failure::usage(format!("--axes {axes} names an axis twice")));
+            return Err(Failure::usage(format!("--axes {axes} names an axis twice")).hint("name each axis once"));
         }
         Ok(keys)
     }

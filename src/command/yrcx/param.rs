@@ -11,6 +11,7 @@ use super::{Family, link};
 use crate::command::ValueKind;
 use crate::command::orders::Done;
 use crate::command::{Command, Context, Report, commands};
+use crate::controller::nearest::nearest;
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::table::parameter::{PARAMETERS, Parameter};
@@ -42,7 +43,12 @@ fn listing() -> String {
 }
 
 fn parameter(text: &str) -> Result<&'static Parameter, String> {
-    let number = single(table::Command::ParamGet, Key::Parameter, text)?;
+    let number = single(table::Command::ParamGet, Key::Parameter, text).map_err(|why| {
+        match nearest(text, PARAMETERS.iter().map(|parameter| parameter.name)) {
+            Some(near) => format!("{why}; did you mean {near}?"),
+            None => why,
+        }
+    })?;
     Parameter::of(number).ok_or_else(|| format!("there is no parameter {number}"))
 }
 

@@ -177,8 +177,10 @@ fn settings(robot: &Robot, eip: &target::Eip) -> Result<Settings, Failure> {
         output_size: if is_owner { eip.output_size } else { 0 },
         input_size: eip.input_size,
         rpi: eip.rpi,
-        multiplier: Multiplier::of(eip.multiplier)
-            .ok_or_else(|| Failure::usage(format!("there is no multiplier {}", eip.multiplier)))?,
+        multiplier: Multiplier::of(eip.multiplier).ok_or_else(|| {
+            Failure::usage(format!("there is no multiplier {}", eip.multiplier))
+                .hint("it is 4, 8, 16, 32, 64, 128, 256 or 512")
+        })?,
         multicast: eip.multicast,
         key: eip.key.map(|key| Key {
             vendor: key.vendor,

@@ -8,7 +8,6 @@ pub mod errors;
 pub mod field;
 pub mod findings;
 pub mod layout;
-pub(crate) mod nearest;
 pub mod program;
 pub mod request;
 pub mod session;

@@ -9,6 +9,7 @@ use thiserror::Error;
 
 use super::image::{DEDICATED_WORD, Image};
 use crate::controller::Risk;
+use crate::controller::nearest::nearest;
 
 /// Whose input or output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -74,7 +75,7 @@ pub enum SignalError {
     Unknown {
         /// What was given.
         found: String,
-        /// A name that exists.
+        /// A name that exists, the nearest one if one is near.
         example: &'static str,
     },
     /// A bit that must not be used.
@@ -382,7 +383,8 @@ impl Signal {
     }
 
     fn unknown(side: Side, found: &str) -> SignalError {
-        let example = if side == Side::Input { "auto-start" } else { "servo-on" };
+        let usual = if side == Side::Input { "auto-start" } else { "servo-on" };
+        let example = nearest(found, Self::of_side(side).map(|dedicated| dedicated.name)).unwrap_or(usual);
         SignalError::Unknown { found: found.chars().take(40).collect(), example }
     }
 }

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::command::backup::{self, Item};
 use crate::command::manifest::{LeftOut, State};
 use crate::command::toyo::cells::Cells;
-use crate::controller::toyo::nearest::nearest;
+use crate::controller::nearest::nearest;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone};
 

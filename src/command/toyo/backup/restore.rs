@@ -90,7 +90,8 @@ impl Command for Restore {
         let manifest: Manifest = manifest::existing(&folder)?;
         let parts = self.chosen(&manifest)?;
         if self.machine && !parts.contains(&Part::Parameters) {
-            return Err(Failure::usage("--machine is about the parameters, which are not among the parts"));
+            return Err(Failure::usage("--machine is about the parameters, which are not among the parts")
+                .hint("leave --machine away, or name `parameters` with --only"));
         }
         let mut jobs = Vec::new();
         for part in parts {
@@ -139,8 +140,10 @@ impl Restore {
             let first = parts.iter().position(|part| *part == resume);
             // All of them, where it is the first that there can be.
             let first = first.or_else(|| (resume == Part::Parameters).then_some(0));
-            let first =
-                first.ok_or_else(|| Failure::usage(format!("--resume={resume}: the backup does not have it")))?;
+            let first = first.ok_or_else(|| {
+                Failure::usage(format!("--resume={resume}: the backup does not have it"))
+                    .hint("name a part that the manifest of the backup lists, or --resume alone")
+            })?;
             parts.drain(..first);
         }
         Ok(parts)

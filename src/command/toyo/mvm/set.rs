@@ -12,8 +12,8 @@ use crate::command::toyo::values::{assignment, word};
 use crate::command::toyo::{Family, link};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
+use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::Value;
-use crate::controller::toyo::nearest::nearest;
 use crate::failure::Failure;
 use crate::output::view::{Section, View};
 

@@ -87,7 +87,8 @@ fn from_file(file: &Path) -> Result<Vec<Filled>, Failure> {
     let name = files::shown(file);
     let records = pallets::read(&files::read(file)?).map_err(|errors| files::faulty(&name, &errors))?;
     if records.is_empty() {
-        return Err(Failure::usage(format!("{name} has no records")));
+        return Err(Failure::usage(format!("{name} has no records"))
+            .hint("`toyo palletizing get PROGRAM --toml FILE` writes such a file"));
     }
     Ok(records)
 }

@@ -13,7 +13,7 @@ pub use restore::store;
 
 use super::Family;
 use crate::command::commands;
-use crate::controller::toyo::nearest::nearest;
+use crate::controller::nearest::nearest;
 use crate::controller::toyo::table::Parameter;
 use crate::controller::toyo::table::parameters::PARAMETERS;
 

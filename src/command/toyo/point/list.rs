@@ -54,7 +54,8 @@ impl Command for List {
     async fn run(&self, context: Context<'_, Family>) -> Result<Listing, Failure> {
         let Context { link, screen, several, .. } = context;
         if self.to < self.from {
-            return Err(Failure::usage(format!("--to {} is before --from {}", self.to, self.from)));
+            return Err(Failure::usage(format!("--to {} is before --from {}", self.to, self.from))
+                .hint("name the lower row with --from"));
         }
         let target = files::target(self.csv.as_deref(), self.force, several)?;
         let points: Vec<i32> = (self.from..=self.to).collect();

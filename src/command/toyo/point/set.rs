@@ -75,7 +75,9 @@ impl Command for Set {
         let read = points::read(&files::read(file)?, AXES).map_err(|errors| files::faulty(&name, &errors))?;
         let points = read.into_iter().map(|(point, _)| store(point.values)).collect::<Result<Vec<Store>, Failure>>()?;
         if points.is_empty() {
-            return Err(Failure::usage(format!("{name} has no points")));
+            return Err(
+                Failure::usage(format!("{name} has no points")).hint("`toyo point list --csv FILE` writes such a file")
+            );
         }
         let left_out = stores::left_out(&points, self.resume.as_deref())?;
         let task = tasks::choose(link, self.task).await?;

@@ -52,10 +52,12 @@ impl Command for Copy {
     async fn run(&self, context: Context<'_, Family>) -> Result<Copied, Failure> {
         let Context { link, screen, .. } = context;
         if self.to < self.from {
-            return Err(Failure::usage(format!("the last step, {}, is before the first, {}", self.to, self.from)));
+            return Err(Failure::usage(format!("the last step, {}, is before the first, {}", self.to, self.from))
+                .hint("name the lower step first"));
         }
         if usize::from(self.end()) > crate::controller::toyo::program::MOST_STEPS {
-            return Err(Failure::usage(format!("the copy would end at step {}; there are 5000", self.end())));
+            return Err(Failure::usage(format!("the copy would end at step {}; there are 5000", self.end()))
+                .hint("copy fewer steps, or to a lower one"));
         }
         if self.to_task.is_none() || self.from_task == self.to_task {
             self.overlap()?;

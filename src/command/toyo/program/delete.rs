@@ -47,7 +47,9 @@ impl Command for Delete {
         let Context { link, screen, .. } = context;
         let last = self.to.unwrap_or(self.step);
         if last < self.step {
-            return Err(Failure::usage(format!("--to {last} is before step {}", self.step)));
+            return Err(
+                Failure::usage(format!("--to {last} is before step {}", self.step)).hint("name the lower step first")
+            );
         }
         if link.is_dry() {
             return self.rehearse(link, last).await;

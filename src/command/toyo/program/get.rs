@@ -64,7 +64,8 @@ impl Command for Get {
     async fn run(&self, context: Context<'_, Family>) -> Result<Got, Failure> {
         let Context { link, screen, several, .. } = context;
         if let Some(to) = self.to.filter(|to| *to < self.from) {
-            return Err(Failure::usage(format!("--to {to} is before --from {}", self.from)));
+            return Err(Failure::usage(format!("--to {to} is before --from {}", self.from))
+                .hint("name the lower step with --from"));
         }
         if let Some(file) = self.file.as_ref().filter(|_| several) {
             return Err(Failure::usage(format!("{} is for the program of one robot", file.display()))

@@ -77,7 +77,8 @@ impl Command for Put {
         let last = last_of(first, &program);
         let from = self.resume.unwrap_or(first).max(first);
         if from > last {
-            return Err(Failure::usage(format!("--resume={from} is behind step {last}, the last one of the file")));
+            return Err(Failure::usage(format!("--resume={from} is behind step {last}, the last one of the file"))
+                .hint("leave --resume away to write the whole file"));
         }
         if link.is_dry() {
             return self.rehearse(link, screen, &program, from).await;

@@ -123,16 +123,18 @@ impl Desk for Run {
         let mut sources = vec![source(screen, 1, &self.file)?];
         for (task, file) in &self.task {
             if sources.iter().any(|source| source.task == *task) {
-                return Err(Failure::usage(format!("--task {task}= is there twice")));
+                return Err(Failure::usage(format!("--task {task}= is there twice"))
+                    .hint("give every task one file; task 1 is the one without --task"));
             }
             sources.push(source(screen, *task, file)?);
         }
         let start = self.start(&sources)?;
         let mut simulator = Simulator::new(start);
         simulator.record_trace(true);
-        simulator
-            .console(Duration::ZERO, &format!("start {}", self.from))
-            .map_err(|why| Failure::usage(format!("the program cannot be started: {why}")))?;
+        simulator.console(Duration::ZERO, &format!("start {}", self.from)).map_err(|why| {
+            Failure::usage(format!("the program cannot be started: {why}"))
+                .hint("--from names the step; --state sets what the controller needs")
+        })?;
         let trace = self.watch(&mut simulator, Recorder::new(sources, self.rows));
         screen.note(&trace.summary());
         Ok(trace)
@@ -145,8 +147,10 @@ impl Run {
         let state = match &self.state {
             Some(path) => {
                 let bytes = files::read(path)?;
-                let text = String::from_utf8(bytes)
-                    .map_err(|_| Failure::usage(format!("{}: this is no text in UTF-8", path.display())))?;
+                let text = String::from_utf8(bytes).map_err(|_| {
+                    Failure::usage(format!("{}: this is no text in UTF-8", path.display()))
+                        .hint("`armctl help simulator` shows the form of the file")
+                })?;
                 Start::parse(&text).map_err(|error| {
                     Failure::usage(format!("{}: {error}", path.display()))
                         .hint("`armctl help simulator` shows the form of the file")
@@ -160,7 +164,9 @@ impl Run {
             written.extend(writes(path, bulk::parameters::read(&files::read(path)?))?);
         }
         // As what was there before power came on, so that parameter 2 is in force.
-        let mut document: toml::Table = state.parse().map_err(|error| Failure::usage(format!("{error}")))?;
+        let mut document: toml::Table = state.parse().map_err(|error| {
+            Failure::usage(format!("{error}")).hint("`armctl help simulator` shows the form of the file")
+        })?;
         if let toml::Value::Array(list) = document.entry("write").or_insert_with(|| toml::Value::Array(Vec::new())) {
             list.extend(written.into_iter().map(toml::Value::String));
         }
@@ -239,9 +245,13 @@ fn writes(path: &Path, read: Result<Vec<Placed>, Vec<Finding>>) -> Result<Vec<St
     let mut start = Start::default();
     let mut commands = Vec::with_capacity(settings.len());
     for (setting, line) in settings {
-        let request = setting.write().map_err(|error| Failure::usage(format!("{name}:{line}: {error}")))?;
+        let request = setting.write().map_err(|error| {
+            Failure::usage(format!("{name}:{line}: {error}")).hint("`toyo param dump` writes such a file")
+        })?;
         let command = request.text().trim_start_matches('@').to_owned();
-        start = start.with_written(&command).map_err(|why| Failure::usage(format!("{name}:{line}: {why}")))?;
+        start = start.with_written(&command).map_err(|why| {
+            Failure::usage(format!("{name}:{line}: {why}")).hint("`toyo param dump` writes such a file")
+        })?;
         commands.push(command);
     }
     Ok(commands)

@@ -178,7 +178,8 @@ fn taken(end: &DownloadEnd) -> Result<u64, Failure> {
                 .hint("no controller has files of this size; record it with --trace and report it"))
         }
         DownloadEnd::NoAnswer { bytes, counters } => {
-            Err(Failure::new(Kind::NoAnswer, format!("silence after {bytes} bytes ({counters})")))
+            Err(Failure::new(Kind::NoAnswer, format!("silence after {bytes} bytes ({counters})"))
+                .hint("repeat it: nothing was kept; --timeout waits longer"))
         }
     }
 }
@@ -190,8 +191,12 @@ fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Fai
     };
     match *end {
         UploadEnd::Complete { bytes, .. } => Ok(bytes),
-        UploadEnd::Empty => Err(Failure::usage("an empty file cannot be sent")),
-        UploadEnd::TooLong { .. } => Err(Failure::usage("the file is too long for a transfer")),
+        UploadEnd::Empty => {
+            Err(Failure::usage("an empty file cannot be sent").hint("check that it is the file that was meant"))
+        }
+        UploadEnd::TooLong { .. } => {
+            Err(Failure::usage("the file is too long for a transfer").hint("check that it is the file that was meant"))
+        }
         UploadEnd::Refused { status, sent, repeated: true, .. } if sent >= total => {
             let Failure { message, .. } = Refusal(status).into();
             unknown(format!("the last block was sent again and then refused: {message} The file may be there"))
@@ -207,7 +212,8 @@ fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Fai
         UploadEnd::OutcomeUnknown { taken, .. } => {
             unknown(format!("no acknowledgement after {taken} of {total} bytes: a part may be there"))
         }
-        UploadEnd::NoAnswer(counters) => Err(Failure::new(Kind::NoAnswer, format!("no answer ({counters})"))),
+        UploadEnd::NoAnswer(counters) => Err(Failure::new(Kind::NoAnswer, format!("no answer ({counters})"))
+            .hint("check that the controller is on and its file port; `armctl robots check` looks for more")),
     }
 }
 

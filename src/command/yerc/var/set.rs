@@ -184,7 +184,10 @@ impl Assignment {
 }
 
 fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, Failure> {
-    let wrong = |error: String| Failure::usage(format!("{reference}: {error}"));
+    let wrong = |error: String| {
+        let hint = "`armctl yerc var set --help` shows how values are written";
+        Failure::usage(format!("{reference}: {error}")).hint(hint)
+    };
     match input {
         Input::Ready(value) => Ok(value.clone()),
         Input::Text(text) => {
@@ -194,7 +197,10 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
             })
         }
         Input::File(path) => {
-            let wrong = |error: String| Failure::usage(format!("{}: {error}", path.display()));
+            let wrong = |error: String| {
+                let hint = "the file holds a position as `yerc var get P1 --json` prints it";
+                Failure::usage(format!("{}: {error}", path.display())).hint(hint)
+            };
             let json: Json = serde_json::from_str(&read(path)?).map_err(|error| wrong(error.to_string()))?;
             let position = position_in(&json).map_err(|error| wrong(error.to_owned()))?;
             let reading = Reading { model: link.model, encoding: link.encoding };

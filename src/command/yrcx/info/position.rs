@@ -47,7 +47,9 @@ impl Command for Where {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Place, Failure> {
         if self.within.is_some() && !self.continuous && self.until.is_none() {
-            return Err(Failure::usage("--for goes with --continuous or --until"));
+            return Err(
+                Failure::usage("--for goes with --continuous or --until").hint("add one of them, or leave --for away")
+            );
         }
         let link = context.link;
         let command = match self.report {

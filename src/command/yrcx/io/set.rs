@@ -97,7 +97,10 @@ impl Command for Pulse {
 
 /// What was parsed as an input can be switched.
 fn switching(procedure: Option<Procedure>) -> Result<Procedure, Failure> {
-    procedure.ok_or_else(|| Failure::usage("outputs are the controller's to switch"))
+    procedure.ok_or_else(|| {
+        Failure::usage("outputs are the controller's to switch")
+            .hint("`yrcx io get` reads them; `yrcx port set` switches DO, MO and SO")
+    })
 }
 
 #[cfg(test)]

@@ -8,9 +8,9 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use super::{Placed, Setting, plain};
+use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::{Field, Value};
 use crate::controller::toyo::findings::{Finding, Findings, Place};
-use crate::controller::toyo::nearest::nearest;
 use crate::controller::toyo::source;
 use crate::controller::toyo::table::Parameter;
 

@@ -6,9 +6,9 @@ use std::ops::Range;
 use toml_edit::{Document, Item, Table, TableLike, Value as Toml};
 
 use super::plain;
+use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::{Field, Form, Value};
 use crate::controller::toyo::findings::{Finding, Findings, Place};
-use crate::controller::toyo::nearest::nearest;
 use crate::controller::toyo::source;
 
 /// What fields are, for people: `, mm` or `; J Japanese, E English`.

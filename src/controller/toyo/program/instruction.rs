@@ -1,8 +1,8 @@
 //! One instruction as a person writes it: short numbers, any case, labels for tags.
 
+use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::{Field, FieldError, Form, Value};
 use crate::controller::toyo::findings::{Findings, Place};
-use crate::controller::toyo::nearest::nearest;
 use crate::controller::toyo::table::instructions::INSTRUCTIONS;
 use crate::controller::toyo::table::{Instruction, Op};
 

@@ -6,9 +6,9 @@ use std::collections::{BTreeSet, HashMap};
 use super::instruction::{Draft, Target};
 use super::reader::{Defined, Read};
 use super::{Label, Part, Program, Step};
+use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::findings::{Findings, Place};
-use crate::controller::toyo::nearest::nearest;
 use crate::controller::toyo::table::Op;
 
 /// A program with the places of its steps.
