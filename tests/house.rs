@@ -1,5 +1,5 @@
 //! Holds the house in order: who may use whom, who may print, how long a file may get, and that generated files are
-//! current. A failure names file and line. `ARMCTL_BLESS=1 cargo test --test house` rewrites `completions/`, `man/` and
+//! current. A failure names file and line. `ARMCTL_BLESS=1 cargo test --test house` rewrites `man/` and
 //! `docs/schemas/`.
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -181,6 +181,25 @@ fn mode(path: &Path) -> u32 {
 }
 
 #[test]
+fn a_tab_asks_a_controller_through_its_session_alone() {
+    let simulator = simulator(&Desk::new(&[]), "yerc", "127.0.0.1:0");
+    let desk = Desk::new(&[("cell", "yerc", &simulator.first)]);
+    let tab = |words: &str| {
+        let output = desk.command(&format!("-- {words}")).env("ARMCTL_COMPLETE", "zsh").output().unwrap();
+        assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""), "{words}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert!(tab("armctl -r c").starts_with("+cell\tudp://"));
+    assert_eq!(tab("armctl -r cell yerc job select TE"), "", "it opens no link of its own");
+    let _session = Running::session(&desk, "cell");
+    // A busy machine may be late for a Tab.
+    while tab("armctl -r cell yerc job select TE") != "+TESTJOB\n" {}
+    while !tab("yerc -r cell file get TOOL").contains("+TOOL.CND\tcnd") {}
+    assert_eq!(tab("armctl -r cell --no-session yerc job select TE"), "");
+    assert!(tab("armctl session close c").contains("cell"));
+}
+
+#[test]
 fn commands_go_through_a_session_by_themselves() {
     let (_simulator, desk) = cell();
     let session = Running::session(&desk, "cell");

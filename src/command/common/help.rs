@@ -12,14 +12,14 @@ use crate::failure::{Failure, Kind};
 /// Explains a topic, or a command.
 #[derive(Debug, Args)]
 pub struct Help {
-    /// A topic (exit-codes, targets, inventory, output, safety, scripting, sessions, repl,
-    /// batch, simulator, toyo-setup, yerc-setup, yrcx-setup), or a command
+    /// A topic (exit-codes, targets, inventory, output, safety, scripting, sessions, repl, batch,
+    /// completion, simulator, toyo-setup, yerc-setup, yrcx-setup), or a command
     #[arg(add = ValueKind::HelpWord)]
     words: Vec<String>,
 }
 
 /// Topics with a line about each and their text.
-const TOPICS: [(&str, &str, &str); 12] = [
+const TOPICS: [(&str, &str, &str); 13] = [
     ("targets", "how to say which robot", include_str!("topics/targets.txt")),
     ("inventory", "robots.toml", include_str!("topics/inventory.txt")),
     ("output", "tables, JSON, jq, colour", include_str!("topics/output.txt")),
@@ -28,6 +28,7 @@ const TOPICS: [(&str, &str, &str); 12] = [
     ("sessions", "links that outlive commands", include_str!("topics/sessions.txt")),
     ("repl", "a prompt for one robot", include_str!("topics/repl.txt")),
     ("batch", "files of commands", include_str!("topics/batch.txt")),
+    ("completion", "what Tab offers, in which shells", include_str!("topics/completion.txt")),
     (SIMULATOR, "servers, start state, console, faults", include_str!("topics/simulator.txt")),
     ("toyo-setup", "cable and settings of a Toyo controller", include_str!("topics/toyo-setup.txt")),
     ("yerc-setup", "settings of an FS100 or DX200", include_str!("topics/yerc-setup.txt")),
