@@ -39,6 +39,7 @@ transcripts! {
     help
     information
     jobs
+    mistakes
     moves
     orders
     positions
