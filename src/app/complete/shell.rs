@@ -121,7 +121,6 @@ impl Split {
             match (c, quote) {
                 (_, Some(open)) if c == open => quote = None,
                 ('\\', None | Some('"')) => word.extend(chars.next()),
-                (_, Some(_)) => word.push(c),
                 ('"' | '\'', None) => quote = Some(c),
                 (' ' | '\t' | '\n', None) => {
                     if is_begun {
@@ -130,7 +129,7 @@ impl Split {
                     is_begun = false;
                     continue;
                 }
-                (_, None) => word.push(c),
+                _ => word.push(c),
             }
             is_begun = true;
         }
