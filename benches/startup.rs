@@ -3,6 +3,8 @@
 //!
 //! `cargo bench --bench startup`
 
+#![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
+
 mod common;
 
 use std::process::{Command, Stdio};

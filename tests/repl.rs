@@ -149,7 +149,7 @@ fn a_real_robot_is_moved_when_the_question_is_answered_over_a_link_that_others_s
     repl.says("not confirmed; nothing was sent");
     let session = desk.data("session list")["sessions"][0].clone();
     assert_eq!((session["pid"].as_u64(), session["link"].as_str()), (Some(repl.child.id().into()), Some("up")));
-    assert_eq!(desk.data(&format!("-t {} toyo status", simulator.url))["pages"].is_null(), false);
+    assert!(desk.data(&format!("-t {} toyo status", simulator.url)).is_object());
     repl.press("exit\r");
     assert_eq!(repl.end().code(), Some(0));
     assert_eq!(desk.data("session list")["sessions"].as_array().map(Vec::len), Some(0));

@@ -152,7 +152,7 @@ fn commands(effort: &Effort) -> anyhow::Result<()> {
             Sources { selection: Selection { target: Some(target), ..Selection::default() }, ..Sources::default() };
         let robot = sources.robots(Some(Name::Yrcx))?.remove(0);
         let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
-        let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: Need::Command };
+        let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: Need::Command, typed: None };
         let order = yrcx::table::Command::ServoStatus.order().build()?;
         let mut times = Vec::new();
         let mut answers = Vec::new();

@@ -14,7 +14,6 @@ mod common;
 #[cfg(unix)]
 mod measure;
 #[cfg(unix)]
-#[allow(dead_code, reason = "the tests use the rest")]
 #[path = "../../tests/support/terminal.rs"]
 mod terminal;
 

@@ -178,7 +178,7 @@ fn connect(runtime: &tokio::runtime::Runtime, address: SocketAddr) -> anyhow::Re
     let sources = Sources { selection, ..Sources::default() };
     let robots = sources.robots(Some(Family::Toyo))?;
     let robot = robots.first().context("a target is a robot")?;
-    let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: Need::Command };
+    let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: Need::Command, typed: None };
     let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
     Ok(runtime.block_on(Toyo::connect(robot, access, &screen))?)
 }

@@ -24,6 +24,17 @@ pub struct Parser {
     all: Option<Command>,
 }
 
+/// Whose command a word is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Owner {
+    /// That of a family.
+    Family,
+    /// That of no single family, or the name of one.
+    All,
+    /// No command.
+    Nobody,
+}
+
 impl Parser {
     /// Reads a line, the program's name included. What does not parse on the words it names is left to the whole, which
     /// knows more to say about it.
@@ -44,8 +55,8 @@ impl Parser {
         read(all, args).map_err(|error| misplaced::explained(error, args, all))
     }
 
-    /// Whose command a word is: of this family, of all (`None`), or of nobody.
-    pub fn owner(&mut self, word: &str, family: Option<Family>) -> Option<Option<Family>> {
+    /// Whose command a word is, where it may be one of this family.
+    pub fn owner(&mut self, word: &str, family: Option<Family>) -> Owner {
         let of_family = family.is_some_and(|family| {
             let all = match family {
                 Family::Yerc => laid_out::<OfYerc>(&mut self.yerc),
@@ -55,9 +66,12 @@ impl Parser {
             all.find_subcommand(family.name()).is_some_and(|own| own.find_subcommand(word).is_some())
         });
         if of_family {
-            return Some(family);
+            Owner::Family
+        } else if laid_out::<Top>(&mut self.all).find_subcommand(word).is_some() {
+            Owner::All
+        } else {
+            Owner::Nobody
         }
-        laid_out::<Top>(&mut self.all).find_subcommand(word).is_some().then_some(None)
     }
 
     /// Goes without taking it all apart: it holds some thousand parts, the process is about to end, and to free them one

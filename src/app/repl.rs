@@ -107,12 +107,12 @@ impl Repl {
         if let Some(robot) = &self.robot
             && !self.globals.dry_run
         {
-            self.line(holder, "repl").hold(robot, self.globals.trace.as_deref(), &self.screen).await?;
+            line_of(holder, "repl").hold(robot, self.globals.trace.as_deref(), &self.screen).await?;
         }
         self.screen.note("Tab completes, `help` lists the commands, `exit` or Ctrl-D leaves.");
         loop {
             let seen = match &self.robot {
-                Some(robot) if !self.globals.dry_run => look(robot, &self.line(holder, "repl"), &self.screen).await,
+                Some(robot) if !self.globals.dry_run => look(robot, &line_of(holder, "repl"), &self.screen).await,
                 _ => None,
             };
             let prompt =
@@ -198,10 +198,10 @@ impl Repl {
         };
         let globals = globals.within(&self.globals);
         let screen = screen(&globals);
-        let line = self.line(holder, text);
+        let line = line_of(holder, text);
         let done = match command.into() {
             Wanted::Work(work) => match Ready::new(globals, work, Some(line)) {
-                Ok(ready) => ready.go().await,
+                Ok(ready) => Box::pin(ready.go()).await,
                 Err(failure) => Err(failure.into()),
             },
             Wanted::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
@@ -210,10 +210,10 @@ impl Repl {
         };
         done.map_or_else(|stopped| failed(&screen, stopped), |()| Next::Line)
     }
+}
 
-    fn line(&self, holder: &Holder, typed: &str) -> Line {
-        Line { typed: Arc::from(typed.trim()), holder: holder.clone(), origin: None, results: None }
-    }
+fn line_of(holder: &Holder, typed: &str) -> Line {
+    Line { typed: Arc::from(typed.trim()), holder: holder.clone(), origin: None, results: None }
 }
 
 fn failed(screen: &Screen, stopped: Stopped) -> Next {

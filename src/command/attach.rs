@@ -12,6 +12,7 @@ use crate::output::Screen;
 use crate::settings::{Robot, Sessions};
 use crate::transport::session::client::{self, AttachError, Attached, Found, Hindrance};
 use crate::transport::session::place::{PlaceError, key};
+use crate::transport::session::process;
 use crate::transport::session::wire::Peer;
 
 /// The session that holds the robot's link, if there is one and `--no-session` does not go around it.
@@ -68,7 +69,7 @@ async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Res
 pub fn key_of(robot: &Robot) -> String {
     let (family, url) = (robot.family.name(), robot.target.value.url());
     if robot.sessions == Sessions::OwnSimulators && robot.target.value.is_simulated() {
-        return key(family, &format!("{url} as {} in process {}", robot.name, std::process::id()));
+        return key(family, &format!("{url} as {} in process {}", robot.name, process()));
     }
     key(family, url)
 }

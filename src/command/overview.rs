@@ -110,9 +110,9 @@ pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<Overvie
     let overview = Overview {};
     let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: overview.need(), typed: None };
     let access = line.connecting(robot, access, screen).await?;
-    let mut link = Fleet::connect(robot, access, screen).await?;
-    let report = overview.run(Context { robot, link: &mut link, screen, several: false }).await;
-    Fleet::close(link, screen).await?;
+    let mut connection = Fleet::connect(robot, access, screen).await?;
+    let report = overview.run(Context { robot, link: &mut connection, screen, several: false }).await;
+    Fleet::close(connection, screen).await?;
     report
 }
 

@@ -1,5 +1,8 @@
 //! The one loop that every robot command goes through: choose robots, pass the gate, run, report, repeat.
 
+mod print;
+mod rounds;
+
 use std::future::poll_fn;
 use std::path::{Path, PathBuf};
 use std::task::Poll;
@@ -7,22 +10,24 @@ use std::time::Duration;
 
 use futures_util::StreamExt as _;
 use futures_util::stream;
-use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
-use tokio::time::{Instant, timeout_at};
+use tokio::time::timeout_at;
 
+use self::print::{Place, timed};
+pub use self::rounds::Repeat;
+use self::rounds::Rounds;
 use super::interrupt::{catch_interrupts, interruptible};
 use super::line::Line;
-use super::{Access, AnyCommand, AnyReport, Context, Family, Outcome, Report};
+use super::{Access, AnyCommand, Context, Family, Outcome, Report};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Demand, Gate, OnInterrupt};
+use crate::output::Screen;
 use crate::output::envelope::Envelope;
 use crate::output::jq::Filter;
 use crate::output::view::{Table, View};
-use crate::output::{Format, Screen, escape, render};
 use crate::settings::{Robot, Sources};
 
 /// What the command line says about how to run a command.
@@ -42,25 +47,6 @@ pub struct Run {
     pub trace: Option<PathBuf>,
     /// What is around it, where it is one of several lines.
     pub line: Option<Line>,
-}
-
-/// `--watch`, `--count`, `--until`, `--for`.
-#[derive(Debug, Default)]
-pub struct Repeat {
-    /// Pause from start to start.
-    pub every: Option<Duration>,
-    /// Most runs.
-    pub count: Option<u64>,
-    /// Stop when this is true of the envelope.
-    pub until: Option<Filter>,
-    /// Longest time to wait for the condition.
-    pub within: Option<Duration>,
-}
-
-impl Repeat {
-    fn is_wanted(&self) -> bool {
-        self.every.is_some() || self.count.is_some() || self.until.is_some()
-    }
 }
 
 /// A failure on its way to stderr, with what the envelope needs to know.
@@ -162,30 +148,6 @@ impl Run {
                 Err(Failure { message: format!("{}; nothing was sent", failure.message), ..failure })
             }
         }
-    }
-
-    /// Writes the envelope of a line that has failed in its place among those of the others; `false` for people, who
-    /// read of it elsewhere.
-    pub fn report_failure(&self, stopped: &Stopped) -> Result<bool, Failure> {
-        if self.is_for_people() {
-            return Ok(false);
-        }
-        let envelope = stopped.envelope.as_deref().cloned();
-        self.emit(self.of_stream(envelope.unwrap_or_else(|| Envelope::failed(None, stopped.failure.clone()))))?;
-        Ok(true)
-    }
-
-    /// Reports what a command without a robot has to say.
-    pub fn local(&self, id: &str, report: &dyn AnyReport) -> Result<(), Stopped> {
-        let failure = report.failure();
-        if self.is_for_people() {
-            self.show(&report.view(), Place::Alone)?;
-        } else {
-            let envelope = Envelope::local(id, report.data()?);
-            let envelope = Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope };
-            self.emit(self.of_stream(envelope))?;
-        }
-        failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: !self.is_for_people() }))
     }
 
     async fn one<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Stopped> {
@@ -325,49 +287,6 @@ impl Run {
         }
     }
 
-    /// Writes what several robots reported, and says it as envelopes.
-    fn print_many(
-        &self,
-        id: &str,
-        robots: &[Robot],
-        outcomes: &[Outcome],
-        place: Place<'_>,
-    ) -> Result<Vec<Envelope>, Failure> {
-        let envelopes = robots
-            .iter()
-            .zip(outcomes)
-            .map(|(robot, outcome)| enveloped(robot, id, outcome.as_ref().map(AsRef::as_ref).map_err(Clone::clone)));
-        let envelopes: Vec<Envelope> = envelopes.collect::<Result<_, _>>()?;
-        if !self.is_for_people() {
-            if self.screen.format == Format::Jsonl {
-                envelopes.iter().try_for_each(|envelope| self.emit(timed(envelope.clone())))?;
-            } else {
-                self.write(&envelopes.iter().cloned().map(|envelope| self.marked(envelope)).collect::<Vec<_>>())?;
-            }
-            return Ok(envelopes);
-        }
-        let mut views = Vec::new();
-        let mut reasons = Vec::new();
-        for (robot, outcome) in robots.iter().zip(outcomes) {
-            match outcome {
-                Ok(report) => {
-                    views.push((robot, report.view()));
-                    reasons.extend(report.failure().map(|failure| (robot, failure)));
-                }
-                Err(failure) => reasons.push((robot, failure.clone())),
-            }
-        }
-        self.show_many(&views, place)?;
-        for (robot, failure) in reasons {
-            // Failures of the link name the robot already.
-            let label = robot.label();
-            let is_named = failure.message.starts_with(&label);
-            let message = if is_named { failure.message } else { format!("{label}: {}", failure.message) };
-            self.screen.failure(&Failure { message, ..failure });
-        }
-        Ok(envelopes)
-    }
-
     /// What the outcomes of several robots come to.
     fn verdict(&self, outcomes: &[Outcome]) -> Result<(), Stopped> {
         let failures: Vec<Failure> = outcomes
@@ -474,90 +393,6 @@ impl Run {
     pub fn begin_trace(&self) -> Result<(), Failure> {
         begin_trace(self.trace.as_deref().filter(|_| !self.gate.dry_run && self.line.is_none()))
     }
-
-    /// Tables of the same columns become one, with the robot in front; other views stand below each other.
-    fn show_many(&self, views: &[(&Robot, View)], place: Place<'_>) -> Result<(), Failure> {
-        let tables = views.iter().map(|(robot, view)| Some((robot.name.as_str(), view.as_table()?)));
-        match tables.collect::<Option<Vec<_>>>().and_then(|tables| Table::joined("robot", &tables)) {
-            Some(table) => self.show(&View::table(table), place),
-            None => views
-                .iter()
-                .enumerate()
-                .try_for_each(|(index, (robot, view))| self.show(view, Place::Among { robot, first: index == 0 })),
-        }
-    }
-
-    fn is_for_people(&self) -> bool {
-        self.filter.is_none() && matches!(self.screen.format, Format::Table | Format::Csv)
-    }
-
-    fn print(&self, robot: &Robot, id: &str, report: &dyn AnyReport, place: Place<'_>) -> Result<(), Failure> {
-        if self.is_for_people() {
-            return self.show(&report.view(), place);
-        }
-        let envelope = enveloped(robot, id, Ok(report))?;
-        let is_stream = self.screen.format == Format::Jsonl || !matches!(place, Place::Alone);
-        self.emit(if is_stream { timed(envelope) } else { envelope })
-    }
-
-    /// The envelope with the time, in a format that is a stream.
-    fn of_stream(&self, envelope: Envelope) -> Envelope {
-        if self.screen.format == Format::Jsonl { timed(envelope) } else { envelope }
-    }
-
-    /// Writes an envelope.
-    fn emit(&self, envelope: Envelope) -> Result<(), Failure> {
-        self.write(&self.marked(envelope))
-    }
-
-    fn marked(&self, envelope: Envelope) -> Envelope {
-        match &self.line {
-            Some(line) => line.marked(envelope),
-            None => envelope,
-        }
-    }
-
-    /// Writes JSON, or what the filter makes of it: strings as they are, the rest as JSON, a line each.
-    fn write(&self, value: &impl Serialize) -> Result<(), Failure> {
-        let value = match &self.line {
-            Some(line) => line.pass(as_value(value)?),
-            None if self.filter.is_none() => return self.screen.json(value),
-            None => Some(as_value(value)?),
-        };
-        let Some(value) = value else { return Ok(()) };
-        let Some(filter) = &self.filter else { return self.screen.json(&value) };
-        for value in filter.apply(&value)? {
-            match value {
-                Value::String(text) => self.screen.data(&format!("{}\n", escape::lines(&text)))?,
-                value => self.screen.json(&value)?,
-            }
-        }
-        Ok(())
-    }
-
-    fn show(&self, view: &View, place: Place<'_>) -> Result<(), Failure> {
-        let screen = &self.screen;
-        let is_csv = screen.format == Format::Csv;
-        let text = match place {
-            _ if is_csv => {
-                let robot = if let Place::Among { robot, .. } = place { Some(robot.name.as_str()) } else { None };
-                let csv = render::csv(view, robot);
-                let has_header = matches!(place, Place::Alone | Place::First | Place::Among { first: true, .. });
-                if has_header { csv } else { csv.split_once('\n').map_or(String::new(), |(_, rows)| rows.to_owned()) }
-            }
-            _ => {
-                let text = render::text(view, screen.width(), screen.stdout_color());
-                match place {
-                    Place::Alone | Place::First => text,
-                    Place::Next => format!("\n{text}"),
-                    Place::Among { robot, first } => {
-                        format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(&robot.label()))
-                    }
-                }
-            }
-        };
-        screen.data(&text)
-    }
 }
 
 /// Empties the file of `--trace`; `-` is none.
@@ -566,75 +401,6 @@ pub fn begin_trace(file: Option<&Path>) -> Result<(), Failure> {
         Some(path) => std::fs::File::create(path).map(|_| ()).map_err(|error| Failure::io(path.display(), &error)),
         None => Ok(()),
     }
-}
-
-/// The rounds of a watch, from start to start without drift.
-#[derive(Debug)]
-struct Rounds<'a> {
-    repeat: &'a Repeat,
-    every: Duration,
-    began: Instant,
-    done: u32,
-}
-
-impl<'a> Rounds<'a> {
-    /// `every` is the pause where none is given.
-    fn new(repeat: &'a Repeat, every: Duration) -> Self {
-        Self { repeat, every: repeat.every.unwrap_or(every), began: Instant::now(), done: 0 }
-    }
-
-    /// When --for runs out.
-    fn deadline(&self) -> Option<Instant> {
-        self.repeat.within.map(|within| self.began + within)
-    }
-
-    fn is_first(&self) -> bool {
-        self.done == 0
-    }
-
-    /// Whether the condition of `--until` holds.
-    fn is_met(&self, value: &impl Serialize) -> Result<bool, Failure> {
-        self.repeat.until.as_ref().map_or(Ok(false), |until| until.is_true(&as_value(value)?))
-    }
-
-    /// Waits for the next round; `false` when there is none.
-    async fn next(&mut self) -> Result<bool, Failure> {
-        self.done = self.done.saturating_add(1);
-        let next = self.began + self.every.saturating_mul(self.done);
-        let is_over = self.repeat.count.is_some_and(|count| u64::from(self.done) >= count)
-            || self.repeat.within.is_some_and(|within| next.duration_since(self.began) > within);
-        if !is_over {
-            let rest = async {
-                // Even where there is no time to rest, signals are heard.
-                tokio::task::yield_now().await;
-                tokio::time::sleep_until(next).await;
-            };
-            interruptible(rest).await?;
-        }
-        Ok(!is_over)
-    }
-
-    /// What it means that the rounds are over.
-    fn end(&self) -> Result<(), Failure> {
-        if self.repeat.until.is_none() {
-            return Ok(());
-        }
-        Err(Failure::new(Kind::ConditionNotMet, "the condition of --until was not met")
-            .hint("--for sets how long to wait for it"))
-    }
-}
-
-/// Where a report stands among others.
-#[derive(Debug, Clone, Copy)]
-enum Place<'a> {
-    /// The only one.
-    Alone,
-    /// The first of a watch.
-    First,
-    /// A later one of a watch.
-    Next,
-    /// One of several robots.
-    Among { robot: &'a Robot, first: bool },
 }
 
 /// What a dry run reports.
@@ -683,24 +449,6 @@ async fn at_a_time<T>(work: impl Iterator<Item = impl Future<Output = T>>) -> Ve
     done.into_iter().map(|(_, came)| came).collect()
 }
 
-fn enveloped(robot: &Robot, id: &str, outcome: Result<&dyn AnyReport, Failure>) -> Result<Envelope, Failure> {
-    let report = match outcome {
-        Err(failure) => return Ok(Envelope::of(robot, id, Err(failure))),
-        Ok(report) => report,
-    };
-    let failure = report.failure();
-    let envelope = Envelope::of(robot, id, Ok(report.data()?));
-    Ok(Envelope { ok: failure.is_none(), error: failure.map(Into::into), ..envelope })
-}
-
-fn timed(envelope: Envelope) -> Envelope {
-    Envelope { time: Some(Timestamp::now()), ..envelope }
-}
-
-fn as_value(value: &impl Serialize) -> Result<Value, Failure> {
-    serde_json::to_value(value).map_err(|error| Failure::local(format!("report as JSON: {error}")))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -713,7 +461,7 @@ mod tests {
             tokio::time::sleep(Duration::from_millis(if silent(robot) { 2000 } else { 10 })).await;
             robot
         };
-        let start = Instant::now();
+        let start = tokio::time::Instant::now();
         let robots = at_a_time((0..200).map(ask)).await;
         assert!(robots.is_sorted() && robots.len() == 200);
         assert!(start.elapsed() < Duration::from_millis(2100), "{:?}", start.elapsed());

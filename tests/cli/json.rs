@@ -72,6 +72,9 @@ fn pretty(value: &Value, indent: usize) -> String {
     format!("{open}\n{inner}{}\n{}{close}", items.join(&format!(",\n{inner}")), " ".repeat(indent))
 }
 
+/// Spoils a document.
+type Spoil<'a> = &'a dyn Fn(&mut Value);
+
 #[test]
 fn what_breaks_a_promise_is_found() {
     let whole = serde_json::json!({
@@ -79,7 +82,6 @@ fn what_breaks_a_promise_is_found() {
         "command": "sim.yerc", "ok": true, "data": {"family": "yerc", "model": "fs100", "target": "udp://127.0.0.1"},
     });
     assert_eq!(check(&whole), Ok(()));
-    type Spoil<'a> = &'a dyn Fn(&mut Value);
     let spoilt = |spoil: Spoil<'_>| {
         let mut envelope = whole.clone();
         spoil(&mut envelope);

@@ -1,4 +1,5 @@
 //! A terminal for a program: a pseudo-terminal, and the picture that the program draws on it.
+#![allow(dead_code, reason = "some watch the picture, some what is said line after line")]
 
 use std::fs::File;
 use std::io::{Read as _, Write as _};

@@ -125,10 +125,9 @@ impl History {
     fn find(editor: &mut LineEditor, screen: &Screen) -> Option<Self> {
         let folder = state_folder()?;
         let path = folder.join("history");
-        let found = std::fs::create_dir_all(&folder).map_err(ReadlineError::Io).and_then(|()| match path.exists() {
-            true => editor.load_history(&path),
-            false => Ok(()),
-        });
+        let found = std::fs::create_dir_all(&folder)
+            .map_err(ReadlineError::Io)
+            .and_then(|()| if path.exists() { editor.load_history(&path) } else { Ok(()) });
         if let Err(error) = found {
             screen.detail(1, &format!("{}: {error}; lines are remembered until you leave", path.display()));
             return None;

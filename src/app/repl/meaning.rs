@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use crate::app::parser::Parser;
+use crate::app::parser::{Owner, Parser};
 use crate::settings::target::Family;
 
 /// Puts the family before lines that are commands of it.
@@ -37,8 +37,8 @@ impl Meaning {
         }
         let family = self.family();
         // Flags may stand before the command. What is neither of the family nor of all is the family's to refuse.
-        let owner = words.iter().find_map(|word| self.parser.owner(word, family));
-        let prefix = self.prefix.iter().filter(|_| owner.unwrap_or(family) == family);
+        let owner = words.iter().map(|word| self.parser.owner(word, family)).find(|owner| *owner != Owner::Nobody);
+        let prefix = self.prefix.iter().filter(|_| owner != Some(Owner::All));
         std::iter::once("armctl").chain(prefix.chain(words).map(String::as_str)).map(OsString::from).collect()
     }
 
@@ -47,7 +47,7 @@ impl Meaning {
     pub fn beginnings(&mut self, words: &[String]) -> Vec<Vec<OsString>> {
         let family = self.family();
         let mut beginnings = vec![self.args(words)];
-        if family.is_some() && !words.iter().any(|word| self.parser.owner(word, family).is_some()) {
+        if family.is_some() && words.iter().all(|word| self.parser.owner(word, family) == Owner::Nobody) {
             beginnings
                 .push(std::iter::once("armctl").chain(words.iter().map(String::as_str)).map(OsString::from).collect());
         }

@@ -27,7 +27,7 @@ impl Terminal {
     /// Sets it as it was, while the editor reads a line, or is about to: it takes the terminal first.
     pub async fn take_back(&self) {
         for _ in 0..TRIES {
-            if self.is_taken() {
+            if Self::is_taken() {
                 break;
             }
             sleep(PAUSE).await;
@@ -37,7 +37,7 @@ impl Terminal {
 
     /// Whether keys come one by one.
     #[cfg(unix)]
-    fn is_taken(&self) -> bool {
+    fn is_taken() -> bool {
         let now = rustix::termios::tcgetattr(std::io::stdin());
         // A terminal that is gone needs no settings.
         now.map_or(true, |now| !now.local_modes.contains(rustix::termios::LocalModes::ICANON))
@@ -51,10 +51,11 @@ impl Terminal {
     }
 
     #[cfg(not(unix))]
-    fn is_taken(&self) -> bool {
+    fn is_taken() -> bool {
         true
     }
 
     #[cfg(not(unix))]
+    #[expect(clippy::unused_self, reason = "as where there is something to restore")]
     fn restore(&self) {}
 }

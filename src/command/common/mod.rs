@@ -74,8 +74,14 @@ impl Common {
             Self::Sim(_) => Some("it serves until it is ended"),
             Self::Top(_) => Some("it is a view for a terminal"),
             Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => Some("it prints a text to read"),
-            Self::Status(_) | Self::Robots(_) | Self::Session(_) | Self::Decode(_) | Self::Explain(_) => None,
-            Self::Backup(_) | Self::Restore(_) | Self::Diff(_) => None,
+            Self::Status(_)
+            | Self::Robots(_)
+            | Self::Session(_)
+            | Self::Decode(_)
+            | Self::Explain(_)
+            | Self::Backup(_)
+            | Self::Restore(_)
+            | Self::Diff(_) => None,
         }
     }
 

@@ -24,3 +24,8 @@ mod socket;
 pub mod wire;
 
 pub use socket::{Detached, detach, leave_terminal, terminate};
+
+/// This process, as sessions know it.
+pub fn process() -> u32 {
+    std::process::id()
+}

@@ -223,7 +223,7 @@ impl Info {
     /// That of this process.
     pub fn own(robot: &str, family: &str, target: &str) -> Self {
         let (robot, family, target) = (robot.to_owned(), family.to_owned(), target.to_owned());
-        Self { pid: std::process::id(), robot, family, target }
+        Self { pid: super::process(), robot, family, target }
     }
 }
 

@@ -26,7 +26,7 @@ use crate::settings::Robot;
 use crate::settings::target::Family;
 use crate::transport::session::client::status;
 use crate::transport::session::place::{Place, Spot};
-use crate::transport::session::{detach, leave_terminal, terminate};
+use crate::transport::session::{detach, leave_terminal, process, terminate};
 
 /// Arguments of `session open`.
 #[derive(Debug, Args)]
@@ -136,7 +136,7 @@ impl Open {
             robot: robot.name.clone(),
             family: robot.family.name().to_owned(),
             target: robot.target.value.url().to_owned(),
-            pid: std::process::id(),
+            pid: process(),
             background,
             log: log.as_ref().map(|log| log.display().to_string()),
         };
