@@ -28,11 +28,12 @@ const DOCUMENTED: [(&str, &str); 3] =
 /// Separates the commands of a block in the output of its shell.
 const MARK: &str = "\u{1}--next--";
 /// Pages with blocks.
-const PAGES: [&str; 9] = [
+const PAGES: [&str; 10] = [
     "README.md",
     "docs/yerc.md",
     "docs/toyo.md",
     "docs/yrcx.md",
+    "docs/repl.md",
     "docs/backups.md",
     "docs/scripting.md",
     "docs/watching.md",
