@@ -97,6 +97,19 @@ fn tables_fit_terminals_of_any_width() {
 }
 
 #[test]
+fn a_watch_stays_in_its_place_on_a_terminal_that_can() {
+    let home = tempfile::tempdir().expect("a folder");
+    let watch = |term: &str| {
+        let mut command = armctl("--sim yerc status --watch 10ms --count 3", home.path());
+        command.env("TERM", term);
+        Terminal::new(80).run(command)
+    };
+    // Nine lines up, and all below removed.
+    assert_eq!(watch("xterm").matches("\x1b[9A\r\x1b[J").count(), 2);
+    assert!(!watch("dumb").contains('\x1b'));
+}
+
+#[test]
 fn colour_is_for_terminals_that_can() {
     let folder = tempfile::tempdir().unwrap();
     let shown = |line: &str, variables: &[(&str, &str)]| {

@@ -22,6 +22,8 @@ pub struct Parser {
     yrcx: Option<Command>,
     toyo: Option<Command>,
     all: Option<Command>,
+    /// What was laid out for the last line alone.
+    last: Option<Command>,
 }
 
 /// Whose command a word is.
@@ -40,9 +42,9 @@ impl Parser {
     /// knows more to say about it.
     pub fn parse(&mut self, args: &[OsString]) -> Result<Cli, clap::Error> {
         let narrowed = match first(args) {
-            Some(First::Family(Family::Yerc)) => named::<OfYerc>(args).map(|words| words.into_top(Top::Yerc)),
-            Some(First::Family(Family::Yrcx)) => named::<OfYrcx>(args).map(|words| words.into_top(Top::Yrcx)),
-            Some(First::Family(Family::Toyo)) => named::<OfToyo>(args).map(|words| words.into_top(Top::Toyo)),
+            Some(First::Family(Family::Yerc)) => named::<OfYerc>(&mut self.last, args).map(|words| words.into_top(Top::Yerc)),
+            Some(First::Family(Family::Yrcx)) => named::<OfYrcx>(&mut self.last, args).map(|words| words.into_top(Top::Yrcx)),
+            Some(First::Family(Family::Toyo)) => named::<OfToyo>(&mut self.last, args).map(|words| words.into_top(Top::Toyo)),
             Some(First::Common) => {
                 read(&mut Words::<Common>::command(), args).ok().map(|words| words.into_top(Top::Common))
             }
@@ -128,12 +130,10 @@ impl Narrow for OfToyo {
 }
 
 /// The line, read on the words that it names; `None` where that is not enough.
-fn named<C: Narrow>(args: &[OsString]) -> Option<Words<C>> {
+fn named<C: Narrow>(last: &mut Option<Command>, args: &[OsString]) -> Option<Words<C>> {
     let is_named = |name: &str| args.iter().any(|word| word == name);
-    let mut command = Words::<Nothing>::command().subcommand(C::lay_out(&is_named));
-    let words = read(&mut command, args).ok();
-    std::mem::forget(command);
-    words
+    let command = last.insert(Words::<Nothing>::command().subcommand(C::lay_out(&is_named)));
+    read(command, args).ok()
 }
 
 /// No words at all.

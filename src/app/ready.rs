@@ -15,6 +15,7 @@ use crate::command::{self, AnyCommand, Noun as _, toyo, yerc, yrcx};
 use crate::failure::Failure;
 use crate::gate::Gate;
 use crate::output::jq::Filter;
+use crate::output::redraw::Redraw;
 use crate::settings::duration;
 use crate::settings::inventory::{Inventory, Location, Options};
 use crate::settings::target::{Family, Target};
@@ -162,7 +163,7 @@ fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Fail
     let repeat = Repeat { every: globals.watch, count: globals.count, until, within: globals.within };
     let trace = globals.trace.clone();
     let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need, line.is_some())? };
-    Ok(Run { screen, sources, gate, repeat, filter, trace, line })
+    Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default() })
 }
 
 /// Which robots, and their settings; `among` other lines of this process, simulators live on.

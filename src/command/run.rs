@@ -25,6 +25,7 @@ use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Demand, Gate, OnInterrupt};
 use crate::output::Screen;
+use crate::output::redraw::Redraw;
 use crate::output::envelope::Envelope;
 use crate::output::jq::Filter;
 use crate::output::view::{Table, View};
@@ -47,6 +48,8 @@ pub struct Run {
     pub trace: Option<PathBuf>,
     /// What is around it, where it is one of several lines.
     pub line: Option<Line>,
+    /// What a watch has on the screen.
+    pub redraw: Redraw,
 }
 
 /// A failure on its way to stderr, with what the envelope needs to know.
@@ -202,7 +205,7 @@ impl Run {
             let Ok(outcome) = attempted else { return rounds.end().map_err(stopped) };
             let silence = match outcome {
                 Ok(report) => {
-                    let place = if rounds.is_first() { Place::First } else { Place::Next };
+                    let place = self.round(rounds.is_first(), command.is_endless());
                     self.print(robot, command.id(), &*report, place)?;
                     if rounds.is_met(&Envelope::of(robot, command.id(), report.data()))? {
                         return Ok(());
@@ -213,6 +216,7 @@ impl Run {
                 Err(failure) if failure.kind == Kind::NoAnswer => {
                     if self.is_for_people() {
                         self.screen.failure(&failure);
+                        self.redraw.forget();
                     } else {
                         self.emit(timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
                     }
@@ -275,7 +279,7 @@ impl Run {
                 }
             });
             let outcomes = at_a_time(attempts).await;
-            let place = if rounds.is_first() { Place::First } else { Place::Next };
+            let place = self.round(rounds.is_first(), false);
             let envelopes = self.print_many(command.id(), robots, &outcomes, place)?;
             if rounds.is_met(&envelopes)? {
                 return Ok(());

@@ -8,6 +8,7 @@ pub mod fullscreen;
 pub mod jq;
 pub mod progress;
 pub mod prompt;
+pub mod redraw;
 pub mod render;
 pub mod view;
 
@@ -83,6 +84,11 @@ impl Screen {
     /// Whether progress can redraw itself on stderr.
     pub fn can_redraw(&self) -> bool {
         !self.quiet && io::stderr().is_terminal() && !is_dumb()
+    }
+
+    /// Whether a table can replace the one before on stdout.
+    pub fn can_replace(&self) -> bool {
+        self.format == Format::Table && io::stdout().is_terminal() && !is_dumb()
     }
 
     /// Columns that tables may fill.

@@ -34,8 +34,10 @@ pub(super) fn complete(
     let path = path(&matches);
     let context = Arc::new(Context::new(&matches, is_among, patience));
     let mut narrowed = narrow(&root, &path, &context)?;
-    // They are many, and the process ends: see `words` of app.rs.
-    std::mem::forget(root);
+    if !is_among {
+        // It holds some thousand parts, and the process ends.
+        std::mem::forget(root);
+    }
     for word in &mut before {
         // The engine would take it for a flag.
         if word.to_str().is_some_and(is_negative) {

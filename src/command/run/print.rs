@@ -86,6 +86,7 @@ impl Run {
         for (robot, failure) in reasons {
             // Failures of the link name the robot already.
             let label = robot.label();
+            self.redraw.forget();
             let is_named = failure.message.starts_with(&label);
             let message = if is_named { failure.message } else { format!("{label}: {}", failure.message) };
             self.screen.failure(&Failure { message, ..failure });
@@ -127,6 +128,15 @@ impl Run {
     /// The envelope with the time, in a format that is a stream.
     fn of_stream(&self, envelope: Envelope) -> Envelope {
         if self.screen.format == Format::Jsonl { timed(envelope) } else { envelope }
+    }
+
+    /// Begins a round of a watch: what it shows replaces the round before, on a terminal that can; what is told one after
+    /// the other stays.
+    pub(super) fn round(&self, is_first: bool, stays: bool) -> Place<'static> {
+        if !stays && self.screen.can_replace() && self.is_for_people() {
+            self.redraw.begin();
+        }
+        if is_first { Place::First } else { Place::Next }
     }
 
     /// Writes an envelope.
@@ -173,6 +183,7 @@ impl Run {
                 let text = render::text(view, screen.width(), screen.stdout_color());
                 match place {
                     Place::Alone | Place::First => text,
+                    Place::Next if self.redraw.is_on() => text,
                     Place::Next => format!("\n{text}"),
                     Place::Among { robot, first } => {
                         format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(&robot.label()))
@@ -180,7 +191,7 @@ impl Run {
                 }
             }
         };
-        screen.data(&text)
+        screen.data(&self.redraw.over(text))
     }
 }
 
