@@ -42,9 +42,15 @@ impl Parser {
     /// knows more to say about it.
     pub fn parse(&mut self, args: &[OsString]) -> Result<Cli, clap::Error> {
         let narrowed = match first(args) {
-            Some(First::Family(Family::Yerc)) => named::<OfYerc>(&mut self.last, args).map(|words| words.into_top(Top::Yerc)),
-            Some(First::Family(Family::Yrcx)) => named::<OfYrcx>(&mut self.last, args).map(|words| words.into_top(Top::Yrcx)),
-            Some(First::Family(Family::Toyo)) => named::<OfToyo>(&mut self.last, args).map(|words| words.into_top(Top::Toyo)),
+            Some(First::Family(Family::Yerc)) => {
+                named::<OfYerc>(&mut self.last, args).map(|words| words.into_top(Top::Yerc))
+            }
+            Some(First::Family(Family::Yrcx)) => {
+                named::<OfYrcx>(&mut self.last, args).map(|words| words.into_top(Top::Yrcx))
+            }
+            Some(First::Family(Family::Toyo)) => {
+                named::<OfToyo>(&mut self.last, args).map(|words| words.into_top(Top::Toyo))
+            }
             Some(First::Common) => {
                 read(&mut Words::<Common>::command(), args).ok().map(|words| words.into_top(Top::Common))
             }
@@ -196,10 +202,10 @@ mod tests {
     #[test]
     fn a_line_is_read_on_the_words_it_names() {
         let args = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
-        assert!(named::<OfYerc>(&args("armctl yerc --sim job select --line 3 WELD -q")).is_some());
-        assert!(named::<OfYrcx>(&args("armctl --sim yrcx --unit 2 point get 5")).is_some());
+        assert!(named::<OfYerc>(&mut None, &args("armctl yerc --sim job select --line 3 WELD -q")).is_some());
+        assert!(named::<OfYrcx>(&mut None, &args("armctl --sim yrcx --unit 2 point get 5")).is_some());
         for left_to_the_whole in ["armctl yerc", "armctl yerc stat", "armctl yerc status -h", "armctl yerc repl"] {
-            let is_read = named::<OfYerc>(&args(left_to_the_whole)).is_some();
+            let is_read = named::<OfYerc>(&mut None, &args(left_to_the_whole)).is_some();
             assert_eq!(is_read, left_to_the_whole == "armctl yerc", "{left_to_the_whole}");
         }
     }

@@ -25,9 +25,9 @@ use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Demand, Gate, OnInterrupt};
 use crate::output::Screen;
-use crate::output::redraw::Redraw;
 use crate::output::envelope::Envelope;
 use crate::output::jq::Filter;
+use crate::output::redraw::Redraw;
 use crate::output::view::{Table, View};
 use crate::settings::{Robot, Sources};
 
