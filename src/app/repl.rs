@@ -53,7 +53,7 @@ pub async fn run(globals: Globals, prefix: Vec<String>) -> Result<(), Stopped> {
     catch_interrupts();
     let repl = Repl::new(globals, prefix)?;
     begin_trace(repl.globals.trace.as_deref().filter(|_| !repl.globals.dry_run))?;
-    if can_type() { repl.converse().await } else { repl.script().await }
+    if can_type() { Box::pin(repl.converse()).await } else { Box::pin(repl.script()).await }
 }
 
 /// What all lines have in common.
