@@ -4,7 +4,7 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`app`] | from the words of a command line to an exit code |
+//! | [`app`] | from the words of a command line to an exit code; the prompt, command files, completion |
 //! | [`cli`] | the command line: global flags and the first word |
 //! | [`settings`] | which robots, and every setting with where it came from; target URLs; the inventory |
 //! | [`gate`] | what stands between a typed command and a machine |

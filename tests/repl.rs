@@ -1,15 +1,17 @@
 //! `armctl repl` on a terminal: prompt, completion, history, Ctrl-C, questions, the link that others share, every way out.
 #![cfg(unix)]
 
+#[path = "support/simulator.rs"]
+mod simulator;
 #[path = "support/terminal.rs"]
 mod terminal;
 
-use std::io::{BufRead as _, BufReader};
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
+use simulator::Simulator;
 use terminal::Terminal;
 
 /// A user with a home of his own.
@@ -41,32 +43,6 @@ impl Desk {
         let output = self.command(&format!("{line} --json")).output().expect("it runs");
         assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
         serde_json::from_slice::<Value>(&output.stdout).expect("JSON")["data"].clone()
-    }
-}
-
-/// A simulated controller of its own, and its URL.
-struct Simulator {
-    process: Child,
-    url: String,
-}
-
-impl Simulator {
-    fn start(family: &str) -> Self {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
-        command.args(["sim", family, "--bind", "127.0.0.1:0"]).stdin(Stdio::null()).stdout(Stdio::piped());
-        let mut process = command.spawn().expect("the simulator starts");
-        let mut line = String::new();
-        BufReader::new(process.stdout.take().expect("a pipe")).read_line(&mut line).expect("it says where it is");
-        let at = line.find("://").expect("a URL");
-        let start = line[..at].rfind(' ').map_or(0, |space| space + 1);
-        Self { process, url: line[start..].trim_end().to_owned() }
-    }
-}
-
-impl Drop for Simulator {
-    fn drop(&mut self) {
-        self.process.kill().unwrap_or_default();
-        let _ended = self.process.wait();
     }
 }
 

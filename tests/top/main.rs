@@ -3,45 +3,18 @@
 #![cfg(unix)]
 
 mod proxy;
+#[path = "../support/simulator.rs"]
+mod simulator;
 #[path = "../support/terminal.rs"]
 mod terminal;
 
-use std::io::{BufRead as _, BufReader};
-use std::net::SocketAddr;
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 
 use tempfile::TempDir;
 
 use proxy::Sent;
+use simulator::Simulator;
 use terminal::Terminal;
-
-/// A simulated controller, as long as it is wanted.
-struct Simulator {
-    process: Child,
-    address: SocketAddr,
-    /// What follows the address in its URL.
-    settings: String,
-}
-
-impl Simulator {
-    fn start(family: &str) -> Self {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
-        command.args(["sim", family, "--bind", "127.0.0.1:0"]).stdin(Stdio::null()).stdout(Stdio::piped());
-        let mut process = command.spawn().expect("the simulator starts");
-        let mut line = String::new();
-        BufReader::new(process.stdout.take().expect("a pipe")).read_line(&mut line).expect("it says where it is");
-        let (_, place) = line.trim_end().split_once("://").expect("a URL");
-        let (address, settings) = place.split_once('?').unwrap_or((place, ""));
-        Self { process, address: address.parse().expect("an address"), settings: settings.to_owned() }
-    }
-}
-
-impl Drop for Simulator {
-    fn drop(&mut self) {
-        self.process.kill().unwrap_or_default();
-        let _ended = self.process.wait();
-    }
-}
 
 /// A user with an inventory of these targets, robot1 and so on.
 struct Desk {
@@ -170,11 +143,11 @@ fn without_colour_and_beyond_ascii_nothing_is_told_that_the_terminal_has_not() {
 #[test]
 fn only_reads_leave_whatever_is_pressed() {
     let (yerc, toyo, yrcx) = (Simulator::start("yerc"), Simulator::start("toyo"), Simulator::start("yrcx"));
-    let (yerc_at, to_yerc) = proxy::udp(yerc.address);
-    let (toyo_at, to_toyo) = proxy::tcp(toyo.address);
-    let (yrcx_at, to_yrcx) = proxy::tcp(yrcx.address);
+    let (yerc_at, to_yerc) = proxy::udp(yerc.place().0);
+    let (toyo_at, to_toyo) = proxy::tcp(toyo.place().0);
+    let (yrcx_at, to_yrcx) = proxy::tcp(yrcx.place().0);
     let targets = [
-        format!("yerc udp://{yerc_at}?{}", yerc.settings),
+        format!("yerc udp://{yerc_at}?{}", yerc.place().1),
         format!("toyo tcp://{toyo_at}"),
         format!("yrcx eip://{yrcx_at}"),
     ];
