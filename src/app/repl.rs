@@ -18,7 +18,7 @@ use tokio::io::{AsyncBufReadExt as _, BufReader};
 use self::assistant::Assistant;
 use self::editor::{Editor, Typed};
 use self::meaning::{Meaning, family_help};
-use self::prompt::{Prompt, look};
+use self::prompt::{Prompt, Seen, look};
 use self::terminal::Terminal;
 use super::batch::{self, refuse_repetition};
 use super::parser::Parser;
@@ -113,10 +113,9 @@ impl Repl {
         loop {
             let seen = match &self.robot {
                 Some(robot) if !self.globals.dry_run => look(robot, &line_of(holder, "repl"), &self.screen).await,
-                _ => None,
+                _ => Seen::NotAsked,
             };
-            let prompt =
-                Prompt::new(self.meaning.prefix(), self.robot.as_ref(), seen.as_ref(), self.screen.stdout_color());
+            let prompt = Prompt::new(self.meaning.prefix(), self.robot.as_ref(), &seen, self.screen.stdout_color());
             let typed = tokio::select! {
                 typed = editor.read(prompt) => typed,
                 how = asked_to_end() => {

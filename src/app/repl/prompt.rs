@@ -14,10 +14,24 @@ use crate::settings::Robot;
 /// The prompt waits no longer than this for a robot.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// How the robot is, asked over the link that is held; none if that cannot be told at once.
-pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Option<OverviewReport> {
+/// How the robot is, asked over the link that is held.
+pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Seen {
     let screen = screen.silenced();
-    timeout(PATIENCE, overview::look(robot, line, &screen)).await.ok()?.ok()
+    match timeout(PATIENCE, overview::look(robot, line, &screen)).await {
+        Ok(Ok(state)) => Seen::State(state),
+        _ => Seen::Silent,
+    }
+}
+
+/// What is known of the robot.
+#[derive(Debug)]
+pub enum Seen {
+    /// How it is.
+    State(OverviewReport),
+    /// It could not tell at once.
+    Silent,
+    /// It is not talked to.
+    NotAsked,
 }
 
 /// A prompt, and the same with colours; both are as wide on the screen.
@@ -31,7 +45,7 @@ pub struct Prompt {
 
 impl Prompt {
     /// `cell3 [servo on, ALARM] yerc> `.
-    pub fn new(prefix: &[String], robot: Option<&Robot>, seen: Option<&OverviewReport>, colour: bool) -> Self {
+    pub fn new(prefix: &[String], robot: Option<&Robot>, seen: &Seen, colour: bool) -> Self {
         let shown = |colour: bool| {
             let mut parts = Vec::new();
             if let Some(robot) = robot {
@@ -47,10 +61,12 @@ impl Prompt {
 }
 
 /// What is worth knowing before anything is typed.
-fn states(robot: &Robot, seen: Option<&OverviewReport>) -> Vec<Cell> {
+fn states(robot: &Robot, seen: &Seen) -> Vec<Cell> {
     let simulated = robot.target.value.is_simulated().then(|| Cell::from("simulated"));
-    let Some(seen) = seen else {
-        return simulated.into_iter().chain([Cell::from("no answer").tone(Tone::Bad)]).collect();
+    let seen = match seen {
+        Seen::State(seen) => seen,
+        Seen::Silent => return simulated.into_iter().chain([Cell::from("no answer").tone(Tone::Bad)]).collect(),
+        Seen::NotAsked => return simulated.into_iter().chain(["dry run".into()]).collect(),
     };
     let servo = seen.servo_on.map(|on| if on { Cell::from("servo on").tone(Tone::Good) } else { "servo off".into() });
     let state = match (seen.held, seen.running) {
@@ -78,10 +94,13 @@ mod tests {
     fn it_tells_whom_a_line_is_for_and_how_that_one_is() {
         let yerc = ["yerc".to_owned()];
         let seen = OverviewReport { servo_on: Some(true), alarm: Some(true), ..OverviewReport::default() };
-        let prompt = Prompt::new(&yerc, Some(&simulated()), Some(&seen), true);
+        let prompt = Prompt::new(&yerc, Some(&simulated()), &Seen::State(seen), true);
         assert_eq!(prompt.plain, "sim [simulated, servo on, ALARM] yerc> ");
         assert_eq!(prompt.styled, "sim [simulated, \u{1b}[32mservo on\u{1b}[0m, \u{1b}[31mALARM\u{1b}[0m] yerc> ");
-        assert_eq!(Prompt::new(&yerc, Some(&simulated()), None, false).styled, "sim [simulated, no answer] yerc> ");
-        assert_eq!(Prompt::new(&[], None, None, true).plain, "armctl> ");
+        assert_eq!(
+            Prompt::new(&yerc, Some(&simulated()), &Seen::Silent, false).styled,
+            "sim [simulated, no answer] yerc> "
+        );
+        assert_eq!(Prompt::new(&[], None, &Seen::NotAsked, true).plain, "armctl> ");
     }
 }
