@@ -2,6 +2,7 @@
 
 mod batch;
 mod complete;
+mod flags;
 mod misplaced;
 mod parser;
 mod ready;
@@ -65,7 +66,7 @@ fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
 async fn run(cli: Cli) -> Result<(), Stopped> {
     let Words { globals, command } = cli;
     match Wanted::from(command) {
-        Wanted::Work(work) => Box::pin(Ready::new(globals, work, None)?.go()).await,
+        Wanted::Work(work) => Box::pin(Ready::new(globals, None, work, None)?.go()).await,
         Wanted::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
         Wanted::Prompt(prefix) => Box::pin(repl::run(globals, prefix)).await,
         Wanted::Bare(prefix) if repl::can_type() => Box::pin(repl::run(globals, prefix)).await,

@@ -169,8 +169,8 @@ pub struct Globals {
     #[arg(long, global = true, hide_short_help = true, value_name = "FILE", help_heading = "Output")]
     pub trace: Option<PathBuf>,
 
-    /// Answer yes to the question before a motion
-    #[arg(short, long, global = true, help_heading = "Safety")]
+    /// Answer yes to the question before what moves, deletes or overwrites
+    #[arg(long, global = true, help_heading = "Safety")]
     pub yes: bool,
     /// Send nothing; print what would be sent
     #[arg(long, global = true, help_heading = "Safety")]

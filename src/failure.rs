@@ -31,6 +31,9 @@ pub enum Kind {
     Mixed,
     /// Ctrl-C.
     Interrupted,
+    /// The answer to a question that a dry run does not ask. It ends a command there, and is never shown.
+    #[serde(skip)]
+    NotKnown,
 }
 
 impl Kind {

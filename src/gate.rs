@@ -1,4 +1,12 @@
 //! What stands between a typed command and a machine that can hurt someone.
+//!
+//! A command names the most that it does ([`Risk`]); the one loop that runs all commands has it pass here before anything
+//! is sent. What it may then send is a [`Grant`], which its link checks before every frame: a command that does more than
+//! it was let through for cannot. What overwrites something is let through when the command knows what it overwrites and
+//! has that confirmed.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
 
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
@@ -15,16 +23,82 @@ pub enum OnInterrupt {
     Leave,
 }
 
-/// What a command wants beyond the usual, because what it does cannot be taken back.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub enum Demand {
-    /// A question before a motion, as everywhere.
+/// How a yes is given to a command that needs one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Confirmation {
+    /// A question before anything is sent.
     #[default]
-    Usual,
-    /// `--yes` on the command line, and nothing less; says why, as in "a change of E06 needs a power cycle".
-    Flag(String),
-    /// This word, typed, on a real controller; `--yes` stands for it.
+    Question,
+    /// This word, typed, before anything is sent: what is done cannot be undone.
     Word(&'static str),
+    /// A question of the command's own, once it knows what it replaces.
+    WhenKnown,
+}
+
+/// What the gate is told about a command.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Intent {
+    /// The most that it does.
+    pub risk: Risk,
+    /// Completes "This will …": `start job COUNT`.
+    pub text: String,
+    /// How a yes is given.
+    pub confirmation: Confirmation,
+    /// Whether it stops the robot, which is always allowed.
+    pub is_stop: bool,
+}
+
+impl Intent {
+    /// The same for one robot of the controller; 0 is none in particular.
+    #[must_use]
+    pub fn of_unit(mut self, unit: u8) -> Self {
+        let robot = format!("robot {unit}");
+        if unit > 0 && !self.text.is_empty() && !self.text.contains(&robot) {
+            self.text.push_str(&format!(", {robot}"));
+        }
+        self
+    }
+
+    /// What may leave before anything was confirmed on the way.
+    pub fn granted_at_first(&self) -> Risk {
+        match self.confirmation {
+            Confirmation::WhenKnown => self.risk.min(Risk::Write),
+            Confirmation::Question | Confirmation::Word(_) => self.risk,
+        }
+    }
+}
+
+/// The most that may leave through a link. The gate raises it, the link checks it before every frame.
+#[derive(Debug, Clone)]
+pub struct Grant(Arc<AtomicU8>);
+
+const RISKS: [Risk; 4] = [Risk::Read, Risk::Write, Risk::Destroy, Risk::Motion];
+
+impl Grant {
+    /// Lets through what is not riskier than this.
+    pub fn of(risk: Risk) -> Self {
+        Self(Arc::new(AtomicU8::new(risk as u8)))
+    }
+
+    /// The most that may leave.
+    pub fn get(&self) -> Risk {
+        // Only `raise` writes it, and it writes the number of a risk.
+        RISKS[usize::from(self.0.load(Ordering::Relaxed)).min(RISKS.len() - 1)]
+    }
+
+    /// Lets this through from now on as well.
+    pub fn raise(&self, risk: Risk) {
+        self.0.fetch_max(risk as u8, Ordering::Relaxed);
+    }
+
+    /// The last check before something leaves: whether `what` may.
+    pub fn check(&self, risk: Risk, what: &str) -> Result<(), Failure> {
+        if risk <= self.get() {
+            return Ok(());
+        }
+        Err(Failure::local(format!("internal error: {what} ({}) is not authorized; nothing was sent", risk.name()))
+            .hint("this is a fault of armctl; please report it"))
+    }
 }
 
 /// What the operator allowed beforehand.
@@ -39,68 +113,146 @@ pub struct Gate {
 }
 
 impl Gate {
-    /// Lets a command of `risk` through to `robot`, asking where the contract wants it. `intent` says what will happen,
-    /// as in "start the selected job".
-    pub fn pass(
-        &self,
-        screen: &Screen,
-        robot: &Robot,
-        risk: Risk,
-        demand: &Demand,
-        intent: &str,
-    ) -> Result<(), Failure> {
-        if !self.must_ask(screen, robot, risk, demand, intent)? {
-            return Ok(());
-        }
-        screen.ask_note(&format!("{}: a {} controller, not the built-in simulator", robot.label(), robot.family));
-        let agreed = match demand {
-            Demand::Word(word) => screen.confirm_word(&format!("This will {intent}."), word)?,
-            Demand::Usual | Demand::Flag(_) => screen.confirm(&format!("This will {intent}. Go on?"))?,
-        };
-        if agreed { Ok(()) } else { Err(Failure::new(Kind::RefusedHere, "not confirmed; nothing was sent")) }
-    }
-
     /// Whether a person must be asked; an error if nobody can be, or if it is refused whatever anybody says.
-    pub fn must_ask(
-        &self,
-        screen: &Screen,
-        robot: &Robot,
-        risk: Risk,
-        demand: &Demand,
-        intent: &str,
-    ) -> Result<bool, Failure> {
-        if risk == Risk::Read || self.dry_run {
+    pub fn must_ask(&self, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<bool, Failure> {
+        self.admits(robot, intent)?;
+        if !self.needs_yes(robot, intent.risk) {
             return Ok(false);
         }
-        if robot.read_only.value {
-            return Err(Failure::new(Kind::RefusedHere, format!("{} is read-only", robot.label()))
-                .hint("remove read_only from its entry in robots.toml if it may be changed"));
-        }
-        let refused = |message: String| Failure::new(Kind::RefusedHere, message);
-        match demand {
-            Demand::Flag(why) if !self.yes => {
-                return Err(refused(format!("not confirmed: {why}")).hint("add --yes if it is meant"));
-            }
-            Demand::Usual if risk < Risk::Motion => return Ok(false),
-            _ => {}
-        }
-        if self.yes || robot.target.value.is_simulated() {
-            return Ok(false);
-        }
-        if !screen.can_ask() {
-            let when = if risk == Risk::Motion { "when nobody is in the cell" } else { "if it is meant" };
-            return Err(refused(format!("not confirmed: on {} this would {intent}", robot.label()))
-                .hint(format!("add --yes {when}, or --dry-run to see what would be sent")));
+        // What is replaced is not known yet: perhaps nothing is.
+        if !screen.can_ask() && intent.confirmation != Confirmation::WhenKnown {
+            return Err(unasked(robot, intent.risk, &intent.text));
         }
         Ok(true)
     }
 
-    /// Refuses to move several robots that were not each named.
-    pub fn pass_many(risk: Risk, robots: &[Robot], each_named: bool) -> Result<(), Failure> {
-        if risk < Risk::Motion || robots.len() < 2 || each_named {
+    /// Refuses to change a read-only robot. To stop one is always allowed.
+    fn admits(&self, robot: &Robot, intent: &Intent) -> Result<(), Failure> {
+        if intent.risk == Risk::Read || self.dry_run || intent.is_stop || !robot.read_only.value {
             return Ok(());
         }
-        Err(Failure::new(Kind::RefusedHere, format!("{} robots would move at once", robots.len()))
-            .hint("name each of them with -r; globs, --tag and --all do not move robots"))
+        Err(Failure::new(Kind::RefusedHere, format!("{} is read-only", robot.label())).hint(match &robot.bound_by {
+            Some(entry) => format!("its address is that of '{entry}' in robots.toml, which is read-only"),
+            None => "remove read_only from its entry in robots.toml if it may be changed".to_owned(),
+        }))
+    }
+
+    /// Whether a yes is needed, and was not given on the command line.
+    pub fn needs_yes(&self, robot: &Robot, risk: Risk) -> bool {
+        risk >= Risk::Destroy && !self.yes && !self.dry_run && !robot.target.value.is_simulated()
+    }
+
+    /// Refuses to move, or to overwrite things on, several robots that were not each named.
+    pub fn pass_many(risk: Risk, robots: &[Robot], each_named: bool) -> Result<(), Failure> {
+        if risk < Risk::Destroy || robots.len() < 2 || each_named {
+            return Ok(());
+        }
+        let what = if risk == Risk::Motion { "would move" } else { "would have something deleted or overwritten" };
+        Err(Failure::new(Kind::RefusedHere, format!("{} robots {what} at once", robots.len())).hint(
+            "name each of them with -r; patterns, --tag and --all are not enough for what moves, deletes or overwrites",
+        ))
+    }
+}
+
+/// What is deleted or overwritten: in one line each, old and new.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Change {
+    /// Completes "This will …": `overwrite 2 points`.
+    text: String,
+    items: Vec<String>,
+    notes: Vec<String>,
+    is_empty: bool,
+}
+
+/// Lines of a question; the rest is counted.
+const SHOWN: usize = 12;
+
+impl Change {
+    /// `text` completes "This will …": `delete 2 files`.
+    pub fn new(text: impl Into<String>) -> Self {
+        Self { text: text.into(), ..Self::default() }
+    }
+
+    /// Nothing that a person wrote or taught is deleted or overwritten.
+    pub fn nothing() -> Self {
+        Self { is_empty: true, ..Self::default() }
+    }
+
+    /// Something that is replaced.
+    #[must_use]
+    pub fn replaces(mut self, what: &str, old: &str, new: &str) -> Self {
+        self.items.push(format!("{what}: {old} -> {new}"));
+        self
+    }
+
+    /// Something that is deleted, or overwritten as a whole.
+    #[must_use]
+    pub fn item(mut self, what: impl Into<String>) -> Self {
+        self.items.push(what.into());
+        self
+    }
+
+    /// What follows from it: `a power cycle is needed`.
+    #[must_use]
+    pub fn note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
+
+    /// Whether no question is needed.
+    pub fn is_empty(&self) -> bool {
+        self.is_empty
+    }
+
+    /// All of it, for a person to read before the question.
+    pub fn lines(&self) -> Vec<String> {
+        let mut lines = vec![format!("This will {}{}", self.text, if self.items.is_empty() { "." } else { ":" })];
+        lines.extend(self.items.iter().take(SHOWN).map(|item| format!("  {item}")));
+        if self.items.len() > SHOWN {
+            lines.push(format!("  and {} more", self.items.len() - SHOWN));
+        }
+        lines.extend(self.notes.iter().cloned());
+        lines
+    }
+
+    /// All of it in one line.
+    pub fn in_a_line(&self) -> String {
+        match &self.items[..] {
+            [] => self.text.clone(),
+            [item] => format!("{} ({item})", self.text),
+            [item, rest @ ..] => format!("{} ({item}, and {} more)", self.text, rest.len()),
+        }
+    }
+}
+
+/// Nobody can be asked.
+pub fn unasked(robot: &Robot, risk: Risk, text: &str) -> Failure {
+    let when = if risk == Risk::Motion { " when nobody is in the cell" } else { "" };
+    Failure::new(Kind::RefusedHere, format!("not confirmed: on {} this would {text}", robot.label()))
+        .hint(format!("pass --yes to confirm{when}, or --dry-run to see what would be sent"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grant_is_raised_and_never_lowered() {
+        let grant = Grant::of(Risk::Read);
+        let shared = grant.clone();
+        assert!(shared.check(Risk::Write, "a write").is_err());
+        grant.raise(Risk::Destroy);
+        grant.raise(Risk::Write);
+        assert_eq!(shared.get(), Risk::Destroy);
+        assert!(shared.check(Risk::Destroy, "a delete").is_ok());
+        assert!(shared.check(Risk::Motion, "a move").unwrap_err().message.contains("a move (motion)"));
+    }
+
+    #[test]
+    fn a_long_change_is_counted() {
+        let change = (0..20).fold(Change::new("delete 20 files"), |change, n| change.item(format!("{n}.JBI")));
+        assert_eq!(change.lines().len(), 1 + SHOWN + 1);
+        assert_eq!(change.lines().last().unwrap(), "  and 8 more");
+        assert_eq!(change.in_a_line(), "delete 20 files (0.JBI, and 19 more)");
     }
 }

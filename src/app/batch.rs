@@ -141,12 +141,12 @@ impl Plan<'_> {
         let Wanted::Work(work) = command.into() else {
             return Err(Failure::usage("this is no command for a line of a file").hint("`armctl help batch`"));
         };
-        let ready = Ready::new(globals.within(self.globals), work, Some(line))?;
+        let ready = Ready::new(globals, Some(self.globals), work, Some(line))?;
         if let Some(why) = ready.why_not_in_batch() {
             return Err(Failure::usage(format!("this is nothing for a line of a file: {why}"))
                 .hint("type it at a terminal of its own"));
         }
-        ready.foresee()?;
+        ready.check_gate()?;
         Ok(Some(Planned { ready, origin: origin.clone(), typed }))
     }
 

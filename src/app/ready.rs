@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::screen;
+use super::{flags, screen};
 use crate::cli::{Globals, OfToyo, OfYerc, OfYrcx, Top, Verb};
 use crate::command::common::Common;
 use crate::command::common::batch::Batch;
@@ -37,8 +37,8 @@ pub enum Wanted {
 pub enum Work {
     /// For robots of a family.
     Yerc(Box<dyn AnyCommand<yerc::Family>>),
-    /// For robots of a family.
-    Yrcx(Box<dyn AnyCommand<yrcx::Family>>),
+    /// For robots of a family, and which robot of the controller.
+    Yrcx(u8, Box<dyn AnyCommand<yrcx::Family>>),
     /// For robots of a family.
     Toyo(Box<dyn AnyCommand<toyo::Family>>),
     /// Whatever all families share.
@@ -54,7 +54,9 @@ impl From<Top> for Wanted {
         match command {
             Top::Yerc(OfYerc::Yerc { verb: Some(Verb::Command(verb)) }) => Self::Work(Work::Yerc(verb.command())),
             Top::Yerc(OfYerc::Yerc { verb }) => after(Family::Yerc, Vec::new(), verb.is_some()),
-            Top::Yrcx(OfYrcx::Yrcx { unit, verb: Some(Verb::Command(verb)) }) => Self::Work(Work::Yrcx(unit.of(verb))),
+            Top::Yrcx(OfYrcx::Yrcx { unit, verb: Some(Verb::Command(verb)) }) => {
+                Self::Work(Work::Yrcx(unit.number(), verb.command()))
+            }
             Top::Yrcx(OfYrcx::Yrcx { unit, verb }) => after(Family::Yrcx, unit.words(), verb.is_some()),
             Top::Toyo(OfToyo::Toyo { verb: Some(Verb::Command(verb)) }) => Self::Work(Work::Toyo(verb.command())),
             Top::Toyo(OfToyo::Toyo { verb }) => after(Family::Toyo, Vec::new(), verb.is_some()),
@@ -74,11 +76,15 @@ pub struct Ready {
 }
 
 impl Ready {
-    /// Reads flags, environment and inventory, once.
-    pub fn new(globals: Globals, work: Work, line: Option<Line>) -> Result<Self, Failure> {
+    /// Reads flags, environment and inventory, once. `all` are the flags that were given to all lines, where it is one of
+    /// several.
+    pub fn new(globals: Globals, all: Option<&Globals>, work: Work, line: Option<Line>) -> Result<Self, Failure> {
+        flags::check(&globals, &work)?;
+        let globals = all.map_or_else(|| globals.clone(), |all| globals.clone().within(all));
         let need = work.need();
         let mut run = prepare(globals, need, line)?;
         match &work {
+            Work::Yrcx(unit, _) => run.unit = *unit,
             Work::Common(Common::Status(_) | Common::Top(_)) => run.sources.widen(),
             Work::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
             Work::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.family(),
@@ -94,12 +100,12 @@ impl Ready {
     }
 
     /// Finds what would be refused without asking anybody: robots that are not there, a gate that is closed.
-    pub fn foresee(&self) -> Result<(), Failure> {
+    pub fn check_gate(&self) -> Result<(), Failure> {
         match &self.work {
-            Work::Yerc(command) => self.run.foresee_gate(&**command),
-            Work::Yrcx(command) => self.run.foresee_gate(&**command),
-            Work::Toyo(command) => self.run.foresee_gate(&**command),
-            Work::Common(Common::Status(overview)) => self.run.foresee_gate::<Fleet>(overview),
+            Work::Yerc(command) => self.run.check_gate(&**command),
+            Work::Yrcx(_, command) => self.run.check_gate(&**command),
+            Work::Toyo(command) => self.run.check_gate(&**command),
+            Work::Common(Common::Status(overview)) => self.run.check_gate::<Fleet>(overview),
             Work::Common(_) => Ok(()),
         }
     }
@@ -118,7 +124,7 @@ impl Work {
     pub async fn go(self, run: &Run) -> Result<(), Stopped> {
         match self {
             Self::Yerc(command) => run.robots(&*command).await,
-            Self::Yrcx(command) => run.robots(&*command).await,
+            Self::Yrcx(_, command) => run.robots(&*command).await,
             Self::Toyo(command) => run.robots(&*command).await,
             Self::Common(common) => common.run(run).await,
         }
@@ -130,7 +136,7 @@ impl Work {
         }
         match self {
             Self::Yerc(command) => of(&**command),
-            Self::Yrcx(command) => of(&**command),
+            Self::Yrcx(_, command) => of(&**command),
             Self::Toyo(command) => of(&**command),
             Self::Common(Common::Robots(Robots::Discover(_))) => Need::Nothing,
             Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
@@ -163,7 +169,7 @@ fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Fail
     let repeat = Repeat { every: globals.watch, count: globals.count, until, within: globals.within };
     let trace = globals.trace.clone();
     let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need, line.is_some())? };
-    Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default() })
+    Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default(), unit: 0 })
 }
 
 /// Which robots, and their settings; `among` other lines of this process, simulators live on.
@@ -182,7 +188,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
         },
         simulated: None,
     };
-    // A robot that is told by flag needs no file; a broken file is an error for everybody else.
+    // Also for a robot that is told by its address: the file says whether that may be changed.
     let mut location = Location::find(match globals.config {
         Some(path) => Some(path),
         None => variable("ARMCTL_CONFIG", |path| Ok(path.into()))?,
@@ -190,7 +196,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
     if let (Location::Named(path), Need::InventoryOrNone) = (&location, need) {
         location = Location::Usual(path.clone());
     }
-    let inventory = if selection.sim || selection.target.is_some() || need == Need::Names {
+    let inventory = if selection.sim || need == Need::Names {
         Inventory { path: location.path().map(Path::to_owned), ..Inventory::default() }
     } else {
         Inventory::load(&location)?

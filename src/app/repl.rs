@@ -195,11 +195,12 @@ impl Repl {
                 return refuse(&args, &error, self.screen.is_json()).map_or_else(Next::Failed, |()| Next::Line);
             }
         };
+        let own = globals.clone();
         let globals = globals.within(&self.globals);
         let screen = screen(&globals);
         let line = line_of(holder, text);
         let done = match command.into() {
-            Wanted::Work(work) => match Ready::new(globals, work, Some(line)) {
+            Wanted::Work(work) => match Ready::new(own, Some(&self.globals), work, Some(line)) {
                 Ok(ready) => Box::pin(ready.go()).await,
                 Err(failure) => Err(failure.into()),
             },

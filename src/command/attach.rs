@@ -11,7 +11,7 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::{Robot, Sessions};
 use crate::transport::session::client::{self, AttachError, Attached, Found, Hindrance};
-use crate::transport::session::place::{PlaceError, key};
+use crate::transport::session::place::{Place, PlaceError, key};
 use crate::transport::session::process;
 use crate::transport::session::wire::Peer;
 
@@ -65,9 +65,18 @@ async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Res
     Ok(Some(attached))
 }
 
+/// Whether a session holds the robot's link, and commands may go through it.
+pub fn is_held(robot: &Robot) -> bool {
+    robot.sessions != Sessions::None
+        && Place::find().is_ok_and(|place| place.is_some_and(|place| place.spot(&key_of(robot)).is_open()))
+}
+
 /// What the robot's session is named by.
 pub fn key_of(robot: &Robot) -> String {
     let (family, url) = (robot.family.name(), robot.target.value.url());
+    if let Some(address) = robot.target.value.address().key() {
+        return key(family, &address);
+    }
     if robot.sessions == Sessions::OwnSimulators && robot.target.value.is_simulated() {
         return key(family, &format!("{url} as {} in process {}", robot.name, process()));
     }

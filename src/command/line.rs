@@ -10,7 +10,6 @@ use serde_json::Value;
 
 use super::holding::{By, Holder};
 use super::{Access, Need};
-use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::envelope::Envelope;
@@ -50,7 +49,7 @@ impl Line {
     /// Has the link to a robot held from now on.
     pub async fn hold(&self, robot: &Robot, trace: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
         let trace = trace.map(Path::to_owned);
-        let access = Access { granted: Risk::Read, dry_run: false, trace, need: Need::Command, typed: None };
+        let access = Access { trace, ..Access::reading(Need::Command) };
         self.connecting(robot, access, screen).await.map(|_| ())
     }
 

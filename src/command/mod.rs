@@ -5,9 +5,11 @@
 //! completion and schema follow from it.
 
 pub mod attach;
+pub mod authority;
 pub mod backup;
 pub mod checks;
 pub mod common;
+pub mod dry_run;
 pub mod holding;
 pub mod interrupt;
 mod kind;
@@ -19,6 +21,8 @@ pub mod orders;
 pub mod overview;
 pub mod run;
 pub mod sample;
+#[cfg(test)]
+mod testing;
 pub mod toyo;
 pub mod trace;
 pub mod yerc;
@@ -35,9 +39,11 @@ use schemars::{JsonSchema, Schema};
 use serde::Serialize;
 use serde_json::Value;
 
+use self::authority::Authority;
+use self::dry_run::Plan;
 use crate::controller::Risk;
 use crate::failure::Failure;
-use crate::gate::Demand;
+use crate::gate::{Confirmation, Grant, Intent};
 use crate::output::Screen;
 use crate::output::view::View;
 use crate::settings::{self, Robot};
@@ -64,13 +70,15 @@ pub struct Context<'a, F: Family> {
     pub screen: &'a Screen,
     /// Whether other robots may run the same command, so that files need a folder for each.
     pub several: bool,
+    /// Confirms what is deleted or overwritten, once that is known.
+    pub authority: Authority<'a>,
 }
 
 /// How a link may be used.
 #[derive(Debug, Clone)]
 pub struct Access {
     /// Nothing riskier leaves: the last check, after the gate.
-    pub granted: Risk,
+    pub granted: Grant,
     /// Note what would be sent instead of sending it.
     pub dry_run: bool,
     /// Where frames are recorded.
@@ -79,6 +87,15 @@ pub struct Access {
     pub need: Need,
     /// The command line, where it is not that of the process.
     pub typed: Option<Arc<str>>,
+    /// The robot of the controller that commands are for (yrcx), 1 to 4; 0 for the first, or for all.
+    pub unit: u8,
+}
+
+impl Access {
+    /// For what only looks.
+    pub fn reading(need: Need) -> Self {
+        Self { granted: Grant::of(Risk::Read), dry_run: false, trace: None, need, typed: None, unit: 0 }
+    }
 }
 
 /// What a command wants of the connection. Where a controller takes the end of a connection for a fault, as YRCX does,
@@ -92,6 +109,17 @@ pub enum Need {
     Sight,
     /// To ask its network board, which answers without a connection to the controller (yrcx).
     Messages,
+}
+
+/// What a connection does to a controller by being there.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Entry {
+    /// Nothing.
+    Harmless,
+    /// Nothing, as a session holds it; another way would not be harmless.
+    ThroughSession,
+    /// It stops the robot when it ends; completes "This will …".
+    Stops(&'static str),
 }
 
 /// A controller family as the commands see it.
@@ -114,7 +142,12 @@ pub trait Family: Sized + 'static {
     }
 
     /// What a dry run would have sent, in the order of sending.
-    fn rehearsed(link: &mut Self::Link) -> Vec<Value>;
+    fn rehearsed(link: &mut Self::Link) -> Plan;
+
+    /// What a connection of this kind does to the controller by being opened, and closed at the end.
+    fn entry(_robot: &Robot, _need: Need) -> Entry {
+        Entry::Harmless
+    }
 
     /// Closes the connection, and says at `-v` what it was like.
     async fn close(link: Self::Link, screen: &Screen) -> Result<(), Failure>;
@@ -145,9 +178,19 @@ pub trait Command {
         String::new()
     }
 
-    /// What it wants beyond the usual question.
-    fn demand(&self) -> Demand {
-        Demand::Usual
+    /// How a yes is given to what moves, deletes or overwrites.
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::Question
+    }
+
+    /// Whether it stops the robot, which is always allowed.
+    fn is_stop(&self) -> bool {
+        false
+    }
+
+    /// Whether it moves the robot until somebody ends it: a jog without `--for`.
+    fn moves_until_stopped(&self) -> bool {
+        false
     }
 
     /// Whether it is repeated until something ends it, each run waiting for the next thing to tell.
@@ -160,7 +203,8 @@ pub trait Command {
         Need::Command
     }
 
-    /// Does it. In a dry run the future stays pending once all that can be foreseen is noted.
+    /// Does it. In a dry run orders are noted and count as done; what reads ends in a failure that says its answer is not
+    /// known ([`dry_run::unknown`]), behind which nothing can be foreseen unless the command does.
     async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
 }
 
@@ -171,22 +215,18 @@ pub type Outcome = Result<Box<dyn AnyReport>, Failure>;
 pub trait AnyCommand<F: Family> {
     /// See [`Command::ID`].
     fn id(&self) -> &'static str;
-    /// See [`Command::risk`].
-    fn risk(&self) -> Risk;
-    /// See [`Command::risk_on`].
-    fn risk_on(&self, _robot: &Robot) -> Risk {
-        self.risk()
-    }
-    /// See [`Command::intent`].
-    fn intent(&self) -> String;
-    /// See [`Command::demand`].
-    fn demand(&self) -> Demand;
+    /// What the gate is told: of this robot, or at the most.
+    fn intent(&self, robot: Option<&Robot>) -> Intent;
     /// Whether it is for a robot.
     fn takes_robot(&self) -> bool {
         true
     }
     /// What it reports, if it takes no robot to do it.
     fn without_robot(&self, screen: &Screen) -> Option<Outcome>;
+    /// See [`Command::moves_until_stopped`].
+    fn moves_until_stopped(&self) -> bool {
+        false
+    }
     /// See [`Command::is_endless`].
     fn is_endless(&self) -> bool {
         false
@@ -228,20 +268,17 @@ impl<C: Command> AnyCommand<C::Family> for C {
         C::ID
     }
 
-    fn risk(&self) -> Risk {
-        Command::risk(self)
+    fn intent(&self, robot: Option<&Robot>) -> Intent {
+        Intent {
+            risk: robot.map_or_else(|| Command::risk(self), |robot| Command::risk_on(self, robot)),
+            text: Command::intent(self),
+            confirmation: Command::confirmation(self),
+            is_stop: Command::is_stop(self),
+        }
     }
 
-    fn risk_on(&self, robot: &Robot) -> Risk {
-        Command::risk_on(self, robot)
-    }
-
-    fn intent(&self) -> String {
-        Command::intent(self)
-    }
-
-    fn demand(&self) -> Demand {
-        Command::demand(self)
+    fn moves_until_stopped(&self) -> bool {
+        Command::moves_until_stopped(self)
     }
 
     fn is_endless(&self) -> bool {
@@ -293,16 +330,8 @@ impl<F: Family, C: Desk + clap::Args + 'static> AnyCommand<F> for AtDesk<C> {
         C::ID
     }
 
-    fn risk(&self) -> Risk {
-        Risk::Read
-    }
-
-    fn intent(&self) -> String {
-        String::new()
-    }
-
-    fn demand(&self) -> Demand {
-        Demand::Usual
+    fn intent(&self, _robot: Option<&Robot>) -> Intent {
+        Intent { risk: Risk::Read, text: String::new(), confirmation: Confirmation::Question, is_stop: false }
     }
 
     fn takes_robot(&self) -> bool {

@@ -3,11 +3,11 @@
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::Value;
 
+use super::authority::Authority;
+use super::dry_run::Plan;
 use super::line::Line;
-use super::{Access, Command, Context, Family, Need, Report, toyo, yerc, yrcx};
-use crate::controller::Risk;
+use super::{Access, Command, Context, Entry, Family, Need, Report, toyo, yerc, yrcx};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::{Cell, Table, Tone, View};
@@ -56,12 +56,20 @@ impl Family for Fleet {
         }
     }
 
-    fn rehearsed(link: &mut Link) -> Vec<Value> {
+    fn rehearsed(link: &mut Link) -> Plan {
         match link {
             Link::Yerc(link) => yerc::Family::rehearsed(link),
             Link::Yrcx(link) => yrcx::Family::rehearsed(link),
             Link::Toyo(link) => toyo::Family::rehearsed(link),
-            Link::Absent(_) => Vec::new(),
+            Link::Absent(_) => Plan::default(),
+        }
+    }
+
+    fn entry(robot: &Robot, need: Need) -> Entry {
+        match robot.family {
+            target::Family::Yerc => yerc::Family::entry(robot, need),
+            target::Family::Yrcx => yrcx::Family::entry(robot, need),
+            target::Family::Toyo => toyo::Family::entry(robot, need),
         }
     }
 
@@ -108,10 +116,12 @@ impl Command for Overview {
 /// How a robot is, asked among other lines of this process.
 pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<OverviewReport, Failure> {
     let overview = Overview {};
-    let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: overview.need(), typed: None };
+    let access = Access::reading(overview.need());
     let access = line.connecting(robot, access, screen).await?;
     let mut connection = Fleet::connect(robot, access, screen).await?;
-    let report = overview.run(Context { robot, link: &mut connection, screen, several: false }).await;
+    let authority = Authority::reading(screen, robot);
+    let context = Context { robot, link: &mut connection, screen, several: false, authority };
+    let report = overview.run(context).await;
     Fleet::close(connection, screen).await?;
     report
 }

@@ -3,33 +3,30 @@
 mod print;
 mod rounds;
 
-use std::future::poll_fn;
 use std::path::{Path, PathBuf};
-use std::task::Poll;
 use std::time::Duration;
 
 use futures_util::StreamExt as _;
 use futures_util::stream;
-use schemars::JsonSchema;
-use serde::Serialize;
-use serde_json::Value;
 use tokio::time::timeout_at;
 
 use self::print::{Place, timed};
 pub use self::rounds::Repeat;
 use self::rounds::Rounds;
+use super::authority::{self, Authority};
+use super::common::session::open_for;
+use super::dry_run::Plan;
 use super::interrupt::{catch_interrupts, interruptible};
 use super::line::Line;
-use super::{Access, AnyCommand, Context, Family, Outcome, Report};
+use super::{Access, AnyCommand, Context, Entry, Family, Outcome};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
-use crate::gate::{Demand, Gate, OnInterrupt};
+use crate::gate::{Confirmation, Gate, Grant, Intent, OnInterrupt};
 use crate::output::Screen;
 use crate::output::envelope::Envelope;
 use crate::output::jq::Filter;
 use crate::output::redraw::Redraw;
-use crate::output::view::{Table, View};
-use crate::settings::{Robot, Sources};
+use crate::settings::{Robot, Sessions, Sources};
 
 /// What the command line says about how to run a command.
 #[derive(Debug)]
@@ -50,6 +47,8 @@ pub struct Run {
     pub line: Option<Line>,
     /// What a watch has on the screen.
     pub redraw: Redraw,
+    /// `--unit`: the robot of the controller that commands are for.
+    pub unit: u8,
 }
 
 /// A failure on its way to stderr, with what the envelope needs to know.
@@ -88,18 +87,27 @@ impl Run {
         if let Some(outcome) = command.without_robot(&self.screen) {
             return self.local(command.id(), &*outcome?);
         }
-        let risk = command.risk();
-        let robots = self.chosen(command)?;
-        if risk == Risk::Motion || command.demand() != Demand::Usual {
+        let mut robots = self.chosen(command)?;
+        let asks = |robot: &Robot| {
+            let intent = self.intent(command, robot);
+            intent.risk == Risk::Motion || intent.confirmation != Confirmation::Question
+        };
+        if robots.iter().any(asks) {
             // From here on Ctrl-C, at a question too, ends in a message and an exit code instead of a killed process.
             catch_interrupts();
             for robot in &robots {
-                self.foresee(command, robot).await.map_err(|failure| Stopped::at(robot, command, failure))?;
+                self.check_model(command, robot).await.map_err(|failure| Stopped::at(robot, command, failure))?;
             }
         }
         for robot in &robots {
-            let passed = self.pass_gate(robot, command).await;
+            let intent = self.intent(command, robot);
+            let passed = authority::pass(self.gate, &self.screen, robot, &intent).await;
             passed.map_err(|failure| Stopped::at(robot, command, failure))?;
+        }
+        for robot in robots.iter_mut().filter(|robot| self.opens_session(command, robot)) {
+            let opened = open_for(robot, self.sources.inventory.path.as_deref(), &self.screen).await;
+            opened.map_err(|failure| Stopped::at(robot, command, failure))?;
+            robot.sessions = Sessions::Only;
         }
         self.begin_trace()?;
         match &robots[..] {
@@ -110,47 +118,60 @@ impl Run {
 
     /// The robots that a command is for, if it can be for these.
     fn chosen<F: Family>(&self, command: &dyn AnyCommand<F>) -> Result<Vec<Robot>, Failure> {
-        let risk = command.risk();
-        if risk > Risk::Read && self.repeat.is_wanted() {
+        if command.intent(None).risk > Risk::Read && self.repeat.is_wanted() {
             return Err(Failure::usage("--watch, --count and --until repeat commands that only read")
                 .hint("run this command once, and watch `status` or `position`"));
         }
-        let robots = self.sources.robots(F::FAMILY)?;
+        if command.moves_until_stopped() && !self.gate.dry_run && !self.screen.can_interrupt() {
+            return Err(Failure::usage("nothing would end this motion: there is no terminal for Ctrl-C")
+                .hint("add --for TIME, such as --for 500ms"));
+        }
+        let mut robots = self.sources.robots(F::FAMILY)?;
+        for robot in &mut robots {
+            // A session that ends meanwhile must not leave the way that nobody was asked about.
+            if !self.gate.dry_run && F::entry(robot, command.need()) == Entry::ThroughSession {
+                robot.sessions = Sessions::Only;
+            }
+        }
         if command.is_endless() && robots.len() > 1 {
             return Err(Failure::usage("this watches one robot at a time").hint("name one with -r"));
         }
         let each_named = robots.iter().all(|robot| self.sources.selection.robots.contains(&robot.name));
+        let risk = robots.iter().map(|robot| self.intent(command, robot).risk).max().unwrap_or(Risk::Read);
         Gate::pass_many(risk, &robots, each_named)?;
         Ok(robots)
     }
 
+    /// Whether a session is to be opened for what a command does, because the robot's entry says so.
+    fn opens_session<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> bool {
+        let is_wanted = robot.hold.value && !robot.read_only.value && robot.sessions == Sessions::Shared;
+        is_wanted
+            && !self.gate.dry_run
+            && !command.intent(Some(robot)).is_stop
+            && matches!(F::entry(robot, command.need()), Entry::Stops(_))
+    }
+
+    /// What the gate is told of a command for a robot: what it does, and what its connection does.
+    fn intent<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Intent {
+        let intent = command.intent(Some(robot)).of_unit(self.unit);
+        let is_free = self.gate.dry_run || intent.is_stop || self.opens_session(command, robot);
+        let entry = if is_free { Entry::Harmless } else { F::entry(robot, command.need()) };
+        let Entry::Stops(entry) = entry else { return intent };
+        let text = match intent.risk {
+            Risk::Motion => format!("{}, and {entry}", intent.text),
+            Risk::Read | Risk::Write | Risk::Destroy => entry.to_owned(),
+        };
+        Intent { risk: Risk::Motion, text, confirmation: Confirmation::Question, ..intent }
+    }
+
     /// Finds what is refused without asking anybody: robots that are not there, a gate that stays closed.
-    pub fn foresee_gate<F: Family>(&self, command: &dyn AnyCommand<F>) -> Result<(), Failure> {
+    pub fn check_gate<F: Family>(&self, command: &dyn AnyCommand<F>) -> Result<(), Failure> {
         if !command.takes_robot() {
             return Ok(());
         }
-        let (risk, demand, intent) = (command.risk(), command.demand(), command.intent());
-        self.chosen(command)?
-            .iter()
-            .try_for_each(|robot| self.gate.must_ask(&self.screen, robot, risk, &demand, &intent).map(|_| ()))
-    }
-
-    /// Passes the gate. A question waits for its answer on a thread of its own, so that Ctrl-C is heard meanwhile.
-    async fn pass_gate<F: Family>(&self, robot: &Robot, command: &dyn AnyCommand<F>) -> Result<(), Failure> {
-        let (gate, screen) = (self.gate, self.screen);
-        let (risk, demand, intent) = (command.risk_on(robot), command.demand(), command.intent());
-        if risk < Risk::Motion && demand == Demand::Usual {
-            return gate.pass(&screen, robot, risk, &demand, &intent);
-        }
-        let robot = robot.clone();
-        let asked = tokio::task::spawn_blocking(move || gate.pass(&screen, &robot, risk, &demand, &intent));
-        match interruptible(asked).await {
-            Ok(answered) => answered.map_err(|error| Failure::local(format!("the question failed: {error}")))?,
-            Err(failure) => {
-                screen.ask_note("");
-                Err(Failure { message: format!("{}; nothing was sent", failure.message), ..failure })
-            }
-        }
+        let robots = self.chosen(command)?;
+        let mut asked = robots.iter().map(|robot| (robot, self.intent(command, robot)));
+        asked.try_for_each(|(robot, intent)| self.gate.must_ask(&self.screen, robot, &intent).map(|_| ()))
     }
 
     async fn one<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Stopped> {
@@ -165,7 +186,7 @@ impl Run {
                 let told = printed.is_ok() && !self.is_for_people();
                 Err(Stopped { failure, envelope: None, told })
             }
-            None => Ok(printed.map_err(|failure| self.unprinted(command.risk(), failure))?),
+            None => Ok(printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?),
         }
     }
 
@@ -174,14 +195,14 @@ impl Run {
         if risk == Risk::Read || failure.kind == Kind::PipeClosed || self.gate.dry_run {
             return failure;
         }
-        let message = format!("it was done, but not reported: {}", failure.message);
+        let message = format!("succeeded, but the report could not be written: {}", failure.message);
         Failure { message, ..failure }.hint("look before you repeat it")
     }
 
     /// Repeats a reading command over one connection.
     async fn watch<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Stopped> {
         let stopped = |failure| Stopped::at(robot, command, failure);
-        let mut link = self.connect(command, robot).await.map_err(stopped)?;
+        let (mut link, _) = self.connect(command, robot).await.map_err(stopped)?;
         let watched = self.watch_over(command, robot, &mut link).await;
         let closed = F::close(link, &self.screen).await;
         watched?;
@@ -197,7 +218,8 @@ impl Run {
         let stopped = |failure| Stopped::at(robot, command, failure);
         let mut rounds = Rounds::new(&self.repeat, if command.is_endless() { Duration::ZERO } else { EVERY });
         loop {
-            let attempt = self.attempt(command, robot, link);
+            let grant = Grant::of(Risk::Read);
+            let attempt = self.attempt(command, robot, link, &grant);
             let attempted = match rounds.deadline().filter(|_| command.is_endless()) {
                 Some(deadline) => timeout_at(deadline, attempt).await,
                 None => Ok(attempt.await),
@@ -257,7 +279,7 @@ impl Run {
         let mut links = at_a_time(robots.iter().map(|robot| self.connect(command, robot))).await;
         let verdict = self.many_over(command, robots, &mut links).await;
         let mut closed = Ok(());
-        for link in links.into_iter().flatten() {
+        for (link, _) in links.into_iter().flatten() {
             closed = closed.and(F::close(link, &self.screen).await);
         }
         verdict?;
@@ -268,13 +290,13 @@ impl Run {
         &self,
         command: &dyn AnyCommand<F>,
         robots: &[Robot],
-        links: &mut [Result<F::Link, Failure>],
+        links: &mut [Result<(F::Link, Grant), Failure>],
     ) -> Result<(), Stopped> {
         let mut rounds = Rounds::new(&self.repeat, EVERY);
         loop {
             let attempts = robots.iter().zip(&mut *links).map(|(robot, link)| async move {
                 match link {
-                    Ok(link) => self.attempt(command, robot, link).await,
+                    Ok((link, grant)) => self.attempt(command, robot, link, grant).await,
                     Err(failure) => Err(failure.clone()),
                 }
             });
@@ -309,11 +331,10 @@ impl Run {
     /// One connection, one run.
     async fn once<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Outcome {
         if self.gate.dry_run {
-            let frames = self.rehearse(command, robot, &self.screen).await?;
-            return Ok(Box::new(Rehearsal { frames }));
+            return Ok(Box::new(self.plan(command, robot, &self.screen).await?.into_report()));
         }
-        let mut link = self.connect(command, robot).await?;
-        let outcome = self.attempt(command, robot, &mut link).await;
+        let (mut link, grant) = self.connect(command, robot).await?;
+        let outcome = self.attempt(command, robot, &mut link, &grant).await;
         // What became of the command is worth more than what became of the record of it.
         let closed = F::close(link, &self.screen).await;
         let report = outcome?;
@@ -321,20 +342,55 @@ impl Run {
         Ok(report)
     }
 
-    async fn connect<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<F::Link, Failure> {
-        let (granted, need) = (command.risk_on(robot), command.need());
-        let access = Access { granted, dry_run: false, trace: self.trace.clone(), need, typed: None };
+    async fn connect<F: Family>(
+        &self,
+        command: &dyn AnyCommand<F>,
+        robot: &Robot,
+    ) -> Result<(F::Link, Grant), Failure> {
+        let access = self.access(command, robot);
+        let grant = access.granted.clone();
         let access = match &self.line {
             Some(line) => line.connecting(robot, access, &self.screen).await?,
             None => access,
         };
-        interruptible(Box::pin(F::connect(robot, access, &self.screen))).await?
+        let link = interruptible(Box::pin(F::connect(robot, access, &self.screen))).await??;
+        Ok((link, grant))
+    }
+
+    /// How a command may use its link when it begins.
+    fn access<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Access {
+        Access {
+            granted: Grant::of(command.intent(Some(robot)).granted_at_first()),
+            dry_run: self.gate.dry_run,
+            trace: self.trace.clone(),
+            need: command.need(),
+            typed: None,
+            unit: self.unit,
+        }
+    }
+
+    fn context<'a, F: Family>(
+        &'a self,
+        command: &dyn AnyCommand<F>,
+        robot: &'a Robot,
+        link: &'a mut F::Link,
+        (screen, grant): (&'a Screen, &Grant),
+    ) -> Context<'a, F> {
+        let most = command.intent(Some(robot)).risk;
+        let authority = Authority::new(self.gate, screen, robot, most, grant.clone());
+        Context { robot, link, screen, several: self.sources.selection.is_plural(), authority }
     }
 
     /// One run. Ctrl-C during a motion stops the robot first.
-    async fn attempt<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot, link: &mut F::Link) -> Outcome {
-        let (several, risk) = (self.sources.selection.is_plural(), command.risk_on(robot));
-        let context = Context { robot, link: &mut *link, screen: &self.screen, several };
+    async fn attempt<F: Family>(
+        &self,
+        command: &dyn AnyCommand<F>,
+        robot: &Robot,
+        link: &mut F::Link,
+        grant: &Grant,
+    ) -> Outcome {
+        let risk = command.intent(Some(robot)).risk;
+        let context = self.context(command, robot, link, (&self.screen, grant));
         match interruptible(command.run(context)).await {
             Ok(outcome) => outcome,
             Err(_) if risk == Risk::Motion && (self.gate.on_interrupt == OnInterrupt::Stop || F::must_halt(link)) => {
@@ -348,7 +404,7 @@ impl Run {
                 message: format!("{}: left as it is; what was started goes on", interrupt.message),
                 ..interrupt
             }),
-            Err(interrupt) if risk == Risk::Write => Err(Failure {
+            Err(interrupt) if risk > Risk::Read => Err(Failure {
                 message: format!("{}; what was sent may have been done, in whole or in part", interrupt.message),
                 ..interrupt
             }
@@ -357,39 +413,33 @@ impl Run {
         }
     }
 
-    /// What `command` would send: the link only takes notes, and the command gets as far as it can without an answer.
-    async fn rehearse<F: Family>(
+    /// What `command` would send: it runs to its end against a link that takes notes and has no answers.
+    async fn plan<F: Family>(
         &self,
         command: &dyn AnyCommand<F>,
         robot: &Robot,
         screen: &Screen,
-    ) -> Result<Vec<Value>, Failure> {
-        let access = Access {
-            granted: command.risk_on(robot),
-            dry_run: true,
-            trace: self.trace.clone(),
-            need: command.need(),
-            typed: None,
-        };
+    ) -> Result<Plan, Failure> {
+        let access = Access { dry_run: true, ..self.access(command, robot) };
+        let grant = access.granted.clone();
         let mut link = F::connect(robot, access, screen).await?;
-        let noted = {
-            let several = self.sources.selection.is_plural();
-            let mut run = command.run(Context { robot, link: &mut link, screen, several });
-            poll_fn(|task| Poll::Ready(run.as_mut().poll(task))).await
-        };
-        match noted {
-            Poll::Ready(Err(failure)) => Err(failure),
-            Poll::Ready(Ok(_)) | Poll::Pending => Ok(F::rehearsed(&mut link)),
+        let gate = Gate { dry_run: true, ..self.gate };
+        let several = self.sources.selection.is_plural();
+        let authority = Authority::new(gate, screen, robot, command.intent(Some(robot)).risk, grant);
+        let ended = command.run(Context { robot, link: &mut link, screen, several, authority }).await;
+        match ended {
+            Err(failure) if failure.kind != Kind::NotKnown => Err(failure),
+            Ok(_) | Err(_) => Ok(F::rehearsed(&mut link)),
         }
     }
 
     /// Finds before anybody is asked what this controller's model cannot do: nobody should clear a cell for a mistyped
     /// command. Simulators ask nobody, and may be of another model than their settings say.
-    async fn foresee<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Failure> {
+    async fn check_model<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Failure> {
         if self.gate.dry_run || robot.target.value.is_simulated() {
             return Ok(());
         }
-        self.rehearse(command, robot, &self.screen.silenced()).await.map(|_| ())
+        self.plan(command, robot, &self.screen.silenced()).await.map(|_| ())
     }
 
     /// Empties the file of `--trace`, to which every connection of this command then appends. Of several lines the first
@@ -404,43 +454,6 @@ pub fn begin_trace(file: Option<&Path>) -> Result<(), Failure> {
     match file.filter(|path| path.as_os_str() != "-") {
         Some(path) => std::fs::File::create(path).map(|_| ()).map_err(|error| Failure::io(path.display(), &error)),
         None => Ok(()),
-    }
-}
-
-/// What a dry run reports.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Rehearsal {
-    /// What would be sent, in order: each under the key of its family, beside what it is about where that is known.
-    #[schemars(extend("items" = {
-        "type": "object",
-        "properties": {
-            "hex": {"description": "The bytes (yerc; messages to the board of a yrcx).", "type": "string"},
-            "wi": {"description": "The 16 command words (yrcx).", "type": "array", "items": {"type": "string"}},
-            "bits": {"description": "The words of bits (yrcx).", "type": "array", "items": {"type": "string"}},
-            "text": {"description": "The line (toyo).", "type": "string"},
-            "about": {"description": "What it is for.", "type": "string"}
-        },
-        "oneOf": [{"required": ["hex"]}, {"required": ["wi"]}, {"required": ["bits"]}, {"required": ["text"]}]
-    }))]
-    pub frames: Vec<Value>,
-}
-
-impl Report for Rehearsal {
-    fn view(&self) -> View {
-        const EMPTY: &str = "nothing would be sent";
-        let about = |frame: &Value| frame.get("about").and_then(Value::as_str).map(ToOwned::to_owned);
-        let mut plain = Table::new(&["#", "would be sent"], EMPTY);
-        let mut explained = Table::new(&["#", "about", "would be sent"], EMPTY);
-        for (index, frame) in self.frames.iter().enumerate() {
-            let shown = match frame.as_object().and_then(|object| object.values().next()) {
-                Some(Value::String(text)) => text.clone(),
-                Some(Value::Array(words)) => words.iter().filter_map(Value::as_str).collect::<Vec<_>>().join(" "),
-                _ => frame.to_string(),
-            };
-            plain.row([(index + 1).into(), shown.as_str().into()]);
-            explained.row([(index + 1).into(), about(frame).unwrap_or_default().into(), shown.into()]);
-        }
-        View::table(if self.frames.iter().any(|frame| about(frame).is_some()) { explained } else { plain })
     }
 }
 

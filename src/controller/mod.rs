@@ -22,10 +22,24 @@ pub type Now = Duration;
 pub enum Risk {
     /// Reads only: may be repeated at will.
     Read,
-    /// Changes data or state, but moves nothing.
+    /// Changes what can be set again: a variable, a signal, a counter, a selection, an alarm reset.
     Write,
+    /// Deletes or overwrites what a person wrote or taught: jobs, programs, files, points, parameters.
+    Destroy,
     /// Moves the robot, or gives it power or a job to move by.
     Motion,
+}
+
+impl Risk {
+    /// As messages name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Read => "read",
+            Self::Write => "write",
+            Self::Destroy => "destroy",
+            Self::Motion => "motion",
+        }
+    }
 }
 
 /// What a session wants its driver to do next.

@@ -60,6 +60,12 @@ impl Screen {
         Self { format, quiet, verbosity, color }
     }
 
+    /// Nothing but errors, and those as JSON: for tests.
+    #[cfg(test)]
+    pub const fn silent() -> Self {
+        Self { format: Format::Json, quiet: true, verbosity: 0, color: ColorChoice::Never }
+    }
+
     /// The same, but silent about everything that is not an error.
     #[must_use]
     pub fn silenced(self) -> Self {
@@ -74,6 +80,11 @@ impl Screen {
     /// Whether stdout is a terminal.
     pub fn is_stdout_terminal(&self) -> bool {
         io::stdout().is_terminal()
+    }
+
+    /// Whether somebody can press Ctrl-C: stdin is a terminal.
+    pub fn can_interrupt(&self) -> bool {
+        io::stdin().is_terminal()
     }
 
     /// Whether a person can be asked: stdin and stderr are terminals.

@@ -43,6 +43,8 @@ pub struct Options {
     pub encoding: Option<Encoding>,
     /// Read commands only.
     pub read_only: Option<bool>,
+    /// Whether the first command that needs a command connection opens a session (yrcx).
+    pub hold: Option<bool>,
     /// Controller model (yerc).
     pub model: Option<Model>,
 }
@@ -178,6 +180,7 @@ impl Inventory {
                     retries: raw.retries,
                     encoding: parsed(raw.encoding, &at)?,
                     read_only: raw.read_only,
+                    hold: raw.hold,
                     model: parsed(raw.model, &at)?,
                 },
                 tags: raw.tags,
@@ -198,6 +201,7 @@ impl Inventory {
                 retries: defaults.retries,
                 encoding: parsed(defaults.encoding, &at)?,
                 read_only: defaults.read_only,
+                hold: None,
                 model: None,
             },
             robots,
@@ -285,6 +289,7 @@ struct RawRobot {
     family: Option<Spanned<String>>,
     model: Option<Spanned<String>>,
     read_only: Option<bool>,
+    hold: Option<bool>,
     encoding: Option<Spanned<String>>,
     #[serde(default, deserialize_with = "duration::field::deserialize")]
     timeout: Option<Duration>,

@@ -72,6 +72,10 @@ pub struct Robot {
     pub encoding: Setting<Encoding>,
     /// Read commands only.
     pub read_only: Setting<bool>,
+    /// The entry of the inventory that makes it read-only, where that is another one with the same address.
+    pub bound_by: Option<String>,
+    /// Whether the first command that needs a command connection opens a session for it.
+    pub hold: Setting<bool>,
     /// Controller model; means something for yerc alone.
     pub model: Setting<Model>,
     /// Free words to choose by.
@@ -293,6 +297,21 @@ impl Sources {
         chosen.into_iter().map(|entry| self.resolved(entry, family)).collect()
     }
 
+    /// The read-only entry that has this address: what it says is of the controller, under whichever name.
+    fn binding(&self, family: Family, target: &Target) -> Option<String> {
+        if target.is_simulated() {
+            return None;
+        }
+        let file = self.inventory.defaults.read_only;
+        let mut others = self
+            .inventory
+            .robots
+            .iter()
+            .filter(|entry| entry.family == family && entry.options.read_only.or(file) == Some(true));
+        let address = target.address();
+        others.find(|entry| address.meets(&entry.target.address())).map(|entry| entry.name.clone())
+    }
+
     fn robot(&self, name: String, family: Family, target: Setting<Target>, own: &Options, tags: Vec<String>) -> Robot {
         let file = &self.inventory.defaults;
         let (flags, environment) = (&self.flags, &self.environment);
@@ -310,14 +329,18 @@ impl Sources {
                 )
             };
         }
+        let read_only = setting!(read_only, false);
+        let bound_by = if read_only.value { None } else { self.binding(family, &target.value) };
         Robot {
+            read_only: bound_by.as_ref().map_or(read_only, |_| Setting { value: true, origin: Origin::Robot }),
+            bound_by,
+            hold: setting!(hold, false),
             name,
             family,
             target,
             timeout: setting!(timeout, timeout(family)),
             retries: setting!(retries, RETRIES),
             encoding: setting!(encoding, Encoding::default()),
-            read_only: setting!(read_only, false),
             model: url_model.unwrap_or_else(|| setting!(model, Model::Dx200)),
             tags,
             sessions: self.selection.sessions,
@@ -371,6 +394,34 @@ mod tests {
         let selection = Selection { robots: vec!["s".into()], ..Selection::default() };
         let failure = sources(selection).robots(Some(Family::Yerc)).unwrap_err();
         assert!(failure.message.contains("toyo"), "{failure:?}");
+    }
+
+    #[test]
+    fn read_only_binds_the_controller_whatever_names_it() {
+        let text = "[[robot]]\nname = \"line3\"\ntarget = \"udp://127.0.0.1\"\nread_only = true\n\
+                    [[robot]]\nname = \"alias\"\ntarget = \"udp://localhost:10040\"\n\
+                    [[robot]]\nname = \"free\"\ntarget = \"udp://127.0.0.1:10050\"\n";
+        let inventory = Inventory::parse(text, "robots.toml").unwrap();
+        let robot = |selection| {
+            let sources = Sources { selection, inventory: inventory.clone(), ..Sources::default() };
+            let robot = sources.robots(Some(Family::Yerc)).unwrap().remove(0);
+            (robot.read_only.value, robot.bound_by)
+        };
+        let bound = (true, Some("line3".to_owned()));
+        for url in ["udp://127.0.0.1", "udp://localhost", "udp://127.0.0.1:10040?model=fs100"] {
+            let target = || Some(url.parse().unwrap());
+            assert_eq!(robot(Selection { target: target(), ..Selection::default() }), bound, "-t {url}");
+            assert_eq!(
+                robot(Selection { environment: target(), ..Selection::default() }),
+                bound,
+                "ARMCTL_TARGET {url}"
+            );
+        }
+        let named = |name: &str| Selection { robots: vec![name.to_owned()], ..Selection::default() };
+        assert_eq!(robot(named("line3")), (true, None));
+        assert_eq!(robot(named("alias")), bound);
+        assert_eq!(robot(named("free")), (false, None));
+        assert_eq!(robot(Selection { sim: true, ..Selection::default() }), (false, None));
     }
 
     #[test]

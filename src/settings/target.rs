@@ -1,5 +1,6 @@
 //! Target URLs: where a robot is, and over which transport.
 
+mod address;
 mod eip;
 
 use std::fmt;
@@ -12,6 +13,7 @@ use serialport::{DataBits, Parity, StopBits};
 use crate::controller::yerc::Model;
 use crate::failure::Failure;
 
+pub use address::Address;
 pub use eip::{Eip, EipKey, EipRole};
 
 /// A controller family, named like its subcommand.
@@ -196,6 +198,11 @@ impl Target {
             Place::Sim(_) => "sim",
             Place::Eip(_) => "eip",
         }
+    }
+
+    /// Where it leads, however it is written.
+    pub fn address(&self) -> Address {
+        Address::of(self)
     }
 
     /// A short name for messages where no inventory gives one: the host, the port without its folder, or `sim`.

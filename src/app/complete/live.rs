@@ -14,8 +14,8 @@ use tokio::time::timeout;
 use super::Candidate;
 use crate::app::parser::Parser;
 use crate::app::ready::{Wanted, Work};
+use crate::command::authority::Authority;
 use crate::command::{Access, AnyCommand, Context, Family as CommandFamily};
-use crate::controller::Risk;
 use crate::output::{ColorChoice, Format, Screen, escape};
 use crate::settings::target::Family;
 use crate::settings::{Robot, Sessions, Setting, Sources};
@@ -160,18 +160,20 @@ impl Asker {
         let args: Vec<_> = ["armctl"].iter().chain(words).map(Into::into).collect();
         match Wanted::from(Parser::default().parse(&args).ok()?.command) {
             Wanted::Work(Work::Yerc(command)) => self.report(&*command).await,
-            Wanted::Work(Work::Yrcx(command)) => self.report(&*command).await,
+            Wanted::Work(Work::Yrcx(_, command)) => self.report(&*command).await,
             _ => None,
         }
     }
 
     async fn report<F: CommandFamily>(&self, command: &dyn AnyCommand<F>) -> Option<Value> {
         let typed = Some(Arc::from("completion of a command line"));
-        let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: command.need(), typed };
+        let access = Access { typed, ..Access::reading(command.need()) };
         let screen = Screen::new(Format::Json, ColorChoice::Never, true, 0).silenced();
         let robot = &self.robot;
         let mut link = F::connect(robot, access, &screen).await.ok()?;
-        let report = command.run(Context { robot, link: &mut link, screen: &screen, several: false }).await;
+        let authority = Authority::reading(&screen, robot);
+        let context = Context { robot, link: &mut link, screen: &screen, several: false, authority };
+        let report = command.run(context).await;
         F::close(link, &screen).await.ok()?;
         report.ok()?.data().ok()
     }

@@ -62,6 +62,9 @@ pub struct Add {
     /// Take read commands only
     #[arg(long)]
     read_only: bool,
+    /// Have the first command that needs a command connection open a session for it (yrcx)
+    #[arg(long)]
+    hold: bool,
     /// A word to choose it by (repeatable)
     #[arg(long = "with-tag", value_name = "TAG", add = ValueKind::Tag)]
     tags: Vec<String>,
@@ -107,6 +110,7 @@ impl Show {
         }
         settings.extend([
             row("read_only", &robot.read_only, ToString::to_string),
+            row("hold", &robot.hold, ToString::to_string),
             row("encoding", &robot.encoding, ToString::to_string),
             row("timeout", &robot.timeout, |timeout| duration::display(*timeout)),
             row("retries", &robot.retries, ToString::to_string),
@@ -152,6 +156,9 @@ impl Add {
             }
             if self.read_only {
                 robot["read_only"] = value(true);
+            }
+            if self.hold {
+                robot["hold"] = value(true);
             }
             if !self.tags.is_empty() {
                 robot["tags"] = value(self.tags.iter().collect::<toml_edit::Array>());

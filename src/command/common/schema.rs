@@ -4,8 +4,9 @@ use clap::Args;
 use serde_json::json;
 
 use crate::command::ValueKind;
+use crate::command::dry_run::DryRun;
 use crate::command::overview::{Fleet, Overview};
-use crate::command::run::{Rehearsal, Run};
+use crate::command::run::Run;
 use crate::command::toyo::{self, Toyo};
 use crate::command::yerc::{self, Yerc};
 use crate::command::yrcx::{self, Yrcx};
@@ -60,7 +61,7 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<super::decode::capture::Capture<super::decode::yerc::FieldRow>>("decode.yerc.capture"),
         SchemaEntry::of::<super::decode::yrcx::Explained>("decode.yrcx"),
         SchemaEntry::of::<super::decode::capture::Capture<super::decode::yrcx::FieldRow>>("decode.yrcx.capture"),
-        SchemaEntry::of::<Rehearsal>("dry-run"),
+        SchemaEntry::of::<DryRun>("dry-run"),
         SchemaEntry::of::<Envelope>("envelope"),
         SchemaEntry::of::<super::explain::ToyoCode>("explain.toyo"),
         SchemaEntry::of::<super::explain::Codes>("explain.yerc"),

@@ -11,7 +11,6 @@ use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
-use crate::gate::Demand;
 use crate::output::view::{Cell, Tone, View};
 
 commands! {
@@ -46,15 +45,11 @@ impl Command for Read {
     const ID: &'static str = "toyo.card.read";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
     }
 
     fn intent(&self) -> String {
         "replace programs, tables and parameters of the controller by those on the memory card".to_owned()
-    }
-
-    fn demand(&self) -> Demand {
-        Demand::Flag("programs, tables and parameters of the controller are replaced by those on the card".to_owned())
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Transferred, Failure> {
@@ -74,7 +69,11 @@ impl Command for Write {
     const ID: &'static str = "toyo.card.write";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "overwrite what is on the memory card".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Transferred, Failure> {

@@ -8,6 +8,7 @@ use super::link::Link;
 use super::numbers::read_contents;
 use super::refusal;
 use crate::command::Report;
+use crate::command::dry_run::unknown;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::failure::{Failure, Kind};
@@ -46,7 +47,7 @@ impl Copy {
             }
             link.take_host().await?;
             link.foresee(&order, "if they differ");
-            return std::future::pending().await;
+            return Err(unknown());
         }
         let wanted = read_contents(link, screen, "reading what is copied", &source).await?;
         let found = read_contents(link, screen, "reading what it replaces", &target).await?;

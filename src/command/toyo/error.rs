@@ -8,6 +8,7 @@ use super::Family;
 use super::link::Link;
 use super::status::ErrorCode;
 use super::waiting::{becomes, status_page};
+use crate::command::dry_run::unknown;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::errors;
@@ -46,7 +47,7 @@ impl Command for Show {
         if link.is_dry() {
             link.foresee(&status_page(0), "whether there is an error");
             link.foresee(&status_page(1), "which");
-            return std::future::pending().await;
+            return Err(unknown());
         }
         Ok(Present { error: present(link).await?.map(Explained::of) })
     }
@@ -119,7 +120,7 @@ impl Command for History {
                     if number == 1 { "the latest" } else { "unless the one before is empty" },
                 );
             }
-            return std::future::pending().await;
+            return Err(unknown());
         }
         let progress = context.screen.spinner("error history");
         let mut entries = Vec::new();

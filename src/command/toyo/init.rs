@@ -16,7 +16,7 @@ use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
-use crate::gate::Demand;
+use crate::gate::Confirmation;
 use crate::output::Screen;
 use crate::output::view::View;
 
@@ -74,7 +74,7 @@ impl Command for Init {
     const ID: &'static str = "toyo.init";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
     }
 
     fn intent(&self) -> String {
@@ -82,8 +82,8 @@ impl Command for Init {
         format!("clear {words}, for good")
     }
 
-    fn demand(&self) -> Demand {
-        Demand::Word(self.what.row().0)
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::Word(self.what.row().0)
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Cleared, Failure> {
@@ -173,7 +173,7 @@ mod tests {
     fn the_word_is_that_of_the_command_line() {
         for what in What::value_variants() {
             let value = what.to_possible_value().unwrap();
-            assert_eq!(Command::demand(&Init { what: *what }), Demand::Word(what.row().0));
+            assert_eq!(Command::confirmation(&Init { what: *what }), Confirmation::Word(what.row().0));
             assert_eq!(value.get_name(), what.row().0);
         }
     }

@@ -3,7 +3,6 @@
 mod borrowed;
 mod stop;
 
-use std::convert::Infallible;
 use std::io;
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -17,6 +16,7 @@ use super::refusal;
 use super::trace::Trace;
 use super::wear::Wear;
 use crate::command::attach::{attach, hindered};
+use crate::command::dry_run::{Plan, Reason, unknown};
 use crate::command::{Access, Family};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::{Misfit, Record};
@@ -26,6 +26,7 @@ use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table::commands::Command;
 use crate::controller::{Risk, Session as _, Step};
 use crate::failure::{Failure, Kind, plain};
+use crate::gate::Grant;
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target;
@@ -49,7 +50,7 @@ pub struct Link {
     usual: Policy,
     policy: Policy,
     screen: Screen,
-    granted: Risk,
+    granted: Grant,
     label: String,
     /// What this link set in motion.
     moving: Option<Moving>,
@@ -70,7 +71,7 @@ pub struct Link {
 enum Transport {
     Stream(Box<Stream<Box<dyn Peer>>>),
     /// A dry run: what would be sent is noted.
-    Notes(Vec<serde_json::Value>),
+    Notes(Plan),
 }
 
 impl Transport {
@@ -113,7 +114,7 @@ impl Family for Toyo {
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
         let way = reach::way(robot)?;
         let transport = if access.dry_run {
-            Transport::Notes(Vec::new())
+            Transport::Notes(Plan::default())
         } else {
             let stream = match Box::pin(attach(robot, &access, screen)).await? {
                 Some(attached) => Stream::Session(attached),
@@ -126,7 +127,7 @@ impl Family for Toyo {
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
         let Some(moving) = link.moving else { return Ok("nothing was sent that moves the robot".to_owned()) };
-        link.granted = link.granted.max(Risk::Write);
+        link.granted.raise(Risk::Write);
         let stop = moving.stop();
         // Before anything is written: a terminal that is held must not hold the stop.
         link.rush(&stop).await;
@@ -139,11 +140,11 @@ impl Family for Toyo {
         link.moving == Some(Moving::Jog)
     }
 
-    fn rehearsed(link: &mut Link) -> Vec<serde_json::Value> {
+    fn rehearsed(link: &mut Link) -> Plan {
         link.note_host_off();
         match &mut link.transport {
-            Transport::Notes(notes) => std::mem::take(notes),
-            Transport::Stream(_) => Vec::new(),
+            Transport::Notes(plan) => std::mem::take(plan),
+            Transport::Stream(_) => Plan::default(),
         }
     }
 
@@ -186,7 +187,7 @@ impl Link {
             usual: policy,
             policy,
             screen: *screen,
-            granted: access.granted,
+            granted: access.granted.clone(),
             label: robot.label(),
             moving: None,
             host: Host::Unknown,
@@ -232,8 +233,9 @@ impl Link {
     /// Asks for data; a refusal is an answer.
     pub async fn try_read(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Failure> {
         if let Transport::Notes(_) = self.transport {
-            self.note(request, None);
-            std::future::pending::<Infallible>().await;
+            self.granted.check(request.risk(), &request.text())?;
+            self.note(request, Reason::default());
+            return Err(unknown());
         }
         match self.exchange(request).await? {
             Answer::Data(record) => Ok(Ok(record)),
@@ -242,14 +244,15 @@ impl Link {
         }
     }
 
-    /// In a dry run, notes all the questions and ends it.
-    pub async fn rehearse(&mut self, requests: &[Request]) {
-        if self.is_dry() {
-            for request in requests {
-                self.note(request, None);
-            }
-            std::future::pending::<Infallible>().await;
+    /// In a dry run, notes all the questions, whose answers are not known then.
+    pub fn rehearse(&mut self, requests: &[Request]) -> Result<(), Failure> {
+        if !self.is_dry() || requests.is_empty() {
+            return Ok(());
         }
+        for request in requests {
+            self.note(request, Reason::default());
+        }
+        Err(unknown())
     }
 
     /// Reads the content of a parameter, a step or a palletizing record, of others the answer; a refusal is a failure.
@@ -286,7 +289,8 @@ impl Link {
             self.take_host().await?;
         }
         if let Transport::Notes(_) = self.transport {
-            self.note(request, None);
+            self.granted.check(request.risk(), &request.text())?;
+            self.note(request, Reason::default());
             return Ok(Ok(()));
         }
         Ok(match self.exchange(request).await? {
@@ -329,9 +333,9 @@ impl Link {
 
     /// Sends a block that is in no table, and returns what came back.
     pub async fn raw(&mut self, block: &str) -> Result<String, Failure> {
-        if let Transport::Notes(notes) = &mut self.transport {
-            notes.push(json!({ "text": block }));
-            std::future::pending::<Infallible>().await;
+        if let Transport::Notes(plan) = &mut self.transport {
+            plan.note(json!({ "text": block }), Reason::default());
+            return Err(unknown());
         }
         self.take_turn(Risk::Motion).await?;
         self.moving = Some(Moving::Program);
@@ -349,10 +353,7 @@ impl Link {
 
     async fn converse(&mut self, request: &Request, is_repeatable: bool) -> Result<Answer, Failure> {
         let risk = request.risk();
-        if risk > self.granted {
-            return Err(Failure::local(format!("{} was stopped before it left: it is a {risk:?}", request.text()))
-                .hint("this is a fault of armctl: the command passed the gate as less than it is; please report it"));
-        }
+        self.granted.check(risk, &request.text())?;
         request.check().map_err(|error| misuse(&error))?;
         self.take_turn(risk).await?;
         if risk == Risk::Motion {
@@ -424,7 +425,7 @@ impl Link {
 
     /// Waits for characters and puts them into the buffer; 0 if none came until then.
     async fn receive(&mut self, buffer: &mut [u8], until: Instant) -> io::Result<usize> {
-        let Transport::Stream(stream) = &mut self.transport else { return std::future::pending().await };
+        let Transport::Stream(stream) = &mut self.transport else { return Ok(0) };
         let received = stream.receive(buffer, until).await?.unwrap_or(0);
         self.trace.record(Direction::Received, &buffer[..received]);
         Ok(received)
@@ -459,13 +460,26 @@ impl Link {
 
     /// Notes in a dry run a request that the command would send under a condition, or for a reason.
     pub fn foresee(&mut self, request: &Request, about: &str) {
-        self.note(request, Some(about));
+        self.note(request, Reason::about(about));
     }
 
-    fn note(&mut self, request: &Request, about: Option<&str>) {
-        if let Transport::Notes(notes) = &mut self.transport {
-            let text = request.text();
-            notes.push(about.map_or_else(|| json!({ "text": text }), |about| json!({ "text": text, "about": about })));
+    /// Notes in a dry run a line of which an answer before it decides a part, that stands as `?`.
+    pub fn foresee_depending(&mut self, text: &str, reason: Reason<'_>) {
+        if let Transport::Notes(plan) = &mut self.transport {
+            plan.note(json!({ "text": text }), reason);
+        }
+    }
+
+    /// Says in a dry run what follows that cannot be shown.
+    pub fn then(&mut self, what: &str) {
+        if let Transport::Notes(plan) = &mut self.transport {
+            plan.then(what);
+        }
+    }
+
+    fn note(&mut self, request: &Request, reason: Reason<'_>) {
+        if let Transport::Notes(plan) = &mut self.transport {
+            plan.note(json!({ "text": request.text() }), reason);
         }
     }
 

@@ -179,6 +179,10 @@ impl Command for Stop {
         Risk::Write
     }
 
+    fn is_stop(&self) -> bool {
+        true
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Stopped, Failure> {
         let moving = if self.jog { Moving::Jog } else { Moving::Program };
         let place = context.link.stop(moving).await?;

@@ -12,7 +12,7 @@ use crate::controller::toyo::field::{Field, Value};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
-use crate::gate::Demand;
+use crate::gate::Confirmation;
 use crate::output::view::View;
 
 /// Sets the robot type of an axis, which its parameters follow from.
@@ -42,15 +42,15 @@ impl Command for RobotType {
     const ID: &'static str = "toyo.robot-type";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
     }
 
     fn intent(&self) -> String {
         format!("make axis {} of robot type {:06}; its parameters may change with it", self.axis, self.robot_type)
     }
 
-    fn demand(&self) -> Demand {
-        Demand::Word("type")
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::Word("type")
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<InForce, Failure> {

@@ -188,7 +188,11 @@ impl<K: Kind> Command for Set<K> {
     const ID: &'static str = K::IDS[1];
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "overwrite a row of a table".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored<K>, Failure> {

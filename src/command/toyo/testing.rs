@@ -7,15 +7,14 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use clap::Parser as _;
-use futures_util::FutureExt as _;
 use serde_json::Value;
 
 use super::Family;
 use super::link::Link;
 use super::simulated::Simulated;
 use crate::cli::{Cli, OfToyo, Top, Verb};
-use crate::command::{Access, AnyCommand, Context, Family as _, Need, Noun as _};
-use crate::controller::Risk;
+use crate::command::testing::{context, everything, frames, planned};
+use crate::command::{AnyCommand, Family as _, Noun as _};
 use crate::controller::toyo::simulator::Start;
 use crate::failure::Failure;
 use crate::output::{ColorChoice, Format, Screen};
@@ -31,7 +30,7 @@ pub(super) fn objection(words: &[&str]) -> String {
 
 /// The question before the command, without "This will".
 pub(super) fn intent(words: &[&str]) -> String {
-    resolved("sim:", words).unwrap().1.intent()
+    resolved("sim:", words).unwrap().1.intent(None).text
 }
 
 /// The blocks that `armctl toyo WORDS…` would send, those for the host apart.
@@ -43,13 +42,7 @@ pub(super) fn blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
 /// All blocks that `armctl toyo WORDS…` would send.
 pub(super) fn all_blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
     let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
-    let access = Access { granted: command.risk(), dry_run: true, trace: None, need: command.need(), typed: None };
-    let mut link = Family::connect(&robot, access, &quiet()).now_or_never().expect("a dry run opens nothing")?;
-    let context = Context { robot: &robot, link: &mut link, screen: &quiet(), several: false };
-    if let Some(Err(failure)) = command.run(context).now_or_never() {
-        return Err(failure);
-    }
-    let blocks = Family::rehearsed(&mut link);
+    let blocks = frames(&planned(&robot, &*command, |_| ())?);
     Ok(blocks.iter().map(|block| block["text"].as_str().expect("blocks are text").to_owned()).collect())
 }
 
@@ -143,7 +136,7 @@ impl Bench {
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
         let runtime = runtime();
         let link = runtime
-            .block_on(async { Link::to(peer, &robot, &EVERYTHING, &quiet(), Pace::new(9600, 11)) })
+            .block_on(async { Link::to(peer, &robot, &everything(), &quiet(), Pace::new(9600, 11)) })
             .expect("a link");
         (Self { runtime, robot, link }, heard)
     }
@@ -159,7 +152,7 @@ impl Bench {
         let (_, command) = resolved("sim:", words).expect("a command");
         let Self { runtime, robot, link } = self;
         runtime.block_on(async {
-            let context = Context { robot, link: &mut *link, screen: &quiet(), several: false };
+            let context = context(robot, link);
             if let Ok(done) = tokio::time::timeout(after, command.run(context)).await {
                 panic!("{words:?} has ended before: {:?}", done.map(|report| report.data()));
             }
@@ -181,7 +174,7 @@ impl Bench {
     pub(super) fn new(target: &str) -> Self {
         let runtime = runtime();
         let (robot, _) = resolved(target, &["status"]).expect("a robot");
-        let link = runtime.block_on(Family::connect(&robot, EVERYTHING, &quiet())).expect("a link");
+        let link = runtime.block_on(Family::connect(&robot, everything(), &quiet())).expect("a link");
         Self { runtime, robot, link }
     }
 
@@ -189,7 +182,7 @@ impl Bench {
     pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link } = self;
-        let report = runtime.block_on(command.run(Context { robot, link, screen: &quiet(), several: false }))?;
+        let report = runtime.block_on(command.run(context(robot, link)))?;
         Ok((report.data()?, report.failure()))
     }
 
@@ -206,10 +199,6 @@ impl Bench {
 fn runtime() -> tokio::runtime::Runtime {
     tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime")
 }
-
-/// A link that may do anything.
-const EVERYTHING: Access =
-    Access { granted: Risk::Motion, dry_run: false, trace: None, need: Need::Command, typed: None };
 
 fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
     Cli::try_parse_from([&["armctl", "-t", target, "toyo"], words].concat())

@@ -119,19 +119,12 @@ fn text(bytes: &[u8]) -> String {
 mod tests {
     use super::*;
     use crate::command::Need;
-    use crate::controller::Risk;
     use crate::output::{ColorChoice, Format};
 
     /// What a capture file holds of a request and its answer.
     fn recorded(ends: Option<(SocketAddr, SocketAddr)>) -> Vec<u8> {
         let file = tempfile::NamedTempFile::new().unwrap();
-        let access = Access {
-            granted: Risk::Read,
-            dry_run: false,
-            trace: Some(file.path().to_owned()),
-            need: Need::Command,
-            typed: None,
-        };
+        let access = Access { trace: Some(file.path().to_owned()), ..Access::reading(Need::Command) };
         let mut trace = Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 0), ends).unwrap();
         trace.record(Direction::Sent, b"@HSON\r\n");
         trace.record(Direction::Received, b"");
@@ -162,7 +155,7 @@ mod tests {
 
     #[test]
     fn text_waits_while_it_is_held() {
-        let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: Need::Command, typed: None };
+        let access = Access::reading(Need::Command);
         let mut trace = Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 2), None).unwrap();
         trace.hold();
         trace.record(Direction::Sent, b"@HSON\r\n");

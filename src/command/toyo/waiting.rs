@@ -7,6 +7,7 @@ use tokio::time::Instant;
 use super::link::Link;
 use super::position::Place;
 use super::refusal;
+use crate::command::dry_run::unknown;
 use crate::controller::toyo::errors;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
@@ -74,7 +75,7 @@ impl Accepted {
     pub(super) async fn wait(self, link: &mut Link, screen: &Screen) -> Result<End, Failure> {
         if link.is_dry() {
             self.foresee(link);
-            return std::future::pending().await;
+            return Err(unknown());
         }
         let mut teller = Teller::new(self.doing, screen);
         let began = Instant::now();
@@ -217,7 +218,7 @@ pub(super) async fn becomes(
 ) -> Result<bool, Failure> {
     if link.is_dry() {
         link.foresee(&status_page(page), about);
-        return std::future::pending().await;
+        return Err(unknown());
     }
     let until = Instant::now() + BEGIN_WITHIN;
     loop {

@@ -52,7 +52,7 @@ impl Command for List {
         let link = context.link;
         let mut texts = !self.no_texts;
         let question = |slot, texts| ReadAlarm::new(slot, texts).map_err(usage);
-        link.rehearse(&(1..=SLOTS).map(|slot| question(slot, texts)).collect::<Result<Vec<_>, _>>()?).await;
+        link.rehearse(&(1..=SLOTS).map(|slot| question(slot, texts)).collect::<Result<Vec<_>, _>>()?)?;
         let mut alarms = Vec::new();
         for slot in 1..=SLOTS {
             let alarm = read(link, &mut texts, |texts| question(slot, texts)).await?;
@@ -123,7 +123,7 @@ impl Command for History {
         let classes = CLASSES.iter().filter(|row| self.class == Class::All || self.class == row.0);
         let question = |class, number, texts| ReadAlarmHistory::new(class, number, texts).map_err(usage);
         let all = classes.clone().flat_map(|row| numbers.clone().map(|number| question(row.1, number, texts)));
-        link.rehearse(&all.collect::<Result<Vec<_>, _>>()?).await;
+        link.rehearse(&all.collect::<Result<Vec<_>, _>>()?)?;
         let mut alarms = Vec::new();
         for &(_, list, class) in classes {
             for number in numbers.clone() {

@@ -1,10 +1,9 @@
 //! The connection to a controller: the one driver that moves datagrams between sessions and a transport.
 
-use std::convert::Infallible;
 use std::io;
 use std::time::Duration;
 
-use serde_json::{Value, json};
+use serde_json::json;
 use tokio::time::Instant;
 
 use super::reach::{self, Transport};
@@ -12,6 +11,7 @@ pub use super::refusal::Refusal;
 use super::simulated::channel;
 use super::trace::Trace;
 use crate::command::attach::hindered;
+use crate::command::dry_run::{Plan, Reason, unknown};
 use crate::command::{Access, Family};
 use crate::controller::text::{Encoding, hex};
 use crate::controller::yerc::Model;
@@ -24,6 +24,7 @@ use crate::controller::yerc::session::{
 use crate::controller::yerc::wire::{Division, LAST_BLOCK, MAX_DATA, RequestFrame};
 use crate::controller::{Risk, Session, Step};
 use crate::failure::{Failure, Kind, plain};
+use crate::gate::Grant;
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target;
@@ -41,7 +42,7 @@ pub struct Link {
     screen: Screen,
     policy: Policy,
     ids: Ids,
-    granted: Risk,
+    granted: Grant,
     /// Whether a request left that moves the robot.
     has_moved: bool,
     label: String,
@@ -89,7 +90,7 @@ impl Family for Yerc {
             screen: *screen,
             policy: Policy { deadline: timeout, attempt, retries: robot.retries.value },
             ids: Ids::default(),
-            granted: access.granted,
+            granted: access.granted.clone(),
             has_moved: false,
             label: robot.label(),
             model,
@@ -109,7 +110,7 @@ impl Family for Yerc {
             return Ok("nothing was sent that moves the robot".to_owned());
         }
         link.screen.note("stopping the robot: HOLD on");
-        link.granted = link.granted.max(Risk::Write);
+        link.granted.raise(Risk::Write);
         // The one order that is repeated after silence, whatever the options say of timeout and retries: HOLD twice is
         // HOLD once, and a lost one lets the robot move on.
         let Policy { deadline, .. } = link.policy;
@@ -121,10 +122,10 @@ impl Family for Yerc {
         Ok("the robot was stopped: HOLD is on; `yerc hold off` releases it".to_owned())
     }
 
-    fn rehearsed(link: &mut Link) -> Vec<Value> {
+    fn rehearsed(link: &mut Link) -> Plan {
         match &mut link.transport {
-            Transport::Notes(frames) => std::mem::take(frames),
-            Transport::Udp(_) | Transport::Sim(_) | Transport::Session(_) => Vec::new(),
+            Transport::Notes(plan) => std::mem::take(plan),
+            Transport::Udp(_) | Transport::Sim(_) | Transport::Session(_) => Plan::default(),
         }
     }
 
@@ -156,6 +157,12 @@ impl Link {
     /// Asks one question; a refusal is an answer.
     pub async fn try_ask<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Failure> {
         let request = query.request();
+        if self.is_dry() && request.risk() > Risk::Read {
+            self.granted.check(request.risk(), &format!("request {:#04x}", request.command))?;
+            self.note(&request, Reason::default());
+            // What is accepted bears no data.
+            return query.decode(&[]).map(Ok).map_err(|_| unknown());
+        }
         let answer = match self.exchange(&request).await? {
             Ok(data) => data,
             Err(refusal) => return Ok(Err(refusal)),
@@ -169,7 +176,7 @@ impl Link {
 
     /// Asks several questions, one after the other; the first refusal or failure ends it. A dry run notes them all.
     pub async fn ask_all<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Q::Answer>, Failure> {
-        self.rehearse(queries).await;
+        self.rehearse(queries)?;
         let mut answers = Vec::with_capacity(queries.len());
         for query in queries {
             answers.push(self.ask(query).await?);
@@ -179,7 +186,7 @@ impl Link {
 
     /// Asks several questions of things that need not exist; a refusal is an answer. A dry run notes them all.
     pub async fn try_ask_all<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Result<Q::Answer, Refusal>>, Failure> {
-        self.rehearse(queries).await;
+        self.rehearse(queries)?;
         let mut answers = Vec::with_capacity(queries.len());
         for query in queries {
             answers.push(self.try_ask(query).await?);
@@ -187,14 +194,15 @@ impl Link {
         Ok(answers)
     }
 
-    /// In a dry run, notes all the questions and ends it.
-    pub async fn rehearse<Q: Query>(&mut self, queries: &[Q]) {
-        if let Transport::Notes(_) = self.transport {
-            for query in queries {
-                self.note(&query.request());
-            }
-            std::future::pending::<Infallible>().await;
+    /// In a dry run, notes all the questions, whose answers are not known then.
+    pub fn rehearse<Q: Query>(&mut self, queries: &[Q]) -> Result<(), Failure> {
+        if !self.is_dry() || queries.is_empty() {
+            return Ok(());
         }
+        for query in queries {
+            self.note(&query.request(), Reason::default());
+        }
+        Err(unknown())
     }
 
     /// Sends a request as it is and returns the data of the answer.
@@ -272,7 +280,7 @@ impl Link {
     ) -> Result<UploadEnd, Failure> {
         if let Transport::Notes(_) = self.transport {
             self.foresee_upload(request, give)?;
-            return std::future::pending().await;
+            return Err(unknown());
         }
         self.admit(request).await?;
         // A controller that checks no ids could take a late block of the last upload into this one; a new port ends that.
@@ -343,17 +351,30 @@ impl Link {
         matches!(self.transport, Transport::Notes(_))
     }
 
-    /// Notes what else a dry run knows it would send, beyond the first question whose answer it would need.
+    /// Notes in a dry run what is sent after an answer, and what it is about.
     pub fn foresee(&mut self, request: &Request, about: &str) {
+        self.note(request, Reason::about(about));
+    }
+
+    /// Notes in a dry run a request whose bytes, or whose sending, an answer before it decides. `other` is the same
+    /// request with other answers: where both differ nothing is known.
+    pub fn foresee_depending(&mut self, request: &Request, other: &Request, reason: Reason<'_>) {
         let id = self.ids.next_id();
-        if let Transport::Notes(frames) = &mut self.transport {
-            frames.push(json!({ "hex": hex(&request.frame(id)), "about": about }));
+        if let Transport::Notes(plan) = &mut self.transport {
+            plan.note(json!({ "hex": masked(&request.frame(id), &other.frame(id)) }), reason);
+        }
+    }
+
+    /// Says in a dry run what follows that cannot be shown.
+    pub fn then(&mut self, what: &str) {
+        if let Transport::Notes(plan) = &mut self.transport {
+            plan.then(what);
         }
     }
 
     /// Notes in a dry run a request that follows whatever the answers before it are.
     pub fn foresee_next(&mut self, request: &Request) {
-        self.note(request);
+        self.note(request, Reason::default());
     }
 
     /// Notes in a dry run what [`Link::upload`] would send.
@@ -362,19 +383,16 @@ impl Link {
         request: &Request,
         mut give: impl FnMut() -> Result<Vec<u8>, Failure>,
     ) -> Result<(), Failure> {
-        let id = self.note(request);
+        let id = self.note(request, Reason::default());
         self.note_blocks(id, &mut give)
     }
 
-    /// The last check before anything leaves, and the end of a dry run.
+    /// The last check before anything leaves; a dry run notes it instead, and has no answer.
     async fn admit(&mut self, request: &Request) -> Result<(), Failure> {
-        if let Transport::Notes(_) = self.transport {
-            self.note(request);
-            std::future::pending::<Infallible>().await;
-        }
-        if request.risk() > self.granted {
-            return Err(Failure::local(format!("a {:?} request was stopped before it left", request.risk()))
-                .hint("this is a fault of armctl: the command passed the gate as less than it is; please report it"));
+        self.granted.check(request.risk(), &format!("request {:#04x}", request.command))?;
+        if self.is_dry() {
+            self.note(request, Reason::default());
+            return Err(unknown());
         }
         if request.risk() == Risk::Motion {
             if let Transport::Session(attached) = &mut self.transport {
@@ -385,17 +403,17 @@ impl Link {
         Ok(())
     }
 
-    fn note(&mut self, request: &Request) -> u8 {
+    fn note(&mut self, request: &Request, reason: Reason<'_>) -> u8 {
         let id = self.ids.next_id();
-        if let Transport::Notes(frames) = &mut self.transport {
-            frames.push(json!({ "hex": hex(&request.frame(id)) }));
+        if let Transport::Notes(plan) = &mut self.transport {
+            plan.note(json!({ "hex": hex(&request.frame(id)) }), reason);
         }
         id
     }
 
     /// The data blocks of an upload, which are known beforehand.
     fn note_blocks(&mut self, id: u8, give: &mut dyn FnMut() -> Result<Vec<u8>, Failure>) -> Result<(), Failure> {
-        let Transport::Notes(frames) = &mut self.transport else { return Ok(()) };
+        let Transport::Notes(plan) = &mut self.transport else { return Ok(()) };
         let mut content = Vec::new();
         loop {
             let piece = give()?;
@@ -407,7 +425,7 @@ impl Link {
         let blocks: Vec<&[u8]> = content.chunks(MAX_DATA).collect();
         for (number, block) in (1u32..).zip(&blocks) {
             let last = if number as usize == blocks.len() { LAST_BLOCK } else { 0 };
-            frames.push(json!({ "hex": hex(&data_frame(id, number | last, block)) }));
+            plan.note(json!({ "hex": hex(&data_frame(id, number | last, block)) }), Reason::default());
         }
         Ok(())
     }
@@ -566,6 +584,13 @@ impl Link {
                 .hint("check this machine's network"),
         }
     }
+}
+
+/// Bytes as digits, with `??` where two frames differ.
+fn masked(one: &[u8], other: &[u8]) -> String {
+    let differs = |index: usize| other.get(index) != one.get(index);
+    let digits = one.iter().enumerate().map(|(index, byte)| if differs(index) { "??".into() } else { hex(&[*byte]) });
+    digits.collect::<Vec<String>>().concat()
 }
 
 /// What tells whether a request that changes something was carried out.

@@ -16,7 +16,7 @@ macro_rules! order {
     (
         $(#[$doc:meta])*
         $name:ident { $(#[$arg:meta])* $field:ident: $type:ty }, $id:literal,
-        |$this:ident| $query:expr, $intent:expr, $done:expr
+        |$this:ident| $query:expr, $intent:expr, $done:expr $(, stops if $is_stop:expr)?
     ) => {
         $(#[$doc])*
         #[derive(Debug, Args)]
@@ -39,6 +39,11 @@ macro_rules! order {
                 $intent.to_owned()
             }
 
+            $(fn is_stop(&self) -> bool {
+                let $this = self;
+                $is_stop
+            })?
+
             async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
                 let $this = self;
                 context.link.ask(&$query).await?;
@@ -58,7 +63,8 @@ order! {
     /// Holds the robot, or lets it go on (FS and DX 3.3.20).
     Hold { switch: Switch }, "yerc.hold",
     |this| query::Hold(this.switch == Switch::On), "release the hold",
-    if this.switch == Switch::On { "hold is on" } else { "hold is off" }
+    if this.switch == Switch::On { "hold is on" } else { "hold is off" },
+    stops if this.switch == Switch::On
 }
 order! {
     /// Locks or unlocks the pendant and the I/O operation signals (FS and DX 3.3.20).

@@ -1,14 +1,13 @@
 //! For tests: what a command line would send, and what becomes of it on a simulator in virtual time.
 
 use clap::Parser as _;
-use futures_util::FutureExt as _;
 use serde_json::Value;
 
 use super::Family;
 use super::link::Link;
 use crate::cli::{Cli, OfYerc, Top, Verb};
-use crate::command::{Access, AnyCommand, Context, Family as _, Need, Noun as _};
-use crate::controller::Risk;
+use crate::command::testing::{self, context, everything, planned};
+use crate::command::{AnyCommand, Family as _, Noun as _};
 use crate::controller::text::hex;
 use crate::failure::Failure;
 use crate::output::{ColorChoice, Format, Screen};
@@ -27,20 +26,14 @@ pub(super) fn objection(words: &str) -> String {
 
 /// The question before the command, without "This will".
 pub(super) fn intent(words: &str) -> String {
-    resolved(DX200, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap().1.intent()
+    resolved(DX200, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap().1.intent(None).text
 }
 
 /// What `armctl yerc -t TARGET WORDS…` would send: the `data.frames` of a dry run. A command line that cannot be parsed
 /// fails with the parser's message.
 pub(super) fn rehearse(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
     let (robot, command) = resolved(target, words)?;
-    let access = Access { granted: command.risk(), dry_run: true, trace: None, need: command.need(), typed: None };
-    let mut link = Family::connect(&robot, access, &quiet()).now_or_never().expect("a dry run opens nothing")?;
-    let context = Context { robot: &robot, link: &mut link, screen: &quiet(), several: false };
-    if let Some(Err(failure)) = command.run(context).now_or_never() {
-        return Err(failure);
-    }
-    Ok(Family::rehearsed(&mut link))
+    Ok(testing::frames(&planned(&robot, &*command, |_| ())?))
 }
 
 /// The frames of a dry run, in hexadecimal, without the header: command, instance, attribute, service, padding, data.
@@ -79,10 +72,10 @@ pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Fa
     for words in lines {
         let (robot, command) = resolved(&target, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap();
         if link.is_none() {
-            link = Some(Family::connect(&robot, EVERYTHING, &quiet()).await.unwrap());
+            link = Some(Family::connect(&robot, everything(), &quiet()).await.unwrap());
         }
         let link = link.as_mut().expect("connected by the first line");
-        let context = Context { robot: &robot, link, screen: &quiet(), several: false };
+        let context = context(&robot, link);
         reports.push(match command.run(context).await {
             Ok(report) => report.failure().map_or_else(|| report.data(), Err),
             Err(failure) => Err(failure),
@@ -104,7 +97,7 @@ impl Bench {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
         let (robot, _) = resolved(target, &["status"]).expect("a robot");
-        let link = runtime.block_on(Family::connect(&robot, EVERYTHING, &quiet())).expect("a link");
+        let link = runtime.block_on(Family::connect(&robot, everything(), &quiet())).expect("a link");
         Self { runtime, robot, link }
     }
 
@@ -112,7 +105,7 @@ impl Bench {
     pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link } = self;
-        let report = runtime.block_on(command.run(Context { robot, link, screen: &quiet(), several: false }))?;
+        let report = runtime.block_on(command.run(context(robot, link)))?;
         Ok((report.data()?, report.failure()))
     }
 
@@ -125,10 +118,6 @@ impl Bench {
         }
     }
 }
-
-/// A link that may do anything.
-const EVERYTHING: Access =
-    Access { granted: Risk::Motion, dry_run: false, trace: None, need: Need::Command, typed: None };
 
 fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
     Cli::try_parse_from([&["armctl", "-t", target, "yerc"], words].concat())

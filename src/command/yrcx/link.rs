@@ -10,10 +10,9 @@ mod jog;
 mod output;
 mod shared;
 
-use std::convert::Infallible;
 use std::time::Duration;
 
-use serde_json::{Value as Json, json};
+use serde_json::json;
 use tokio::time::Instant;
 
 use super::eip::board::Board;
@@ -22,8 +21,9 @@ use super::io::named;
 use super::reach;
 use super::refusal;
 use super::trace::{Recorder, Trace};
-use crate::command::attach::attach;
-use crate::command::{Access, Family, Need};
+use crate::command::attach::{attach, is_held};
+use crate::command::dry_run::{Plan, Reason, unknown};
+use crate::command::{Access, Entry, Family, Need};
 use crate::controller::Risk;
 use crate::controller::yrcx::alarm::STOP_INPUT;
 use crate::controller::yrcx::answer::Answer;
@@ -36,6 +36,7 @@ use crate::controller::yrcx::signal::{input, resting};
 use crate::controller::yrcx::table::{Command, Pace, Row};
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
+use crate::gate::Grant;
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::{self, EipRole, Place};
@@ -76,7 +77,7 @@ pub struct Link {
     timeout: Duration,
     retries: u32,
     screen: Screen,
-    granted: Risk,
+    granted: Grant,
     label: String,
     /// The robot that commands are for, 1 to 4; 0 for the first, or for all where a command can be.
     unit: u8,
@@ -102,7 +103,7 @@ pub struct Link {
 enum Transport {
     Image(Box<ImageLink>),
     /// A dry run: what would be sent is noted.
-    Notes(Vec<Json>),
+    Notes(Plan),
     /// Not at all: only the network board is asked.
     Board(Box<Board>),
 }
@@ -158,7 +159,7 @@ impl Family for Yrcx {
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
         let way = reach::way(robot)?;
         if access.dry_run {
-            return Link::new(robot, &access, screen, Transport::Notes(Vec::new()), None);
+            return Link::new(robot, &access, screen, Transport::Notes(Plan::default()), None);
         }
         if access.need == Need::Messages {
             let (board, recorder) = way.board(robot, &access, screen).await?;
@@ -182,7 +183,7 @@ impl Family for Yrcx {
     }
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
-        link.granted = link.granted.max(Risk::Write);
+        link.granted.raise(Risk::Write);
         link.abandon_sequence();
         let now = link.started.elapsed();
         if let Some(exchange) = &mut link.exchange {
@@ -221,10 +222,25 @@ impl Family for Yrcx {
         link.is_jogging()
     }
 
-    fn rehearsed(link: &mut Link) -> Vec<Json> {
+    fn rehearsed(link: &mut Link) -> Plan {
         match &mut link.transport {
-            Transport::Notes(notes) => std::mem::take(notes),
-            Transport::Image(_) | Transport::Board(_) => Vec::new(),
+            Transport::Notes(plan) => std::mem::take(plan),
+            Transport::Image(_) | Transport::Board(_) => Plan::default(),
+        }
+    }
+
+    fn entry(robot: &Robot, need: Need) -> Entry {
+        let takes_control = match &robot.target.value.place {
+            Place::Sim(_) => false,
+            Place::Eip(eip) => eip.role == EipRole::Owner && need == Need::Command,
+            Place::Udp(_) | Place::Serial(_) | Place::Tcp(_) => need == Need::Command,
+        };
+        if !takes_control {
+            Entry::Harmless
+        } else if is_held(robot) {
+            Entry::ThroughSession
+        } else {
+            Entry::Stops(STOPS)
         }
     }
 
@@ -249,6 +265,10 @@ impl Family for Yrcx {
         left.and(recorded)
     }
 }
+
+/// Said before a connection is taken that no session holds.
+const STOPS: &str = "take the command connection and drop it at the end, which stops the robot: motor power goes off, with \
+                     alarm 12.551 (`armctl session open` keeps a connection open)";
 
 /// Said when the connection to a real controller ends.
 const CLOSED: &str = "the connection is closed, which a controller takes for a fault of the link: it stops, and raises \
@@ -316,9 +336,9 @@ impl Link {
             timeout,
             retries: robot.retries.value,
             screen: *screen,
-            granted: access.granted,
+            granted: access.granted.clone(),
             label: robot.label(),
-            unit: 0,
+            unit: access.unit,
             has_started: false,
             is_held: is_simulated,
             is_shared: false,
@@ -345,14 +365,15 @@ impl Link {
         given.done(order.row())
     }
 
-    /// In a dry run, notes all the orders and ends it.
-    pub async fn rehearse(&mut self, orders: &[Order]) {
-        if self.is_dry() {
-            for order in orders {
-                self.note(order);
-            }
-            std::future::pending::<Infallible>().await;
+    /// In a dry run, notes all the questions, whose answers are not known then.
+    pub fn rehearse(&mut self, orders: &[Order]) -> Result<(), Failure> {
+        if !self.is_dry() || orders.is_empty() {
+            return Ok(());
         }
+        for order in orders {
+            self.note(order, Reason::default());
+        }
+        Err(unknown())
     }
 
     /// Carries out an order; a refusal is an answer. Only what reads is repeated, as long as `--timeout` and `--retries`
@@ -360,9 +381,9 @@ impl Link {
     pub async fn try_run(&mut self, order: &Order) -> Result<Given, Failure> {
         self.admit(order.row().id, order.risk())?;
         if self.is_dry() {
-            self.note(order);
+            self.note(order, Reason::default());
             if order.risk() == Risk::Read {
-                std::future::pending::<Infallible>().await;
+                return Err(unknown());
             }
             let answer = Answer::Done(Values::default());
             return Ok(Given { answer, words: Words::default(), elapsed: Duration::ZERO });
@@ -447,7 +468,7 @@ impl Link {
         if self.is_dry() {
             self.note_steps(&procedure);
             if procedure.risk == Risk::Read {
-                std::future::pending::<Infallible>().await;
+                return Err(unknown());
             }
             return Ok(Duration::ZERO);
         }
@@ -466,7 +487,7 @@ impl Link {
     /// What the controller shows now.
     pub async fn look(&mut self) -> Result<Image, Failure> {
         if self.is_dry() {
-            std::future::pending::<Infallible>().await;
+            return Err(unknown());
         }
         self.catch_up().await?;
         let until = Instant::now() + self.timeout;
@@ -519,7 +540,8 @@ impl Link {
     }
 
     /// Names the robot that commands are for.
-    pub fn set_unit(&mut self, unit: u8) {
+    #[cfg(test)]
+    pub(super) fn set_unit(&mut self, unit: u8) {
         self.unit = unit;
     }
 
@@ -530,11 +552,7 @@ impl Link {
 
     /// The last check before something leaves.
     pub fn permit(&self, name: &str, risk: Risk) -> Result<(), Failure> {
-        if risk <= self.granted {
-            return Ok(());
-        }
-        Err(Failure::local(format!("{name} was stopped before it left: it is a {risk:?}"))
-            .hint("this is a fault of armctl: the command passed the gate as less than it is; please report it"))
+        self.granted.check(risk, name)
     }
 
     fn admit(&self, name: &str, risk: Risk) -> Result<(), Failure> {
@@ -555,20 +573,35 @@ impl Link {
 
     /// Notes in a dry run an order that depends on answers.
     pub fn foresee(&mut self, order: &Order, about: &str) {
-        if let Transport::Notes(notes) = &mut self.transport {
-            notes.push(json!({ "wi": hex(order.words()), "about": about }));
+        self.note(order, Reason::about(about));
+    }
+
+    /// Notes in a dry run an order whose words, or whose sending, an answer before it decides. `other` is the same order
+    /// with other answers: where both differ nothing is known.
+    pub fn foresee_depending(&mut self, order: &Order, other: &Order, reason: Reason<'_>) {
+        let word = |(one, other): (&u16, &u16)| if one == other { format!("0x{one:04X}") } else { "?".to_owned() };
+        let words: Vec<String> = order.words().iter().zip(other.words()).map(word).collect();
+        if let Transport::Notes(plan) = &mut self.transport {
+            plan.note(json!({ "wi": words }), reason);
         }
     }
 
-    fn note(&mut self, order: &Order) {
-        if let Transport::Notes(notes) = &mut self.transport {
-            notes.push(json!({ "wi": hex(order.words()) }));
+    /// Says in a dry run what follows that cannot be shown.
+    pub fn then(&mut self, what: &str) {
+        if let Transport::Notes(plan) = &mut self.transport {
+            plan.then(what);
+        }
+    }
+
+    fn note(&mut self, order: &Order, reason: Reason<'_>) {
+        if let Transport::Notes(plan) = &mut self.transport {
+            plan.note(json!({ "wi": hex(order.words()) }), reason);
         }
     }
 
     /// Notes what each edge of a procedure shows.
     fn note_steps(&mut self, procedure: &Procedure) {
-        let Transport::Notes(notes) = &mut self.transport else { return };
+        let Transport::Notes(plan) = &mut self.transport else { return };
         let image = &mut self.output.next;
         for step in &procedure.steps {
             let (signal, on) = match *step {
@@ -579,7 +612,7 @@ impl Link {
             if signal.is_on(image) != on {
                 signal.set(image, on);
                 let about = format!("{} {}", named(signal), if on { "on" } else { "off" });
-                notes.push(json!({ "bits": hex(&image.0[COMMAND_WORDS..]), "about": about }));
+                plan.note(json!({ "bits": hex(&image.0[COMMAND_WORDS..]) }), Reason::about(&about));
             }
         }
     }

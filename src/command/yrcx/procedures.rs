@@ -13,7 +13,7 @@ use crate::output::view::View;
 
 /// Declares a command for each procedure.
 macro_rules! procedures {
-    ($($(#[$meta:meta])* $name:ident $id:literal $procedure:ident $done:literal;)*) => {
+    ($($(#[$meta:meta])* $name:ident $id:literal $procedure:ident $done:literal $($is_stop:literal)?;)*) => {
         $(
             $(#[$meta])*
             #[derive(Debug, Args)]
@@ -31,6 +31,10 @@ macro_rules! procedures {
                 fn intent(&self) -> String {
                     Procedure::$procedure().intent
                 }
+
+                $(fn is_stop(&self) -> bool {
+                    $is_stop
+                })?
 
                 fn need(&self) -> Need {
                     if Procedure::$procedure().only_awaits() { Need::Sight } else { Need::Command }
@@ -51,7 +55,7 @@ procedures! {
     PowerOn "yrcx.power-on" power_on "the servos are on";
     /// Puts the controller into emergency stop: SI(00) off, until SO(00), SO(03) and SO(02) confirm it. The connection must
     /// be held, or its end is what the controller sees next.
-    EmergencyStop "yrcx.emergency-stop" emergency_stop "the controller is in emergency stop";
+    EmergencyStop "yrcx.emergency-stop" emergency_stop "the controller is in emergency stop" true;
     /// Ends the emergency stop and switches the servos on: SI(00), SI(16), SI(01), each confirmed.
     Recover "yrcx.recover" recover "the servos are on again";
     /// Waits until AUTO mode is selected (SO(10)); people select it at the controller.
@@ -61,7 +65,7 @@ procedures! {
     /// Runs the robot program, also after a stop: SI(06) on, SI(12) on, until SO(13) confirms it.
     Run "yrcx.run" run "the robot program runs";
     /// Stops the robot program: SI(06) off, until SO(13) confirms it. It stays off until the next run.
-    Stop "yrcx.stop" stop "the robot program is stopped";
+    Stop "yrcx.stop" stop "the robot program is stopped" true;
 }
 
 /// A procedure that was carried out and confirmed.

@@ -18,7 +18,7 @@ use crate::output::Screen;
 
 /// Asks all of it; the first refusal or failure ends it. A dry run notes all of it and ends.
 pub async fn ask_all(link: &mut Link, screen: &Screen, what: &str, orders: &[Order]) -> Result<Vec<Values>, Failure> {
-    link.rehearse(orders).await;
+    link.rehearse(orders)?;
     let mut progress = (orders.len() > 1).then(|| screen.items_progress(what, orders.len() as u64));
     let mut answers = Vec::with_capacity(orders.len());
     for (done, order) in orders.iter().enumerate() {
@@ -63,7 +63,7 @@ pub async fn read_numbers(
     let numbers = Numbers::of(numbers);
     let orders = numbers.iter().map(|number| Ok(link.draft(command)?.with(key, *number).build()?));
     let orders = orders.collect::<Result<Vec<Order>, Failure>>()?;
-    link.rehearse(&orders).await;
+    link.rehearse(&orders)?;
     let mut progress =
         (orders.len() > 1).then(|| screen.items_progress(&format!("reading {noun}"), orders.len() as u64));
     let mut found = Found { entries: Vec::with_capacity(orders.len()), refused: Vec::new() };

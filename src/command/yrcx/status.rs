@@ -47,7 +47,7 @@ impl Command for Status {
         }
         let servo = link.draft(table::Command::ServoStatus)?.build()?;
         let position = link.draft(table::Command::PositionMm)?.build()?;
-        link.rehearse(&[servo.clone(), position]).await;
+        link.rehearse(&[servo.clone(), position])?;
         let image = link.look().await?;
         let servos = servos(&link.run(&servo).await?.values);
         let position_mm = position_mm(link).await?;

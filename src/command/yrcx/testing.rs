@@ -5,17 +5,18 @@ use std::fmt::Debug;
 use std::time::Duration;
 
 use clap::Parser as _;
-use futures_util::FutureExt as _;
 use serde_json::Value;
 
 use super::Family;
 use super::link::Link;
 use crate::cli::{Cli, OfYrcx, Top, Verb};
-use crate::command::{Access, AnyCommand, Context, Family as _, Need};
+use crate::command::testing::{self, context, planned};
+use crate::command::{Access, AnyCommand, Family as _, Need, Noun as _};
 use crate::controller::Risk;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Words};
 use crate::controller::yrcx::signal::output;
 use crate::failure::Failure;
+use crate::gate::Grant;
 use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::target::Family as Name;
 use crate::settings::{Robot, Selection, Sources};
@@ -89,12 +90,12 @@ pub(super) fn objection(words: &[&str]) -> String {
 
 /// The question before the command, without "This will".
 pub(super) fn intent(words: &[&str]) -> String {
-    resolved(DRY, words).unwrap().1.intent()
+    resolved(DRY, words).unwrap().1.intent(None).of_unit(unit(words)).text
 }
 
 /// What the command does at most.
 pub(super) fn risk(words: &[&str]) -> Risk {
-    resolved(DRY, words).unwrap().1.risk()
+    resolved(DRY, words).unwrap().1.intent(None).risk
 }
 
 /// The data of a command that takes no robot.
@@ -111,13 +112,7 @@ pub(super) fn words(words: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
 /// All that `armctl yrcx WORDS…` would send.
 pub(super) fn frames(words: &[&str]) -> Result<Vec<Value>, Failure> {
     let (robot, command) = resolved(DRY, words)?;
-    let access = Access { granted: command.risk(), dry_run: true, trace: None, need: command.need(), typed: None };
-    let mut link = Family::connect(&robot, access, &quiet()).now_or_never().expect("a dry run opens nothing")?;
-    let context = Context { robot: &robot, link: &mut link, screen: &quiet(), several: false };
-    if let Some(Err(failure)) = command.run(context).now_or_never() {
-        return Err(failure);
-    }
-    Ok(Family::rehearsed(&mut link))
+    Ok(testing::frames(&planned(&robot, &*command, |link| link.set_unit(unit(words)))?))
 }
 
 /// A real controller that nothing is sent to.
@@ -169,7 +164,7 @@ impl Bench {
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
         let peer = Shared::new(scripted.into());
-        let access = Access { granted, dry_run: false, trace: None, need: Need::Command, typed: None };
+        let access = Access { granted: Grant::of(granted), ..Access::reading(Need::Command) };
         let screen = quiet();
         let opening = Link::to_peer(&robot, &access, &screen, Box::new(Handle(Shared::clone(&peer))));
         let link = runtime.block_on(opening).expect("a link");
@@ -180,7 +175,8 @@ impl Bench {
     pub(super) fn run(&mut self, words: &[&str]) -> Result<Value, Failure> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link, .. } = self;
-        let report = runtime.block_on(command.run(Context { robot, link, screen: &quiet(), several: false }))?;
+        link.set_unit(unit(words));
+        let report = runtime.block_on(command.run(context(robot, link)))?;
         report.failure().map_or(Ok(()), Err)?;
         report.data()
     }
@@ -194,9 +190,9 @@ impl Bench {
     pub(super) fn cut(&mut self, words: &[&str], after: Duration) -> bool {
         let (_, command) = resolved("sim:", words).unwrap();
         let Self { runtime, robot, link, .. } = self;
+        link.set_unit(unit(words));
         runtime.block_on(async {
-            let screen = quiet();
-            let run = command.run(Context { robot, link, screen: &screen, several: false });
+            let run = command.run(context(robot, link));
             tokio::time::timeout(after, run).await.is_err()
         })
     }
@@ -360,10 +356,18 @@ pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn A
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Yrcx))?.remove(0);
-    let Top::Yrcx(OfYrcx::Yrcx { unit, verb: Some(Verb::Command(verb)) }) = cli.command else {
+    let Top::Yrcx(OfYrcx::Yrcx { verb: Some(Verb::Command(verb)), .. }) = cli.command else {
         unreachable!("the words follow yrcx")
     };
-    Ok((robot, unit.of(verb)))
+    Ok((robot, verb.command()))
+}
+
+/// The robot of `--unit`.
+fn unit(words: &[&str]) -> u8 {
+    match parsed(DRY, words).map(|cli| cli.command) {
+        Ok(Top::Yrcx(OfYrcx::Yrcx { unit, .. })) => unit.number(),
+        _ => 0,
+    }
 }
 
 /// Where tests write: nowhere.

@@ -364,7 +364,8 @@ mod tests {
         assert_eq!(request(0x86, 1, 1, 0x10, &[1, 0, 0, 0]).risk(), Risk::Motion);
         assert_eq!(request(0x87, 1, 0, 0x02, &[0; 36]).risk(), Risk::Write);
         assert_eq!(Request::file(0x16, *b"A.JBI").risk(), Risk::Read);
-        assert_eq!(Request::file(0x09, *b"A.JBI").risk(), Risk::Write);
+        assert_eq!(Request::file(0x09, *b"A.JBI").risk(), Risk::Destroy);
+        assert_eq!(Request::file(0x15, *b"A.JBI").risk(), Risk::Destroy);
         assert_eq!(Request::file(0x16, *b"/SPDRV/CMOSBK.BIN").risk(), Risk::Write);
         assert_eq!(Request::file(0x77, *b"").risk(), Risk::Motion);
     }

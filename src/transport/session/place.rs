@@ -102,6 +102,11 @@ impl Spot {
         self.stem.with_extension(SOCKET)
     }
 
+    /// Whether somebody listens there, and nobody but this user can.
+    pub fn is_open(&self) -> bool {
+        self.check().is_ok_and(|is_there| is_there && socket::answers(&self.socket()))
+    }
+
     /// Where a host in the background writes what happens.
     pub fn log(&self) -> PathBuf {
         self.stem.with_extension("log")

@@ -76,6 +76,11 @@ impl Lock {
     }
 }
 
+/// Whether somebody listens there.
+pub fn answers(path: &Path) -> bool {
+    std::os::unix::net::UnixStream::connect(path).is_ok()
+}
+
 /// Where clients come in.
 #[derive(Debug)]
 pub struct Listener(UnixListener);

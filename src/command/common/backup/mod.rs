@@ -95,14 +95,14 @@ fn reading_risk(robot: &Robot) -> Risk {
 
 /// Makes a backup of a robot of any family.
 async fn make(context: Context<'_, Fleet>, making: Making) -> Result<BackedUp, Failure> {
-    let Context { link, screen, robot, .. } = context;
+    let Context { link, screen, robot, authority, .. } = context;
     match link {
         Link::Yerc(link) => {
-            let context = Context { robot, link: &mut **link, screen, several: false };
+            let context = Context { robot, link: &mut **link, screen, several: false, authority };
             Ok(yerc::file::Backup::of(&making).run(context).await?.into())
         }
         Link::Yrcx(link) => {
-            let context = Context { robot, link: &mut **link, screen, several: false };
+            let context = Context { robot, link: &mut **link, screen, several: false, authority };
             yrcx::backup::Backup::of(&making).run(context).await
         }
         Link::Toyo(link) => {
@@ -110,7 +110,7 @@ async fn make(context: Context<'_, Fleet>, making: Making) -> Result<BackedUp, F
             if current_task {
                 note_current_task(screen, robot);
             }
-            let context = Context { robot, link: &mut **link, screen, several: false };
+            let context = Context { robot, link: &mut **link, screen, several: false, authority };
             Ok(toyo::backup::Backup::of(&making, current_task).run(context).await?.into())
         }
         Link::Absent(failure) => Err(failure.clone()),

@@ -12,7 +12,6 @@ use crate::command::overview::{Fleet, Link};
 use crate::command::{Command, Context, toyo, yerc, yrcx};
 use crate::controller::Risk;
 use crate::failure::Failure;
-use crate::gate::Demand;
 use crate::settings::target::Family;
 
 /// Writes back what a backup holds.
@@ -51,31 +50,31 @@ impl Command for Restore {
     const ID: &'static str = "restore";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
     }
 
-    fn demand(&self) -> Demand {
-        if self.machine { Demand::Flag("parameters make it another machine".to_owned()) } else { Demand::Usual }
+    fn intent(&self) -> String {
+        "overwrite what the controller stores by the backup".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Fleet>) -> Result<Restored, Failure> {
-        let Context { link, screen, robot, several } = context;
+        let Context { link, screen, robot, several, authority } = context;
         let folder = place(&self.folder, robot, several);
         manifest::admit(&manifest::existing::<Value>(&folder)?, robot, self.force)?;
         let only = Only(self.only.clone());
         let restoring = Restoring { folder: folder.clone(), only, machine: self.machine, force: self.force };
         match link {
             Link::Yerc(link) => {
-                let context = Context { robot, link: &mut **link, screen, several: false };
+                let context = Context { robot, link: &mut **link, screen, several: false, authority };
                 let results = yerc::file::Restore::of(&restoring).run(context).await?;
                 Ok(Restored::new(&folder, Items::from(results)))
             }
             Link::Yrcx(link) => {
-                let context = Context { robot, link: &mut **link, screen, several: false };
+                let context = Context { robot, link: &mut **link, screen, several: false, authority };
                 yrcx::backup::Restore::of(&restoring).run(context).await
             }
             Link::Toyo(link) => {
-                let context = Context { robot, link: &mut **link, screen, several: false };
+                let context = Context { robot, link: &mut **link, screen, several: false, authority };
                 Ok(toyo::backup::Restore::of(&restoring).run(context).await?.of_folder(&folder))
             }
             Link::Absent(failure) => Err(failure.clone()),

@@ -3,10 +3,10 @@
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::Value;
 
 use crate::command::ValueKind;
 use crate::command::checks::{self, Layer};
+use crate::command::dry_run::Plan;
 use crate::command::{Access, Command, Context, Family, Need, Report, toyo, yerc, yrcx};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -39,8 +39,8 @@ impl Family for Checked {
         Ok("nothing was sent that moves the robot".to_owned())
     }
 
-    fn rehearsed(_link: &mut Access) -> Vec<Value> {
-        Vec::new()
+    fn rehearsed(_link: &mut Access) -> Plan {
+        Plan::default()
     }
 
     async fn close(_link: Access, _screen: &Screen) -> Result<(), Failure> {

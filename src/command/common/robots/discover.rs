@@ -12,7 +12,6 @@ use crate::command::toyo::ports::{self, Port};
 use crate::command::yrcx::eip::board::{Identity, MAKER};
 use crate::command::yrcx::trace::Recorder;
 use crate::command::{Access, Need, Report};
-use crate::controller::Risk;
 use crate::failure::{Failure, Kind, plain};
 use crate::output::view::{Cell, Table, View};
 use crate::settings::duration;
@@ -67,8 +66,7 @@ impl Discover {
         if is_everybody {
             targets.push(SocketAddrV4::new(Ipv4Addr::BROADCAST, PORT));
         }
-        let access =
-            Access { granted: Risk::Read, dry_run: false, trace: run.trace.clone(), need: Need::Messages, typed: None };
+        let access = Access { trace: run.trace.clone(), ..Access::reading(Need::Messages) };
         run.begin_trace()?;
         let (recorder, tap) = Recorder::start(&access, &run.screen)?.unzip();
         let asked = list_identity(self.bind, &targets, self.wait, &tap.unwrap_or_default()).await;

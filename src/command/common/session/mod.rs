@@ -8,7 +8,7 @@ use clap::Subcommand;
 
 pub use close::Closed;
 pub use list::Sessions;
-pub use open::Opened;
+pub use open::{Opened, open_for};
 
 use crate::command::run::{Run, Stopped};
 

@@ -1,9 +1,10 @@
 //! `armctl session open`: holds the link to a robot, in the foreground or behind it.
 
 use std::cell::RefCell;
+use std::ffi::OsString;
 use std::fs::OpenOptions;
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use clap::Args;
@@ -18,7 +19,6 @@ use crate::command::holding::{Attempt, Holding};
 use crate::command::interrupt::{catch_interrupts, interruptible};
 use crate::command::run::{Run, Stopped};
 use crate::command::{Access, Need, Report};
-use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::View;
@@ -82,6 +82,12 @@ impl Open {
         let [robot] = &robots[..] else {
             return Err(Failure::usage("a session is for one robot").hint("open one for each").into());
         };
+        if robot.read_only.value && robot.family == Family::Yrcx && !robot.target.value.is_simulated() {
+            let message = format!("{} is read-only, and a session commands the controller", robot.label());
+            return Err(Failure::new(Kind::RefusedHere, message)
+                .hint("`yrcx status` and `yrcx io get` read without a command connection")
+                .into());
+        }
         if run.gate.dry_run {
             return Err(Failure::usage("there is nothing to see beforehand: a session sends no command by itself")
                 .hint("leave --dry-run away")
@@ -94,7 +100,9 @@ impl Open {
         }
         catch_interrupts();
         if self.background {
-            return run.local("session.open", &in_background(robot).await?);
+            let words = std::env::args_os().skip(1);
+            let words = words.map(|word| if word == "--background" { "--detached".into() } else { word });
+            return run.local("session.open", &in_background(robot, words).await?);
         }
         if !self.detached {
             let (host, opened) = Self::open(run, robot, false).await?;
@@ -123,8 +131,7 @@ impl Open {
         let diary = Diary { screen: run.screen, label: robot.label(), file: log.clone() };
         let diary = Rc::new(RefCell::new(diary));
         let say = Rc::clone(&diary);
-        let access =
-            Access { granted: Risk::Read, dry_run: false, trace: run.trace.clone(), need: Need::Command, typed: None };
+        let access = Access { trace: run.trace.clone(), ..Access::reading(Need::Command) };
         let opening = Holding::open(robot, &access, &run.screen, move |text| say.borrow_mut().say(text));
         let holding = match interruptible(opening).await?? {
             Attempt::Held(holding) => holding,
@@ -164,12 +171,27 @@ async fn taken(robot: &Robot, spot: &Spot) -> Failure {
         .hint(format!("commands go through it by themselves; `armctl session close {}` ends it", robot.name))
 }
 
-/// Starts this program again behind the terminal, and waits until its link is up.
-async fn in_background(robot: &Robot) -> Result<Opened, Failure> {
+/// Opens a session in the background for a robot of the inventory whose entry wants one (`hold = true`).
+pub async fn open_for(robot: &Robot, inventory: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
+    let mut words: Vec<OsString> = Vec::new();
+    if let Some(path) = inventory {
+        words.extend(["--config".into(), path.into()]);
+    }
+    words.extend(["-r", &robot.name, "session", "open", "--detached"].map(OsString::from));
+    let opened = in_background(robot, words.into_iter()).await?;
+    screen.note(&format!(
+        "{}: a session was opened (process {}); `armctl session close {}` ends it",
+        robot.label(),
+        opened.pid,
+        robot.name
+    ));
+    Ok(())
+}
+
+/// Starts this program again behind the terminal with these words, and waits until its link is up.
+async fn in_background(robot: &Robot, words: impl Iterator<Item = OsString>) -> Result<Opened, Failure> {
     let place = Place::make().map_err(|error| no_place(&error))?;
     let log = place.spot(&key_of(robot)).log();
-    let words = std::env::args_os().skip(1);
-    let words = words.map(|word| if word == "--background" { "--detached".into() } else { word });
     let mut child = detach(words, &log).map_err(|error| Failure::io("this program, in the background", &error))?;
     let pid = child.pid();
     let line = match interruptible(spawn_blocking(move || child.line())).await {

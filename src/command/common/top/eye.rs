@@ -8,7 +8,6 @@ use tokio::time::{Instant, sleep_until};
 
 use crate::command::sample::{Depth, Sample};
 use crate::command::{Access, Need, toyo, yerc, yrcx};
-use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::{Robot, target};
@@ -40,7 +39,7 @@ enum Eye {
 
 impl Eye {
     async fn open(robot: &Robot, screen: &Screen) -> Result<Self, Failure> {
-        let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: Need::Sight, typed: None };
+        let access = Access::reading(Need::Sight);
         Ok(match robot.family {
             target::Family::Yerc => Self::Yerc(Box::new(yerc::top::Eye::open(robot, access, screen).await?)),
             target::Family::Yrcx => Self::Yrcx(Box::new(yrcx::top::Eye::open(robot, access, screen).await?)),

@@ -10,6 +10,7 @@ use super::content::{self, Content};
 use super::manifest::{Controller, Manifest};
 use super::parts::{self, Part, PartResult, Parts};
 use crate::command::backup::{self, Item, Items, Only, POWER_CYCLE, Restoring};
+use crate::command::dry_run::unknown;
 use crate::command::local::own_folder;
 use crate::command::manifest::{self, LeftOut, MANIFEST, State};
 use crate::command::toyo::cells::{Cell, Cells};
@@ -23,7 +24,6 @@ use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
-use crate::gate::Demand;
 use crate::output::Screen;
 use crate::output::view::View;
 
@@ -73,19 +73,15 @@ impl Command for Restore {
     const ID: &'static str = "toyo.restore";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
     }
 
-    fn demand(&self) -> Demand {
-        if self.machine {
-            Demand::Flag("machine parameters make it another machine, and need a power cycle".to_owned())
-        } else {
-            Demand::Usual
-        }
+    fn intent(&self) -> String {
+        "overwrite what the controller stores by the backup".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
-        let Context { link, screen, robot, several } = context;
+        let Context { link, screen, robot, several, .. } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
         let manifest: Manifest = manifest::existing(&folder)?;
         let parts = self.chosen(&manifest)?;
@@ -228,7 +224,7 @@ impl Restore {
             stores::store_all(link, screen, SPEED, &[store], 0).await?;
         }
         link.put_back().await?;
-        std::future::pending().await
+        Err(unknown())
     }
 }
 

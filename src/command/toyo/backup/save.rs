@@ -10,6 +10,7 @@ use super::content::{self, Text};
 use super::manifest::{Controller, Manifest};
 use super::parts::{self, Part, PartResult};
 use crate::command::backup::{self, Item, Items, Making, Only, cut_off, write_text};
+use crate::command::dry_run::unknown;
 use crate::command::interrupt::interruptible;
 use crate::command::local::{make_folder, own_folder};
 use crate::command::manifest::{self, Entry, MANIFEST, Reason, State};
@@ -76,7 +77,7 @@ impl Command for Backup {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<BackedUp, Failure> {
-        let Context { link, screen, robot, several } = context;
+        let Context { link, screen, robot, several, .. } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
         let scope = self.scope();
         let earlier: Option<Manifest> = manifest::earlier(&folder, robot, scope.as_deref(), self.resume, self.force)?;
@@ -167,7 +168,7 @@ impl Backup {
         let of = if self.current_task { "of the current task" } else { "of each task, which is chosen before" };
         link.foresee(&content::first_read(Part::Points(1))?, &format!("and so on, every point {of}"));
         link.foresee(&content::first_read(Part::Program(1))?, &format!("and so on, every step {of}"));
-        std::future::pending().await
+        Err(unknown())
     }
 }
 

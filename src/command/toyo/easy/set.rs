@@ -32,7 +32,11 @@ impl Command for Set {
     const ID: &'static str = "toyo.easy.set";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "overwrite an easy program".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {

@@ -1,6 +1,7 @@
 //! What a link changes for a while, and puts back as it was found: who commands, and modes.
 
 use super::{Link, Refusal, Transport, status_page};
+use crate::command::dry_run::Reason;
 use crate::command::toyo::refusal;
 use crate::controller::Risk;
 use crate::controller::toyo::request::{Answer, Request};
@@ -25,8 +26,8 @@ impl Link {
             return Ok(());
         }
         if let Transport::Notes(_) = self.transport {
-            self.note(&status_page(2), Some("whether the host is ON"));
-            self.note(&Request::bare(Command::Hson), Some("if it is not"));
+            self.note(&status_page(2), Reason::about("whether the host is ON"));
+            self.note(&Request::bare(Command::Hson), Reason::about("if it is not"));
             self.host = Host::Taken;
             return Ok(());
         }
@@ -51,7 +52,7 @@ impl Link {
     /// notes what it is about.
     pub async fn borrow(&mut self, change: &Request, back: Request, about: &str) -> Result<(), Failure> {
         if self.is_dry() {
-            self.note(change, Some(about));
+            self.note(change, Reason::about(about));
             self.borrowed.push(back);
             return Ok(());
         }
@@ -80,7 +81,7 @@ impl Link {
                 continue;
             }
             if self.is_dry() {
-                self.note(&back, Some("to put back what was found"));
+                self.note(&back, Reason::about("to put back what was found"));
                 continue;
             }
             let failure = match self.converse(&back, true).await {
@@ -118,7 +119,7 @@ impl Link {
     pub(super) fn note_host_off(&mut self) {
         if self.host == Host::Taken {
             self.host = Host::Unknown;
-            self.note(&Request::bare(Command::Hsof), Some("if it was OFF before"));
+            self.note(&Request::bare(Command::Hsof), Reason::about("if it was OFF before"));
         }
     }
 }

@@ -5,6 +5,7 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 use super::{Link, Moving, SILENCE, jog, status_page};
+use crate::command::dry_run::unknown;
 use crate::command::toyo::refusal;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::{Answer, Request};
@@ -50,7 +51,7 @@ impl Link {
             if moving == Moving::Program {
                 self.foresee(&Moving::Jog.stop(), "if an axis moves on: it may be jogged");
             }
-            return std::future::pending().await;
+            return Err(unknown());
         }
         self.set_policy(Policy { timeout: SILENCE, retries: REPETITIONS, ..self.usual });
         let stopped = self.stop_until_it_stands(moving).await;

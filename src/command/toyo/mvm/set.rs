@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Group, SHEETS, VALUES, field, reads, sheet};
+use crate::command::dry_run::unknown;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::numbers::{number, read_contents};
 use crate::command::toyo::stores::{self, Store, Work, parameter_cell};
@@ -45,7 +46,11 @@ impl Command for Set {
     const ID: &'static str = "toyo.mvm.set";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "overwrite a matrix".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
@@ -63,7 +68,7 @@ impl Command for Set {
                 .filter_map(|(index, changes)| Some((index, changes.iter().cloned().collect::<Option<Vec<Value>>>()?)));
             let stores = whole.map(|(index, values)| self.store(index, values)).collect::<Result<Vec<_>, _>>()?;
             stores::store_all(link, screen, WORK, &stores, 0).await?;
-            return std::future::pending().await;
+            return Err(unknown());
         }
         let mut sheets = read_contents(link, screen, "reading sheets", &reads).await?;
         let mut stores = Vec::new();

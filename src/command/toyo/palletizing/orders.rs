@@ -39,7 +39,11 @@ impl Command for Copy {
     const ID: &'static str = "toyo.palletizing.copy";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "overwrite a palletizing program".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Copied, Failure> {

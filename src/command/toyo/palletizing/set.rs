@@ -56,7 +56,11 @@ impl Command for Set {
     const ID: &'static str = "toyo.palletizing.set";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "overwrite a palletizing program".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {

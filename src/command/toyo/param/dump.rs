@@ -46,7 +46,7 @@ impl Command for Dump {
     const ID: &'static str = "toyo.param.dump";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Dumped, Failure> {
-        let Context { robot, link, screen, several } = context;
+        let Context { robot, link, screen, several, .. } = context;
         let target = files::target(self.file.as_deref(), self.force, several)?;
         let kept = Kept::read(link, screen).await?;
         let now = Timestamp::now();

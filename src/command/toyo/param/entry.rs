@@ -81,7 +81,7 @@ pub async fn read_keys(link: &mut Link, screen: &Screen, keys: &[Key]) -> Result
     let requests: Result<Vec<Request>, _> =
         keys.iter().map(|(parameter, row)| Request::read_parameter(parameter, *row)).collect();
     let requests = requests.map_err(|error| link::wrong(&error))?;
-    link.rehearse(&requests).await;
+    link.rehearse(&requests)?;
     let mut progress = (requests.len() > 1).then(|| screen.items_progress("reading parameters", requests.len() as u64));
     let mut contents = Vec::with_capacity(requests.len());
     for request in &requests {

@@ -4,31 +4,28 @@ use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::table::{Group, Parameter};
 use crate::failure::Failure;
-use crate::gate::Demand;
 
 /// Most steps that the tasks have together (TO 2-4, E22).
 const MOST_STEPS: i32 = 5000;
 /// From more steps than that on, there is no room for easy programs.
 const BESIDE_EASY: i32 = 2000;
 
-/// What a change of a parameter demands.
-pub fn demand(parameter: &Parameter) -> Demand {
-    if parameter.group() != Group::Machine {
-        return Demand::Usual;
-    }
-    flag(&format!("{} ({})", parameter.id, parameter.name), is_task_steps(parameter))
+/// What follows from a change of a parameter, to be said before it is confirmed.
+pub fn consequence(parameter: &Parameter) -> Option<String> {
+    let is_machine = parameter.group() == Group::Machine;
+    is_machine.then(|| of_machine(&format!("{} ({})", parameter.id, parameter.name), is_task_steps(parameter)))
 }
 
-/// What a change of machine parameters demands; `has_steps` if the steps of tasks are among them.
-pub fn flag(what: &str, has_steps: bool) -> Demand {
+/// What follows from a change of machine parameters; `has_steps` if the steps of tasks are among them.
+pub fn of_machine(what: &str, has_steps: bool) -> String {
     let lost = if has_steps {
         "; steps beyond a smaller number are lost, and so are easy programs if there are more than 2000 steps"
     } else {
         ""
     };
-    Demand::Flag(format!(
-        "after a change of {what} only communication works until the controller's power was switched off and on{lost}"
-    ))
+    format!(
+        "after a change of {what} only communication works until the controller's power is switched off and on{lost}"
+    )
 }
 
 /// What to say before a parameter is changed from what the controller holds.

@@ -17,7 +17,6 @@ use crate::controller::Risk;
 use crate::controller::toyo::bulk::{Setting, parameters};
 use crate::controller::toyo::table::Group;
 use crate::failure::{Failure, Kind};
-use crate::gate::Demand;
 use crate::output::view::View;
 
 /// Which file, and what of it.
@@ -75,11 +74,14 @@ impl Command for Restore {
     const ID: &'static str = "toyo.param.restore";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
     }
 
-    fn demand(&self) -> Demand {
-        if self.group.contains(&Part::Machine) { machine::flag("machine parameters", true) } else { Demand::Usual }
+    fn intent(&self) -> String {
+        let is_machine = self.group.contains(&Part::Machine);
+        let consequence =
+            if is_machine { format!("; {}", machine::of_machine("machine parameters", true)) } else { String::new() };
+        format!("overwrite parameters by those of the file{consequence}")
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {

@@ -15,7 +15,6 @@ use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::{Group, Parameter};
 use crate::failure::Failure;
-use crate::gate::Demand;
 use crate::output::view::View;
 
 /// A parameter, and what it shall hold.
@@ -43,11 +42,12 @@ impl Command for Set {
     const ID: &'static str = "toyo.param.set";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
     }
 
-    fn demand(&self) -> Demand {
-        machine::demand(self.parameter)
+    fn intent(&self) -> String {
+        let consequence = machine::consequence(self.parameter).map(|text| format!("; {text}")).unwrap_or_default();
+        format!("overwrite parameter {} ({}){consequence}", self.parameter.id, self.parameter.name)
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Written, Failure> {

@@ -1,7 +1,6 @@
 //! What `toyo param` sends, and what it refuses.
 
 use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, objection};
-use crate::gate::Demand;
 
 use super::machine;
 use crate::controller::toyo::field::Value;
@@ -56,16 +55,14 @@ fn what_cannot_be_meant_is_not_sent() {
 }
 
 #[test]
-fn machine_parameters_demand_a_flag() {
-    let demand = |id| machine::demand(Parameter::named(id).unwrap());
-    assert_eq!((demand("P01"), demand("U03")), (Demand::Usual, Demand::Usual));
-    let Demand::Flag(why) = demand("E06") else { panic!("a flag is demanded") };
+fn what_follows_from_machine_parameters_is_said() {
+    let told = |id| machine::consequence(Parameter::named(id).unwrap());
+    assert_eq!((told("P01"), told("U03")), (None, None));
     assert_eq!(
-        why,
-        "after a change of E06 (max-speed) only communication works until the controller's power was switched off and \
-         on"
+        told("E06").unwrap(),
+        "after a change of E06 (max-speed) only communication works until the controller's power is switched off and on"
     );
-    assert!(matches!(demand("E22"), Demand::Flag(why) if why.contains("easy programs")));
+    assert!(told("E22").unwrap().contains("easy programs"));
 }
 
 #[test]

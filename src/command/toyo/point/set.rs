@@ -59,7 +59,11 @@ impl Command for Set {
     const ID: &'static str = "toyo.point.set";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "overwrite points".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {

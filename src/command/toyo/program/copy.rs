@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::and_mode;
 use super::insert::moved_wrong;
 use super::steps;
+use crate::command::dry_run::unknown;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
@@ -46,7 +47,11 @@ impl Command for Copy {
     const ID: &'static str = "toyo.program.copy";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "overwrite program steps".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Copied, Failure> {
@@ -141,7 +146,7 @@ impl Copy {
         let about = if self.from_task.is_none() { "with the current task in the place of 1" } else { "if it differs" };
         link.foresee(&self.order(source, self.to_task.unwrap_or(source)), about);
         link.put_back().await?;
-        std::future::pending().await
+        Err(unknown())
     }
 }
 

@@ -8,6 +8,7 @@ use super::and_mode;
 use super::get::Step;
 use super::insert::moved_wrong;
 use super::steps;
+use crate::command::dry_run::unknown;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
@@ -40,7 +41,11 @@ impl Command for Delete {
     const ID: &'static str = "toyo.program.delete";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "delete program steps".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Deleted, Failure> {
@@ -95,7 +100,7 @@ impl Delete {
         steps::foresee_open(link).await?;
         link.order(&self.order(last)).await?;
         link.put_back().await?;
-        std::future::pending().await
+        Err(unknown())
     }
 }
 

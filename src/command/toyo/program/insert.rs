@@ -8,6 +8,7 @@ use super::and_mode;
 use super::get::Step;
 use super::steps;
 use crate::command::ValueKind;
+use crate::command::dry_run::unknown;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::{Family, tasks};
@@ -43,7 +44,11 @@ impl Command for Insert {
     const ID: &'static str = "toyo.program.insert";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "insert a program step".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Inserted, Failure> {
@@ -111,7 +116,7 @@ impl Insert {
         link.order(&self.order()).await?;
         link.store(screen, &steps::cell(self.step, instruction)?, &mut Cells::default()).await?;
         link.put_back().await?;
-        std::future::pending().await
+        Err(unknown())
     }
 }
 

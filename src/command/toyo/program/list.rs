@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::steps;
+use crate::command::dry_run::unknown;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
@@ -44,7 +45,7 @@ impl Command for List {
             if self.used {
                 link.foresee(&steps::read_request(1), "and so on, every step of every task");
             }
-            return std::future::pending().await;
+            return Err(unknown());
         }
         let outcome = self.list(link, screen).await;
         tasks::done(link, outcome).await

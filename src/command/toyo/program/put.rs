@@ -11,6 +11,7 @@ use super::and_mode;
 use super::check::Labelled;
 use super::steps;
 use super::text;
+use crate::command::dry_run::unknown;
 use crate::command::interrupt::interruptible;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::link::Link;
@@ -60,7 +61,11 @@ impl Command for Put {
     const ID: &'static str = "toyo.program.put";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "overwrite a program".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
@@ -171,7 +176,7 @@ impl Put {
             link.foresee(&steps::read_request(last + 1), rest);
         }
         link.put_back().await?;
-        std::future::pending().await
+        Err(unknown())
     }
 }
 

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::steps;
+use crate::command::dry_run::unknown;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
@@ -43,7 +44,7 @@ impl Command for Search {
             tasks::choose(link, self.task).await?;
             link.order(&self.order()).await?;
             link.foresee(&steps::read_request(0), "at which step it is");
-            return std::future::pending().await;
+            return Err(unknown());
         }
         let outcome = self.search(link).await;
         tasks::done(link, outcome).await

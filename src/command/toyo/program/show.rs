@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::steps;
+use crate::command::dry_run::unknown;
 use crate::command::toyo::Family;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::request::Request;
@@ -27,7 +28,7 @@ impl Command for Show {
         if link.is_dry() {
             link.foresee(&which, "which task is the current one");
             link.foresee(&request, "its current step");
-            return std::future::pending().await;
+            return Err(unknown());
         }
         let which = link.read(&which).await?;
         let answer = link.read(&request).await?;

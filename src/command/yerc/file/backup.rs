@@ -82,7 +82,7 @@ impl Command for Backup {
     const ID: &'static str = "yerc.file.backup";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<BackedUp, Failure> {
-        let Context { link, screen, robot, several } = context;
+        let Context { link, screen, robot, several, .. } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
         let scope = self.scope();
         let earlier: Option<Manifest> = manifest::earlier(&folder, robot, scope.as_deref(), self.resume, self.force)?;

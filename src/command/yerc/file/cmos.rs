@@ -54,7 +54,7 @@ impl Command for Cmos {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<BatchBackup, Failure> {
-        let Context { link, screen, robot, several } = context;
+        let Context { link, screen, robot, several, .. } = context;
         let Some(file) = self.file.as_deref().filter(|_| !self.start_only) else {
             return self.start(link, screen).await;
         };

@@ -28,7 +28,11 @@ impl Command for Delete {
     const ID: &'static str = "yerc.file.delete";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "delete files".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Results, Failure> {

@@ -35,7 +35,7 @@ impl Command for Diff {
     const ID: &'static str = "yerc.file.diff";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Difference, Failure> {
-        let Context { link, screen, robot, several } = context;
+        let Context { link, screen, robot, several, .. } = context;
         let file = name::typed(link.encoding, &self.name)?;
         let local = self.local.clone().unwrap_or_else(|| {
             own_folder("".as_ref(), &robot.name, several).join(local_name(link.encoding, file.as_bytes()))

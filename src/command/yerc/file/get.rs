@@ -42,7 +42,7 @@ impl Command for Get {
     const ID: &'static str = "yerc.file.get";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Fetched, Failure> {
-        let Context { link, screen, robot, several } = context;
+        let Context { link, screen, robot, several, .. } = context;
         let files = name::all_typed(link.encoding, &self.names)?;
         let to_stdout = self.output == Path::new("-");
         if to_stdout {

@@ -49,7 +49,11 @@ impl Command for Put {
     const ID: &'static str = "yerc.file.put";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "overwrite files of the same name".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Results, Failure> {

@@ -77,11 +77,15 @@ impl Command for Restore {
     const ID: &'static str = "yerc.file.restore";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "overwrite files by those of the backup".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Results, Failure> {
-        let Context { link, screen, robot, several } = context;
+        let Context { link, screen, robot, several, .. } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
         let manifest: Manifest = manifest::existing(&folder)?;
         let model = &manifest.controller.model;

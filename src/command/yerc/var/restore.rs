@@ -42,7 +42,11 @@ impl Command for Restore {
     const ID: &'static str = "yerc.var.restore";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "overwrite variables by those of the file".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {

@@ -7,6 +7,7 @@ use clap::Args;
 use super::content::{self, Controller, Store};
 use super::parts::Part;
 use crate::command::backup::{Item, Items, Only, Restored, Restoring};
+use crate::command::dry_run::unknown;
 use crate::command::interrupt::interruptible;
 use crate::command::local::own_folder;
 use crate::command::manifest::{self, LeftOut, State};
@@ -17,7 +18,6 @@ use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yrcx::signal::output;
 use crate::failure::{Failure, Kind};
-use crate::gate::Demand;
 use crate::output::Screen;
 
 /// Writes back what a backup holds.
@@ -64,19 +64,15 @@ impl Command for Restore {
     const ID: &'static str = "yrcx.restore";
 
     fn risk(&self) -> Risk {
-        Risk::Write
+        Risk::Destroy
     }
 
-    fn demand(&self) -> Demand {
-        if self.machine {
-            Demand::Flag("parameters and settings change how the robot moves".to_owned())
-        } else {
-            Demand::Usual
-        }
+    fn intent(&self) -> String {
+        "overwrite what the controller stores by the backup".to_owned()
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
-        let Context { link, screen, robot, several } = context;
+        let Context { link, screen, robot, several, .. } = context;
         link.no_unit("a backup is of the whole controller")?;
         let folder = own_folder(&self.folder, &robot.name, several);
         let manifest: manifest::Manifest<Controller> = manifest::existing(&folder)?;
@@ -196,5 +192,5 @@ async fn rehearse(link: &mut Link, jobs: &[Job]) -> Result<Restored, Failure> {
             link.foresee(&store.write, "if it differs");
         }
     }
-    std::future::pending().await
+    Err(unknown())
 }

@@ -9,6 +9,7 @@ use clap::Args;
 use super::content::{self, Controller, Text, Wanted};
 use super::parts::{POINTS, Part, THOUSAND};
 use crate::command::backup::{BackedUp, Item, Items, Making, Only, cut_off, write_text};
+use crate::command::dry_run::unknown;
 use crate::command::interrupt::interruptible;
 use crate::command::local::{make_folder, own_folder};
 use crate::command::manifest::{self, Entry, Reason, State};
@@ -82,7 +83,7 @@ impl Command for Backup {
     const ID: &'static str = "yrcx.backup";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<BackedUp, Failure> {
-        let Context { link, screen, robot, several } = context;
+        let Context { link, screen, robot, several, .. } = context;
         link.no_unit("a backup is of the whole controller")?;
         let folder = own_folder(&self.folder, &robot.name, several);
         let scope = self.scope();
@@ -136,7 +137,7 @@ async fn rehearse(link: &mut Link, asked: &Asked) -> Result<BackedUp, Failure> {
             link.foresee(&order, &about);
         }
     }
-    std::future::pending().await
+    Err(unknown())
 }
 
 /// A backup under way.

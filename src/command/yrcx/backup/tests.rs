@@ -5,10 +5,11 @@ use std::time::Duration;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
+use crate::command::Family as _;
+use crate::command::testing::{context, everything};
 use crate::command::yrcx::Family;
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::testing::{frames, quiet, resolved, risk, words};
-use crate::command::{Access, Context, Family as _, Need};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::settings::Robot;
@@ -34,7 +35,7 @@ impl Desk {
             format!("sim:?state={}", file.display())
         };
         let (robot, _) = resolved(&target, &["status"]).unwrap();
-        let access = Access { granted: Risk::Motion, dry_run: false, trace: None, need: Need::Command, typed: None };
+        let access = everything();
         let link = runtime.block_on(Family::connect(&robot, access, &quiet())).unwrap();
         Self { folder, runtime, robot, link }
     }
@@ -48,7 +49,7 @@ impl Desk {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>())?;
         let Self { runtime, robot, link, .. } = self;
-        let report = runtime.block_on(command.run(Context { robot, link, screen: &quiet(), several: false }))?;
+        let report = runtime.block_on(command.run(context(robot, link)))?;
         Ok((report.data()?, report.failure()))
     }
 
@@ -72,8 +73,7 @@ impl Desk {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>()).unwrap();
         let Self { runtime, robot, link, .. } = self;
-        let screen = quiet();
-        let run = command.run(Context { robot, link, screen: &screen, several: false });
+        let run = command.run(context(robot, link));
         runtime.block_on(async { tokio::time::timeout(after, run).await.map(|_| ()).unwrap_err() });
         runtime.block_on(Family::halt(link)).unwrap();
     }
@@ -126,7 +126,7 @@ fn what_is_restored_is_what_was_saved() {
         let line = if line.ends_with("--unit 2") { line.to_owned() } else { format!("{line} --unit 0") };
         let (robot, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>()).unwrap();
         let Desk { runtime, link, .. } = &mut desk;
-        runtime.block_on(command.run(Context { robot: &robot, link, screen: &quiet(), several: false })).unwrap();
+        runtime.block_on(command.run(context(&robot, link))).unwrap();
     }
     desk.link.set_unit(0);
     desk.data("backup @/changed");

@@ -26,7 +26,7 @@ impl Command for Arm {
         let link = context.link;
         let selected = link.draft(table::Command::ArmDesignation)?.build()?;
         let current = link.draft(table::Command::ArmStatus)?.build()?;
-        link.rehearse(&[selected.clone(), current.clone()]).await;
+        link.rehearse(&[selected.clone(), current.clone()])?;
         let selected = shown(table::Command::ArmDesignation, &link.run(&selected).await?.values, Key::Arm);
         let current = shown(table::Command::ArmStatus, &link.run(&current).await?.values, Key::Arm);
         Ok(Arms { selected, current })

@@ -1,10 +1,9 @@
 //! A link that asks only the network board.
 
-use std::convert::Infallible;
-
 use serde_json::Value as Json;
 
 use super::{Board, Link, Transport};
+use crate::command::dry_run::{Reason, unknown};
 use crate::failure::Failure;
 use crate::transport::tap::Direction;
 
@@ -13,7 +12,7 @@ impl Link {
     pub async fn board(&mut self) -> Result<&mut Board, Failure> {
         match &mut self.transport {
             Transport::Board(board) => Ok(board),
-            Transport::Notes(_) => std::future::pending().await,
+            Transport::Notes(_) => Err(unknown()),
             Transport::Image(_) => Err(Failure::local("this link carries images, not messages")),
         }
     }
@@ -24,11 +23,10 @@ impl Link {
         self.trace.message(Direction::Received, received, "done");
     }
 
-    /// In a dry run, notes a frame and ends it.
-    pub async fn rehearse_frame(&mut self, frame: Json) {
-        if let Transport::Notes(notes) = &mut self.transport {
-            notes.push(frame);
-            std::future::pending::<Infallible>().await;
-        }
+    /// In a dry run, notes a message, whose answer is not known then.
+    pub fn rehearse_frame(&mut self, frame: Json) -> Result<(), Failure> {
+        let Transport::Notes(plan) = &mut self.transport else { return Ok(()) };
+        plan.note(frame, Reason::default());
+        Err(unknown())
     }
 }

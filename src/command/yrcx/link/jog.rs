@@ -6,6 +6,7 @@ use tokio::time::Instant;
 
 use super::driver::LONG;
 use super::{Done, Link, Transport};
+use crate::command::dry_run::Reason;
 use crate::command::interrupt::abandoned;
 use crate::command::yrcx::refusal;
 use crate::controller::yrcx::alarm::STOP_INPUT;
@@ -40,7 +41,7 @@ impl Link {
     pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<Done, Failure> {
         self.admit(order.row().id, order.risk())?;
         if self.is_dry() {
-            self.note(order);
+            self.note(order, Reason::default());
             for procedure in [false, true].into_iter().filter_map(|on| Procedure::set(input::STOP, on)) {
                 self.note_steps(&procedure);
             }

@@ -10,7 +10,7 @@ use crate::controller::Risk;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
-use crate::gate::Demand;
+use crate::gate::Confirmation;
 
 /// Resets the absolute position of an axis of the mark type.
 #[derive(Debug, Args)]
@@ -63,10 +63,10 @@ impl Command for AbsReset {
         }
     }
 
-    fn demand(&self) -> Demand {
+    fn confirmation(&self) -> Confirmation {
         match self.direction {
-            Some(_) => Demand::Usual,
-            None => Demand::Word("reset"),
+            Some(_) => Confirmation::Question,
+            None => Confirmation::Word("reset"),
         }
     }
 

@@ -71,6 +71,10 @@ impl Command for Jog {
         format!("jog axis {} of {} {} ({until}, at the manual speed)", self.axis, self.which.name(), self.told())
     }
 
+    fn moves_until_stopped(&self) -> bool {
+        self.within.is_none()
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Moved, Failure> {
         let link = context.link;
         let unit = self.report.unwrap_or(self.system.unit());

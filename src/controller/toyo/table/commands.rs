@@ -222,32 +222,32 @@ commands! {
     Cver "CVER" Read "2-2" "version of a station"
         .asks(&[one("CVER NO={}", &[STATION])])
         .answers(&[one("CVER NO={} VER={}", &[STATION, VERSION])]);
-    Type "TYPE" Write "2-2" "set the robot type of an axis; the answer is the type in force"
+    Type "TYPE" Destroy "2-2" "set the robot type of an axis; the answer is the type in force"
         .asks(&[one("TYPE AX{} RTYP={}", &[AXIS_NUMBER, ROBOT_TYPE])])
         .answers(&[one("TYPE AX{} RTYP={}", &[AXIS_NUMBER, ROBOT_TYPE.named("in_force")])]);
-    Wpar "WPAR" Write "2-4" "write a parameter or a row of a table".asks(&[one("WPAR {}", &[BODY])]).host().eeprom();
+    Wpar "WPAR" Destroy "2-4" "write a parameter or a row of a table".asks(&[one("WPAR {}", &[BODY])]).host().eeprom();
     Rpar "RPAR" Read "2-4" "read a parameter or a row of a table"
         .asks(&[one("RPAR {}", &[BODY.named("key")])]).answers(&[one("RPAR {}", &[BODY])]);
-    Mint "MINT" Write "2-3" "clear memory"
+    Mint "MINT" Destroy "2-3" "clear memory"
         .asks(&[one("MINT PR={}", &[words("what", CLEARS, "what to clear")])]).host().eeprom();
-    Cpss "CPSS" Write "2-3" "copy steps of a sequential program, also between tasks"
+    Cpss "CPSS" Destroy "2-3" "copy steps of a sequential program, also between tasks"
         .asks(&[one(
             "CPSS TASK={} STA={} END={} TASK={} TOP={}",
             &[TASK.named("from_task"), STEP.named("first"), STEP.named("last"), TASK.named("to_task"), STEP.named("top")],
         )])
         .host().eeprom();
-    Istx "ISTX" Write "2-3" "insert a step".asks(&[one("ISTX {}", &[STEP])]).host().eeprom();
-    Dstx "DSTX" Write "2-3" "delete a step".asks(&[one("DSTX {}", &[STEP])]).host().eeprom();
+    Istx "ISTX" Destroy "2-3" "insert a step".asks(&[one("ISTX {}", &[STEP])]).host().eeprom();
+    Dstx "DSTX" Destroy "2-3" "delete a step".asks(&[one("DSTX {}", &[STEP])]).host().eeprom();
     Sstg "SSTG" Write "2-3" "search a tag; the current step goes there".asks(&[one("SSTG TAG={}", &[TAG])]).host();
-    Dstl "DSTL" Write "2-3" "delete steps"
+    Dstl "DSTL" Destroy "2-3" "delete steps"
         .asks(&[one("DSTL STA={} END={}", &[STEP.named("first"), STEP.named("last")])]).host().eeprom();
-    Cppl "CPPL" Write "2-3" "copy a palletizing program"
+    Cppl "CPPL" Destroy "2-3" "copy a palletizing program"
         .asks(&[one("CPPL STA={} TOP={}", &[PALLET.named("from"), PALLET.named("to")])]).host().eeprom();
-    Cesy "CESY" Write "2-3" "copy an easy program"
+    Cesy "CESY" Destroy "2-3" "copy an easy program"
         .asks(&[one("CESY STA={} TOP={}", &[EASY.named("from"), EASY.named("to")])]).eeprom();
-    Wmca "WMCA" Write "2-3" "write all to the memory card";
-    Rmca "RMCA" Write "2-3" "read all from the memory card, over what is there";
-    Wesy "WESY" Write "2-3" "write an easy program"
+    Wmca "WMCA" Destroy "2-3" "write all to the memory card";
+    Rmca "RMCA" Destroy "2-3" "read all from the memory card, over what is there";
+    Wesy "WESY" Destroy "2-3" "write an easy program"
         .asks(&[one(
             "WESY PNO={} ST={} START={} LOOP={} END={}",
             &[
@@ -265,11 +265,11 @@ commands! {
                 digits("end", 3, 0, 999, "end tag"),
             ],
         )]);
-    Wstx "WSTX" Write "2-5" "write a step of the sequential program"
+    Wstx "WSTX" Destroy "2-5" "write a step of the sequential program"
         .asks(&[one("WSTX {} {}", &[STEP, INSTRUCTION])]).host().eeprom();
     Rstx "RSTX" Read "2-5" "read a step of the sequential program; 0000 is the current one"
         .asks(&[one("RSTX {}", &[STEP_OR_CURRENT])]).answers(&[one("RSTX {} {}", &[STEP, INSTRUCTION])]);
-    Wplt "WPLT" Write "2-6" "write a record of a palletizing program"
+    Wplt "WPLT" Destroy "2-6" "write a record of a palletizing program"
         .asks(&[one("WPLT {} SNO={} {}", &[PALLET, RECORD, BODY])]).host().eeprom();
     Rplt "RPLT" Read "2-6" "read a record of a palletizing program"
         .asks(&[one("RPLT {} SNO={}", &[PALLET, RECORD])]).answers(&[one("RPLT {} SNO={} {}", &[PALLET, RECORD, BODY])]);

@@ -11,6 +11,7 @@ pub(super) const BATCH_BACKUP_SECTION: &str = "3.4.5";
 
 const READ: RiskRule = RiskRule::Always(Risk::Read);
 const WRITE: RiskRule = RiskRule::Always(Risk::Write);
+const DESTROY: RiskRule = RiskRule::Always(Risk::Destroy);
 const MOTION: RiskRule = RiskRule::Always(Risk::Motion);
 
 const fn get_single(attribute: Attribute) -> Service {
@@ -179,8 +180,8 @@ pub const ROWS: &[Row] = &[
     since_fs114(row(0x30A, "3.3.37", "alarm read with sub-code strings", READ_FIELDS, at::ALARMS, data::ALARM_WITH_TEXTS)),
     since_fs114(row(0x30B, "3.3.38", "alarm history read with sub-code strings", READ_FIELDS, at::HISTORY, data::ALARM_WITH_TEXTS)),
     dx200(plural(0x30C, "3.3.42", "plural string variable (S, 32 bytes)", at::LONG_STRINGS, data::S32, 14)),
-    files("3.4.1", "file delete", &[file(service::DELETE, "delete", Action::Write, WRITE)], data::FILE_NAME),
-    files("3.4.2", "file load", &[file(service::LOAD, "PC to controller", Action::Write, WRITE)], data::FILE_NAME),
+    files("3.4.1", "file delete", &[file(service::DELETE, "delete", Action::Write, DESTROY)], data::FILE_NAME),
+    files("3.4.2", "file load", &[file(service::LOAD, "PC to controller", Action::Write, DESTROY)], data::FILE_NAME),
     files("3.4.3", "file save", &[file(service::SAVE, "controller to PC", Action::Read, READ)], data::FILE_NAME),
     files("3.4.4", "file list", &[file(service::LIST, "list", Action::Read, READ)], data::FILE_FILTER),
     // Writes a file on the controller for ten minutes: nothing to repeat at will.

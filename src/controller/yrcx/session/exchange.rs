@@ -326,7 +326,7 @@ impl Exchange {
     fn unanswered(&self, silence: Silence) -> Ended {
         match self.order.risk() {
             Risk::Read => Ended::NoAnswer(silence),
-            Risk::Write | Risk::Motion => Ended::OutcomeUnknown(silence),
+            Risk::Write | Risk::Destroy | Risk::Motion => Ended::OutcomeUnknown(silence),
         }
     }
 

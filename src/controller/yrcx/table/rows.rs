@@ -31,6 +31,8 @@ macro_rules! commands {
 
 const READ: (Risk, Pace) = (Risk::Read, Pace::Quick);
 const WRITE: (Risk, Pace) = (Risk::Write, Pace::Quick);
+/// Overwrites what a person wrote or taught.
+const DESTROY: (Risk, Pace) = (Risk::Destroy, Pace::Quick);
 const POWER_OFF: (Risk, Pace) = (Risk::Write, Pace::Power);
 /// Power on, or brakes off: an axis may drop.
 const POWER: (Risk, Pace) = (Risk::Motion, Pace::Power);
@@ -88,10 +90,10 @@ commands! {
     InchTool 0x026 "inch-tool" "4.2.7" "inch along an axis of the tool" MOTION
         [ROBOT AXIS DIRECTION REPORT] [POSITIONS];
     InchAmountSet 0x027 "inch-amount-set" "4.2.8" "set the inching amount" WRITE [ROBOT INCHING_AMOUNT] [];
-    Teach 0x028 "teach" "4.2.9" "store the position in a point" WRITE [ROBOT TEACH] [];
+    Teach 0x028 "teach" "4.2.9" "store the position in a point" DESTROY [ROBOT TEACH] [];
     AbsoluteResetMove 0x030 "absolute-reset-move" "4.2.10" "move an axis to where absolute reset is possible" MOTION
         [ROBOT AXIS DIRECTION] [];
-    AbsoluteReset 0x031 "absolute-reset" "4.2.11" "reset the absolute position of an axis" WRITE [ROBOT AXIS] [];
+    AbsoluteReset 0x031 "absolute-reset" "4.2.11" "reset the absolute position of an axis" DESTROY [ROBOT AXIS] [];
     OriginRobot 0x032 "origin-robot" "4.2.12" "return to origin, by robot" MOTION [ROBOT_OR_ALL ORIGIN_AXES] [];
     OriginAxis 0x033 "origin-axis" "4.2.12" "return to origin, one axis" MOTION [ROBOT AXIS] [];
     ServoOn 0x034 "servo-on" "4.2.13" "switch servos on" POWER [ROBOT AXIS_OR_ALL] [];
@@ -118,15 +120,15 @@ commands! {
     PushPulse 0x04D "push-pulse" "4.2.23" "push an axis towards a position in pulses" MOTION
         [ROBOT ONE_AXIS SPEED PUSH REPORT TARGET_PULSE] [PUSH_RESULT POSITIONS];
 
-    PointSet 0x100 "point-set" "4.3.1" "define a point" WRITE [POINT_DATA POINT COORDINATES] [];
+    PointSet 0x100 "point-set" "4.3.1" "define a point" DESTROY [POINT_DATA POINT COORDINATES] [];
     PointGet 0x101 "point-get" "4.3.1" "read a point" READ [POINT] [POINT POINT_DATA_ANSWER COORDINATES];
-    CommentSet 0x104 "comment-set" "4.3.2" "define a point's comment" WRITE [POINT COMMENT] [];
+    CommentSet 0x104 "comment-set" "4.3.2" "define a point's comment" DESTROY [POINT COMMENT] [];
     CommentGet 0x105 "comment-get" "4.3.2" "read a point's comment" READ [POINT] [POINT COMMENT];
-    PalletSet 0x108 "pallet-set" "4.3.3" "define a pallet" WRITE [PALLET PALLET_DATA] [] [PalletSize];
+    PalletSet 0x108 "pallet-set" "4.3.3" "define a pallet" DESTROY [PALLET PALLET_DATA] [] [PalletSize];
     PalletGet 0x109 "pallet-get" "4.3.3" "read a pallet" READ [PALLET] [PALLET PALLET_DATA];
-    ShiftSet 0x10C "shift-set" "4.3.4" "define a shift" WRITE [SHIFT SHIFT_DATA] [];
+    ShiftSet 0x10C "shift-set" "4.3.4" "define a shift" DESTROY [SHIFT SHIFT_DATA] [];
     ShiftGet 0x10D "shift-get" "4.3.4" "read a shift" READ [SHIFT] [SHIFT SHIFT_DATA];
-    HandSet 0x110 "hand-set" "4.3.5" "define a hand" WRITE [ROBOT HAND HAND_DATA] [];
+    HandSet 0x110 "hand-set" "4.3.5" "define a hand" DESTROY [ROBOT HAND HAND_DATA] [];
     HandGet 0x111 "hand-get" "4.3.5" "read a hand" READ [HAND] [HAND HAND_OWNER HAND_DATA];
 
     VarSet 0x200 "var-set" "4.4.1" "set a variable to a number" WRITE [VARIABLE VARIABLE_VALUE] [];
@@ -140,19 +142,19 @@ commands! {
     VarDiv 0x210 "var-div" "4.4.1" "divide a variable by a number" WRITE [VARIABLE VARIABLE_VALUE] [];
     VarDivVar 0x211 "var-div-var" "4.4.1" "divide a variable by a variable" WRITE [VARIABLE VARIABLE_2] [];
     VarGet 0x214 "var-get" "4.4.1" "read a variable" READ [VARIABLE] [VARIABLE VARIABLE_VALUE];
-    ParamSet 0x220 "param-set" "4.4.2" "set a parameter" WRITE [ROBOT PARAMETER PARAMETER_VALUE] []
+    ParamSet 0x220 "param-set" "4.4.2" "set a parameter" DESTROY [ROBOT PARAMETER PARAMETER_VALUE] []
         [ParameterAxis ParameterValue];
     ParamGet 0x224 "param-get" "4.4.2" "read a parameter" READ [ROBOT PARAMETER] [PARAMETER PARAMETER_VALUE]
         [ParameterAxis];
-    PointCopy 0x230 "point-copy" "4.4.3" "set a point to a point" WRITE [TWO_POINTS] [];
-    PointAdd 0x234 "point-add" "4.4.3" "add a point to a point" WRITE [TWO_POINTS] [];
-    PointSub 0x235 "point-sub" "4.4.3" "subtract a point from a point" WRITE [TWO_POINTS] [];
-    PointPallet 0x238 "point-pallet" "4.4.3" "set a point to a place on a pallet" WRITE [POINT PALLET_PLACE] [];
-    PointElementPulse 0x240 "point-element-pulse" "4.4.4" "set an element of a point in pulses" WRITE
+    PointCopy 0x230 "point-copy" "4.4.3" "set a point to a point" DESTROY [TWO_POINTS] [];
+    PointAdd 0x234 "point-add" "4.4.3" "add a point to a point" DESTROY [TWO_POINTS] [];
+    PointSub 0x235 "point-sub" "4.4.3" "subtract a point from a point" DESTROY [TWO_POINTS] [];
+    PointPallet 0x238 "point-pallet" "4.4.3" "set a point to a place on a pallet" DESTROY [POINT PALLET_PLACE] [];
+    PointElementPulse 0x240 "point-element-pulse" "4.4.4" "set an element of a point in pulses" DESTROY
         [POINT POINT_ELEMENT VALUE_PULSE] [];
-    PointElementMm 0x241 "point-element-mm" "4.4.4" "set an element of a point in mm" WRITE
+    PointElementMm 0x241 "point-element-mm" "4.4.4" "set an element of a point in mm" DESTROY
         [POINT POINT_ELEMENT VALUE_MM] [];
-    ShiftElement 0x245 "shift-element" "4.4.4" "set an element of a shift in mm" WRITE
+    ShiftElement 0x245 "shift-element" "4.4.4" "set an element of a shift in mm" DESTROY
         [SHIFT SHIFT_ELEMENT VALUE_MM] [];
 
     PortSet 0x300 "port-set" "4.5.1" "set the eight signals of a port" WRITE [OUTPUT_PORT PORT_VALUE] [];

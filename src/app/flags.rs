@@ -1,0 +1,105 @@
+//! Global flags that mean nothing to a command are mistakes, not decoration.
+
+use super::ready::Work;
+use crate::cli::Globals;
+use crate::command::common::Common;
+use crate::command::common::robots::Robots;
+use crate::failure::Failure;
+use crate::gate::OnInterrupt;
+
+/// Which global flags mean something to a command, beside those for output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a group of flags of its own")]
+struct Uses {
+    /// Which robot.
+    robots: bool,
+    /// How to talk to it.
+    link: bool,
+    /// `--watch` and the like.
+    repeat: bool,
+    /// `--yes`, `--dry-run`.
+    gate: bool,
+}
+
+const ALL: Uses = Uses { robots: true, link: true, repeat: true, gate: true };
+const NONE: Uses = Uses { robots: false, link: false, repeat: false, gate: false };
+
+impl Uses {
+    fn of(work: &Work) -> Self {
+        match work {
+            Work::Yerc(command) if !command.takes_robot() => NONE,
+            Work::Yrcx(_, command) if !command.takes_robot() => NONE,
+            Work::Toyo(command) if !command.takes_robot() => NONE,
+            Work::Yerc(_) | Work::Yrcx(..) | Work::Toyo(_) => ALL,
+            Work::Common(common) => Self::of_common(common),
+        }
+    }
+
+    fn of_common(common: &Common) -> Self {
+        match common {
+            Common::Status(_) | Common::Top(_) | Common::Restore(_) => ALL,
+            Common::Backup(backup) if backup.is_local() => NONE,
+            Common::Diff(diff) if diff.is_local() => NONE,
+            Common::Backup(_) | Common::Diff(_) | Common::Robots(Robots::Check(_)) => ALL,
+            Common::Session(_) => Self { repeat: false, ..ALL },
+            Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
+            // What settings would be in force.
+            Common::Robots(Robots::Show(_)) => Self { link: true, ..NONE },
+            Common::Robots(Robots::List | Robots::Add(_) | Robots::Remove(_))
+            | Common::Sim(_)
+            | Common::Decode(_)
+            | Common::Explain(_)
+            | Common::Completions(_)
+            | Common::Man(_)
+            | Common::Schema(_)
+            | Common::Help(_) => NONE,
+        }
+    }
+}
+
+/// Refuses a flag of the line that means nothing to its command.
+pub fn check(globals: &Globals, work: &Work) -> Result<(), Failure> {
+    let uses = Uses::of(work);
+    match given(globals).into_iter().find(|(flag, is_meant)| flag.is_some() && !is_meant(uses)) {
+        Some((Some(flag), _)) => Err(wrong(flag, work)),
+        _ => Ok(()),
+    }
+}
+
+/// Each flag that was given, with whether it means something.
+fn given(globals: &Globals) -> [(Option<&'static str>, fn(Uses) -> bool); 17] {
+    let Globals { sim, target, robot, all, tag, trace, yes, dry_run, .. } = globals;
+    let Globals { on_interrupt, timeout, retries, encoding, no_session, watch, count, until, within, .. } = globals;
+    [
+        (sim.then_some("--sim"), |uses| uses.robots),
+        (target.as_ref().map(|_| "--target"), |uses| uses.robots),
+        (robot.first().map(|_| "--robot"), |uses| uses.robots),
+        (all.then_some("--all"), |uses| uses.robots),
+        (tag.first().map(|_| "--tag"), |uses| uses.robots),
+        (trace.as_ref().map(|_| "--trace"), |uses| uses.link),
+        (timeout.map(|_| "--timeout"), |uses| uses.link),
+        (retries.map(|_| "--retries"), |uses| uses.link),
+        (encoding.map(|_| "--encoding"), |uses| uses.link),
+        (no_session.then_some("--no-session"), |uses| uses.link),
+        (watch.map(|_| "--watch"), |uses| uses.repeat),
+        (count.map(|_| "--count"), |uses| uses.repeat),
+        (until.as_ref().map(|_| "--until"), |uses| uses.repeat),
+        (within.map(|_| "--for"), |uses| uses.repeat),
+        (yes.then_some("--yes"), |uses| uses.gate),
+        (dry_run.then_some("--dry-run"), |uses| uses.gate),
+        ((*on_interrupt != OnInterrupt::Stop).then_some("--on-interrupt"), |uses| uses.gate),
+    ]
+}
+
+fn wrong(flag: &str, work: &Work) -> Failure {
+    let hint = match (flag, work) {
+        ("--tag", Work::Common(Common::Robots(Robots::Add(_)))) => {
+            "--with-tag gives the new robot a tag; --tag chooses robots".to_owned()
+        }
+        ("--robot" | "--tag" | "--all", Work::Common(Common::Robots(Robots::List))) => {
+            "the list has all robots; `armctl status` takes --robot and --tag".to_owned()
+        }
+        _ => format!("remove {flag}"),
+    };
+    Failure::usage(format!("{flag} means nothing to this command")).hint(hint)
+}

@@ -1,0 +1,146 @@
+//! The address of a controller without the many ways to write it: what sessions, read-only robots and backups go by.
+
+use std::net::{IpAddr, Ipv4Addr, ToSocketAddrs as _};
+use std::path::Path;
+
+use super::{Place, Target};
+
+/// Where a controller is, however its URL is written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Address {
+    /// On the network. The transport is part of it: two servers may share a number.
+    Network {
+        /// `udp`, `tcp`, `eip`.
+        scheme: &'static str,
+        /// Name or address, in its plainest form.
+        host: Host,
+        /// Port.
+        port: u16,
+    },
+    /// A device of this machine.
+    Device(String),
+    /// A simulator of this process; two with the same parameters are not the same.
+    Simulated,
+}
+
+/// A host.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Host {
+    /// An address.
+    Address(IpAddr),
+    /// A name that only a resolver knows.
+    Name(String),
+}
+
+impl Host {
+    fn new(text: &str) -> Self {
+        let name = text.trim_end_matches('.').to_ascii_lowercase();
+        match name.parse::<IpAddr>() {
+            Ok(address) => Self::Address(address.to_canonical()),
+            // What it is everywhere (RFC 6761).
+            Err(_) if name == "localhost" => Self::Address(Ipv4Addr::LOCALHOST.into()),
+            Err(_) => Self::Name(name),
+        }
+    }
+
+    /// Whether both lead to one machine. Names are looked up only where that can tell.
+    fn meets(&self, other: &Self, port: u16) -> bool {
+        if let (Self::Address(one), Self::Address(other)) = (self, other) {
+            return one == other;
+        }
+        self == other || {
+            let known = self.resolved(port);
+            other.resolved(port).iter().any(|address| known.contains(address))
+        }
+    }
+
+    fn resolved(&self, port: u16) -> Vec<IpAddr> {
+        match self {
+            Self::Address(address) => vec![*address],
+            Self::Name(name) => (name.as_str(), port)
+                .to_socket_addrs()
+                .map(|found| found.map(|address| address.ip().to_canonical()).collect())
+                .unwrap_or_default(),
+        }
+    }
+}
+
+impl Address {
+    /// Where the target is.
+    pub fn of(target: &Target) -> Self {
+        let network = |scheme, host: &str, port| Self::Network { scheme, host: Host::new(host), port };
+        match &target.place {
+            Place::Udp(udp) => network("udp", &udp.host, udp.port),
+            Place::Tcp(tcp) => network("tcp", &tcp.host, tcp.port),
+            Place::Eip(eip) => network("eip", &eip.host, eip.port),
+            Place::Serial(serial) => {
+                // Links such as those of /dev/serial/by-id lead to the device; a port that is not there has its own name.
+                let path = std::fs::canonicalize(Path::new(&serial.path));
+                let path = path.map_or_else(|_| serial.path.clone(), |path| path.display().to_string());
+                Self::Device(if cfg!(windows) { path.to_ascii_uppercase() } else { path })
+            }
+            Place::Sim(_) => Self::Simulated,
+        }
+    }
+
+    /// Whether both are one controller.
+    pub fn meets(&self, other: &Self) -> bool {
+        match (self, other) {
+            (
+                Self::Network { scheme, host, port },
+                Self::Network { scheme: other_scheme, host: other_host, port: other_port },
+            ) => scheme == other_scheme && port == other_port && host.meets(other_host, *port),
+            (Self::Device(path), Self::Device(other)) => path == other,
+            _ => false,
+        }
+    }
+
+    /// In words that are the same for every spelling: `udp 192.168.1.31 10040`. `None` for a simulator.
+    pub fn key(&self) -> Option<String> {
+        match self {
+            Self::Network { scheme, host: Host::Address(address), port } => Some(format!("{scheme} {address} {port}")),
+            Self::Network { scheme, host: Host::Name(name), port } => Some(format!("{scheme} {name} {port}")),
+            Self::Device(path) => Some(format!("device {path}")),
+            Self::Simulated => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn address(url: &str) -> Address {
+        Address::of(&url.parse().unwrap())
+    }
+
+    #[test]
+    fn spellings_of_one_address_are_one_controller() {
+        for (one, other) in [
+            ("udp://192.168.1.31", "udp://192.168.1.31:10040?model=fs100"),
+            ("udp://127.0.0.1", "udp://localhost"),
+            ("udp://LOCALHOST.", "udp://127.0.0.1:10040"),
+            ("udp://[::ffff:10.0.0.1]", "udp://10.0.0.1"),
+            ("udp://Cell3", "udp://cell3"),
+            ("eip://10.0.0.1:44818", "eip://10.0.0.1?rpi=5ms"),
+            ("serial:///dev/../dev/null", "serial:///dev/null?baud=19200"),
+            ("serial:///dev/ttyNOT", "serial:///dev/ttyNOT?baud=19200"),
+        ] {
+            assert!(address(one).meets(&address(other)), "{one} {other}");
+            assert_eq!(address(one).key(), address(other).key());
+        }
+    }
+
+    #[test]
+    fn other_controllers_are_others() {
+        for (one, other) in [
+            ("udp://10.0.0.1", "udp://10.0.0.2"),
+            ("udp://10.0.0.1", "udp://10.0.0.1:10050"),
+            ("tcp://10.0.0.1:10040", "udp://10.0.0.1:10040"),
+            ("serial:///dev/null", "serial:///dev/zero"),
+            ("sim:", "sim:"),
+        ] {
+            assert!(!address(one).meets(&address(other)), "{one} {other}");
+        }
+    }
+}
