@@ -70,6 +70,21 @@ pub fn unknown() -> Failure {
     Failure::new(Kind::NotKnown, "a dry run has no answer")
 }
 
+/// Whether a failure of a dry run is only that an answer is not known, in the words of whoever wanted it: what a controller
+/// says cannot be wrong where none is asked.
+pub fn is_end(failure: &Failure) -> bool {
+    match failure.kind {
+        Kind::NotKnown
+        | Kind::Refused
+        | Kind::NoAnswer
+        | Kind::Malformed
+        | Kind::OutcomeUnknown
+        | Kind::ConditionNotMet
+        | Kind::Mixed => true,
+        Kind::Local | Kind::Usage | Kind::RefusedHere | Kind::PipeClosed | Kind::Interrupted => false,
+    }
+}
+
 /// Answers as far as they are known: for a command that can go on without.
 pub trait Known<T> {
     /// The answer; `None` in a dry run, which has none.

@@ -14,12 +14,15 @@ use tokio::task::{JoinSet, LocalSet};
 use super::attach::{key_of, no_place};
 use super::interrupt::interruptible;
 use super::{Access, toyo, yerc, yrcx};
+use crate::controller::toyo::passing as toyo_passing;
+use crate::controller::yerc::passing as yerc_passing;
+use crate::controller::yrcx::passing as yrcx_passing;
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::Family;
-use crate::transport::session::host::Host;
 use crate::transport::session::host::held::Held;
+use crate::transport::session::host::{Guard, Host};
 use crate::transport::session::place::Place;
 use crate::transport::session::wire::Info;
 
@@ -63,6 +66,7 @@ impl Holding {
         let (held, recorder) = link(robot, access, screen).await?;
         let host =
             Host::new(claim, key, info, held, say).map_err(|error| Failure::io(spot.socket().display(), &error))?;
+        let host = if robot.read_only.value { host.guarded(guard(robot.family)) } else { host };
         Ok(Attempt::Held(Box::new(Self { host, recorder, label: robot.label() })))
     }
 
@@ -82,6 +86,16 @@ impl Holding {
             screen.note(&format!("{}: the connection was not closed properly: {trouble}", self.label));
         }
         self.recorder.map_or(Ok(()), yrcx::Recorder::finish)
+    }
+}
+
+/// What may pass to a read-only robot, whoever sends it.
+fn guard(family: Family) -> Guard {
+    let nothing = Guard { sends: |_| false, shows: |_, _| false };
+    match family {
+        Family::Yerc => Guard { sends: yerc_passing::only_reads_or_stops, ..nothing },
+        Family::Yrcx => Guard { shows: yrcx_passing::only_stops, ..nothing },
+        Family::Toyo => Guard { sends: toyo_passing::only_reads_or_stops, ..nothing },
     }
 }
 

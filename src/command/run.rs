@@ -15,7 +15,7 @@ pub use self::rounds::Repeat;
 use self::rounds::Rounds;
 use super::authority::{self, Authority};
 use super::common::session::open_for;
-use super::dry_run::Plan;
+use super::dry_run::{Plan, is_end};
 use super::interrupt::{catch_interrupts, interruptible};
 use super::line::Line;
 use super::{Access, AnyCommand, Context, Entry, Family, Outcome};
@@ -428,7 +428,7 @@ impl Run {
         let authority = Authority::new(gate, screen, robot, command.intent(Some(robot)).risk, grant);
         let ended = command.run(Context { robot, link: &mut link, screen, several, authority }).await;
         match ended {
-            Err(failure) if failure.kind != Kind::NotKnown => Err(failure),
+            Err(failure) if !is_end(&failure) => Err(failure),
             Ok(_) | Err(_) => Ok(F::rehearsed(&mut link)),
         }
     }

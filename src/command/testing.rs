@@ -4,9 +4,10 @@ use futures_util::FutureExt as _;
 use serde_json::Value;
 
 use super::authority::Authority;
+use super::dry_run::is_end;
 use super::{Access, AnyCommand, Context, Family, Need};
 use crate::controller::Risk;
-use crate::failure::{Failure, Kind};
+use crate::failure::Failure;
 use crate::gate::{Gate, Grant};
 use crate::output::Screen;
 use crate::settings::Robot;
@@ -41,7 +42,7 @@ pub fn planned<F: Family>(
     let authority = Authority::new(gate, &QUIET, robot, intent.risk, grant);
     let context = Context { robot, link: &mut link, screen: &QUIET, several: false, authority };
     match command.run(context).now_or_never().expect("a dry run waits for nothing") {
-        Err(failure) if failure.kind != Kind::NotKnown => Err(failure),
+        Err(failure) if !is_end(&failure) => Err(failure),
         _ => super::AnyReport::data(&F::rehearsed(&mut link).into_report()),
     }
 }

@@ -8,6 +8,7 @@ pub mod errors;
 pub mod field;
 pub mod findings;
 pub mod layout;
+pub mod passing;
 pub mod program;
 pub mod request;
 pub mod session;

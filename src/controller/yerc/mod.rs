@@ -6,6 +6,7 @@
 pub mod describe;
 pub mod files;
 pub mod group;
+pub mod passing;
 pub mod payload;
 pub mod query;
 pub mod request;

@@ -13,6 +13,7 @@ pub mod codec;
 pub mod describe;
 pub mod image;
 pub mod order;
+pub mod passing;
 pub mod procedure;
 pub mod sequence;
 pub mod session;

@@ -256,6 +256,6 @@ fn dry_runs_show_what_would_be_read_and_written() {
     let last = &sent[sent.len() - 2..];
     assert_eq!((&last[0]["about"], &last[0]["wi"][0]), (&json!("pallets 10, to compare"), &json!("0x0109")));
     assert_eq!((&last[1]["about"], &last[1]["wi"][0]), (&json!("if it differs"), &json!("0x0108")));
-    assert_eq!((risk(&["backup", "x"]), risk(&["restore", "x"])), (Risk::Read, Risk::Write));
+    assert_eq!((risk(&["backup", "x"]), risk(&["restore", "x"])), (Risk::Read, Risk::Destroy));
     assert_eq!(words(&["backup", "x", "--unit", "2"]).unwrap_err().kind, Kind::Usage);
 }

@@ -14,7 +14,7 @@ use self::clients::{Client, Letter, milliseconds};
 use self::held::{Happening, Held};
 use super::place::Claim;
 use super::socket::{Listener, ReadHalf, WriteHalf};
-use super::wire::{Broken, Control, Frame, Hello, Info, Leftover, Peer, Status, VERSION, Welcome, short};
+use super::wire::{Broken, Change, Control, Frame, Hello, Info, Leftover, Peer, Status, VERSION, Welcome, short};
 
 /// Letters that wait before clients must.
 const LETTERS: usize = 64;
@@ -44,6 +44,17 @@ pub struct Host {
     reopenings: u32,
     /// Where what happens is told.
     say: Box<dyn FnMut(&str)>,
+    /// What clients may send; anything, if there is none.
+    guard: Option<Guard>,
+}
+
+/// What may pass to a device that is only to be read, whoever sends it.
+#[derive(Debug, Clone, Copy)]
+pub struct Guard {
+    /// Whether these bytes may be sent.
+    pub sends: fn(&[u8]) -> bool,
+    /// Whether after the first image the second one may be shown.
+    pub shows: fn(&[u8], &[u8]) -> bool,
 }
 
 impl Host {
@@ -68,7 +79,14 @@ impl Host {
             began: Instant::now(),
             reopenings: 0,
             say: Box::new(say),
+            guard: None,
         })
+    }
+
+    /// Lets only through what this allows.
+    #[must_use]
+    pub fn guarded(self, guard: Guard) -> Self {
+        Self { guard: Some(guard), ..self }
     }
 
     /// Serves until a client has it end. The future may be dropped: [`Host::end`] goes on from there.
@@ -133,6 +151,8 @@ impl Host {
             Frame::Control(Control::Over) => self.release(id),
             Frame::Control(Control::Motion) => self.claim_motion(id),
             Frame::Control(Control::Renew(channel)) => self.held.renew(id, channel),
+            Frame::Show(change) if !self.may_show(&change) => self.refuse(id),
+            Frame::Data { bytes, .. } if self.guard.is_some_and(|guard| !(guard.sends)(&bytes)) => self.refuse(id),
             Frame::Show(change) => {
                 let has_line = self.line == Some(id);
                 let changed = self.held.images().and_then(|images| {
@@ -162,6 +182,22 @@ impl Host {
             _ => {}
         }
         false
+    }
+
+    fn may_show(&mut self, change: &Change) -> bool {
+        let (Some(guard), Some(images)) = (self.guard, self.held.images()) else { return true };
+        let mut after = images.shown.clone();
+        change.apply(&mut after);
+        (guard.shows)(&images.shown, &after)
+    }
+
+    /// What a client wants to send is not for a device that is only to be read.
+    fn refuse(&mut self, id: u64) {
+        if let Some(client) = self.clients.get(&id) {
+            let by = client.peer(client.since);
+            (self.say)(&format!("client {} was refused: the robot is read-only ({})", by.pid, by.command));
+        }
+        self.break_to(id, &io::Error::new(io::ErrorKind::PermissionDenied, "the session is of a read-only robot"));
     }
 
     fn break_to(&self, id: u64, error: &io::Error) {
@@ -264,7 +300,8 @@ impl Host {
             if leaves {
                 what.push("the command that it gave is left as it is".to_owned());
             }
-            if let Some(will) = client.will.as_ref().and_then(|will| self.held.images()?.change(will.clone(), false)) {
+            let will = client.will.clone().filter(|will| self.may_show(will));
+            if let Some(will) = will.and_then(|will| self.held.images()?.change(will, false)) {
                 what.push("what it was to be stopped by is shown".to_owned());
                 self.others(id).for_each(|other| other.send(Frame::Show(will.clone())));
             }
