@@ -220,7 +220,7 @@ fn a_full_disk_behind_stdout_does_not_hide_what_was_done() {
     let home = tempfile::tempdir().unwrap();
     let full = || std::fs::File::options().write(true).open("/dev/full").unwrap();
     let output = command(home.path(), "--sim yerc servo on").stdout(full()).output().unwrap();
-    fails(&output, 1, &["it was done, but not reported", "no space left"]);
+    fails(&output, 1, &["succeeded, but the report could not be written", "no space left"]);
     let output = command(home.path(), "--sim yerc status").stdout(full()).output().unwrap();
     fails(&output, 1, &["error: stdout: no space left"]);
     // Of several files one is missing: that is the failure, whatever becomes of the report.

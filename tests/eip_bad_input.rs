@@ -13,7 +13,7 @@ use serde_json::Value;
 fn armctl(target: &str, line: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
     command.env_clear().stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command.args(["-t", target, "--timeout", "400ms", "--json", "-q"]).args(line.split(' '));
+    command.args(["-t", target, "--timeout", "400ms", "--json", "-q", "--yes"]).args(line.split(' '));
     command
 }
 

@@ -120,7 +120,7 @@ fn a_real_robot_is_moved_when_the_question_is_answered_over_a_link_that_others_s
     let (desk, simulator) = (Desk::new(), Simulator::start("toyo"));
     let mut repl = desk.repl(&format!("-t {} repl", simulator.url));
     repl.press("home\r");
-    repl.says("Go on? [y/N]");
+    repl.says("Continue? [y/N]");
     repl.press("n\r");
     repl.says("not confirmed; nothing was sent");
     let session = desk.data("session list")["sessions"][0].clone();

@@ -194,7 +194,7 @@ const ORDERS: [(&str, &str); 24] = [
     ("register set 1=2", "yerc register get"),
     ("register set 1=2 2=3", "yerc register get"),
     ("move relative --z 1 --speed 1mm/s --no-wait --yes", "yerc position"),
-    ("file delete A.JBI", "yerc file list"),
+    ("file delete A.JBI --yes", "yerc file list"),
     ("file cmos --start-only --wait 300ms", "--download-only"),
     ("raw --command 0x8D --instance 1 --attribute 1 --service 0x10 --data 01000000 --yes", "yerc status"),
 ];
@@ -257,12 +257,14 @@ fn a_read_only_robot_takes_no_order_even_with_yes() {
         command.arg("--config").arg(&inventory).args(["-r", "cell", "yerc"]).args(words.split_ascii_whitespace());
         command.env("HOME", folder.path()).output().unwrap()
     };
-    for order in ["hold on", "servo on --yes", "var set B0=1 --yes", "job select A", MOVE, "file delete A.JBI"] {
+    for order in ["hold off --yes", "servo on --yes", "var set B0=1 --yes", "job select A", MOVE, "file delete A.JBI"] {
         let output = run(order);
         assert_eq!(output.status.code(), Some(7), "{order}: {}", stderr(&output));
         assert!(stderr(&output).contains("read-only"), "{order}: {}", stderr(&output));
     }
     assert_eq!(*controller.asked.lock().unwrap(), []);
+    // To stop it is always allowed.
+    assert_eq!(run("hold on").status.code(), Some(0));
     assert_eq!(run("status").status.code(), Some(0));
 }
 

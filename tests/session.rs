@@ -216,7 +216,7 @@ fn commands_go_through_a_session_by_themselves() {
     // The same device by its URL is the same session; another way to it is none.
     let url = desk.listed()["target"].as_str().unwrap().to_owned();
     assert!(stderr(&desk.run(&format!("-t {url} yrcx status -v"))).contains("through the session"));
-    fails(&desk.run("-r cell --no-session yrcx info servo"), 3, "[0x0106]");
+    fails(&desk.run("-r cell --no-session --yes yrcx info servo"), 3, "[0x0106]");
     let second = desk.run("-r cell session open");
     fails(&second, 4, &format!("a session is open already: process {}, since", session.process.id()));
     session.signal("TERM");
@@ -282,7 +282,7 @@ fn what_a_dead_client_has_left_is_told_and_dealt_with() {
 fn a_jog_whose_client_is_killed_is_stopped() {
     let (_simulator, desk) = cell();
     let mut session = Running::session(&desk, "cell");
-    let mut jogging = Running::start(desk.command("-r cell yrcx jog pulse 1 + --yes -vv"), false);
+    let mut jogging = Running::start(desk.command("-r cell yrcx jog pulse 1 + --for 1m --yes -vv"), false);
     jogging.says("<- WO 0100");
     jogging.signal("KILL");
     session.says("what it was to be stopped by is shown");

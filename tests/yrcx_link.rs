@@ -41,7 +41,7 @@ impl Simulator {
 
     fn command(&self, line: &str) -> Command {
         let mut command = armctl();
-        command.args(["-t", &self.target, "--timeout", "400ms"]).args(line.split(' '));
+        command.args(["-t", &self.target, "--timeout", "400ms", "--yes"]).args(line.split(' '));
         command
     }
 }
