@@ -1,0 +1,64 @@
+//! A desk with an inventory of its own.
+
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A home of a test's own, where the inventory, sessions and files are.
+pub struct Desk {
+    pub folder: TempDir,
+}
+
+/// What a command line came to.
+#[derive(Debug)]
+pub struct Came {
+    pub exit: Option<i32>,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Desk {
+    /// With this text in `robots.toml`.
+    pub fn new(inventory: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("robots.toml"), inventory).unwrap();
+        std::fs::create_dir(folder.path().join("run")).unwrap();
+        Self { folder }
+    }
+
+    /// A command line, its words between blanks.
+    pub fn command(&self, line: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.env_clear().env("HOME", self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path().join("run"));
+        command.env("ARMCTL_CONFIG", self.folder.path().join("robots.toml"));
+        command.current_dir(self.folder.path()).stdin(Stdio::null()).args(line.split(' '));
+        command
+    }
+
+    /// Runs a command line where nobody can be asked.
+    pub fn run(&self, line: &str) -> Came {
+        came(&self.command(line).output().unwrap())
+    }
+
+    /// The `data` of a command line that must succeed.
+    #[track_caller]
+    pub fn data(&self, line: &str) -> Value {
+        let came = self.run(&format!("{line} --json"));
+        assert_eq!(came.exit, Some(0), "{line}: {came:?}");
+        serde_json::from_str::<Value>(&came.stdout).unwrap()["data"].clone()
+    }
+
+    /// Demands an exit code and a part of what is said on stderr.
+    #[track_caller]
+    pub fn fails(&self, line: &str, exit: i32, part: &str) {
+        let came = self.run(line);
+        assert!(came.exit == Some(exit) && came.stderr.contains(part), "{line}: {came:?}");
+        assert!(came.stderr.contains("hint: "), "{line}: {came:?}");
+    }
+}
+
+pub fn came(output: &Output) -> Came {
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+    Came { exit: output.status.code(), stdout: text(&output.stdout), stderr: text(&output.stderr) }
+}

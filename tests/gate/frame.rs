@@ -1,0 +1,118 @@
+//! What holds for every family.
+
+use crate::desk::Desk;
+use crate::simulator::Simulator;
+
+fn entry(name: &str, target: &str, more: &str) -> String {
+    format!("[[robot]]\nname = \"{name}\"\ntarget = \"{target}\"\n{more}\n")
+}
+
+#[test]
+fn read_only_binds_the_address_whatever_names_it() {
+    let controller = Simulator::start("yerc");
+    let (address, settings) = controller.place();
+    let desk = Desk::new(&entry("line3", &controller.url, "read_only = true"));
+    let spellings = [
+        "-r line3".to_owned(),
+        format!("-t udp://{address}?{settings}"),
+        format!("-t udp://localhost:{}?{settings}", address.port()),
+    ];
+    for spelling in &spellings {
+        for order in ["var set B0=1", "servo on --yes", "file delete A.JBI --yes"] {
+            desk.fails(&format!("{spelling} yerc {order}"), 7, "is read-only");
+        }
+        // To stop it is always allowed, and to read.
+        assert_eq!(desk.run(&format!("{spelling} yerc hold on")).exit, Some(0));
+        assert!(desk.data(&format!("{spelling} yerc var get B0")).to_string().contains("\"value\":0"));
+    }
+    let mut command = desk.command("yerc var set B0=1");
+    let output = command.env("ARMCTL_TARGET", &spellings[2][3..]).output().unwrap();
+    assert_eq!(output.status.code(), Some(7), "ARMCTL_TARGET");
+}
+
+#[test]
+fn a_session_of_a_read_only_robot_passes_reads_and_stops_whoever_asks() {
+    let controller = Simulator::start("yerc");
+    let desk = Desk::new(&entry("line3", &controller.url, "read_only = true"));
+    assert_eq!(desk.run("-r line3 session open --background").exit, Some(0));
+    // A client that knows nothing of the entry: the same address in an inventory of its own.
+    std::fs::write(desk.folder.path().join("other.toml"), "").unwrap();
+    let around = |words: &str| desk.run(&format!("--config other.toml -t {} yerc {words}", controller.url));
+    let refused = around("var set B0=1");
+    assert!(refused.exit != Some(0) && refused.stderr.contains("read-only"), "{refused:?}");
+    assert_eq!(around("hold on").exit, Some(0));
+    assert_eq!(around("status").exit, Some(0));
+    assert!(desk.data("-r line3 yerc var get B0").to_string().contains("\"value\":0"));
+    assert_eq!(desk.run("session close line3").exit, Some(0));
+}
+
+#[test]
+fn the_command_connection_of_a_yrcx_is_a_motion_outside_a_session() {
+    let controller = Simulator::start("yrcx");
+    let inventory = [entry("free", &controller.url, ""), entry("kept", "eip://127.0.0.1:1", "read_only = true")];
+    let desk = Desk::new(&inventory.concat());
+    desk.fails("-r free yrcx info version", 7, "stops the robot");
+    desk.fails("-r kept yrcx info version --yes", 7, "is read-only");
+    desk.fails("-r kept session open", 7, "a session commands the controller");
+    assert_eq!(desk.run("-r free yrcx status").exit, Some(0), "what only looks takes no connection");
+    assert_eq!(desk.run("-r free yrcx info version --yes").exit, Some(0));
+    assert_eq!(desk.run("-r free session open --background").exit, Some(0));
+    assert_eq!(desk.run("-r free yrcx info version").exit, Some(0), "the session holds it");
+    assert_eq!(desk.run("session close free").exit, Some(0));
+}
+
+#[test]
+fn a_robot_that_wants_it_has_its_session_opened() {
+    let controller = Simulator::start("yrcx");
+    let desk = Desk::new(&entry("cell", &controller.url, "hold = true"));
+    let first = desk.run("-r cell yrcx info version");
+    assert!(first.exit == Some(0) && first.stderr.contains("a session was opened"), "{first:?}");
+    let second = desk.run("-r cell yrcx info version");
+    assert!(second.exit == Some(0) && !second.stderr.contains("session"), "{second:?}");
+    assert_eq!(desk.data("-r cell yrcx status")["alarm"], false, "the connection stayed open");
+    assert_eq!(desk.run("session close cell").exit, Some(0));
+}
+
+#[test]
+fn fleets_want_each_robot_named() {
+    let controllers = [Simulator::start("yerc"), Simulator::start("yerc")];
+    let inventory: String = controllers
+        .iter()
+        .enumerate()
+        .map(|(number, controller)| entry(&format!("c{number}"), &controller.url, "tags = [\"weld\"]"))
+        .collect();
+    let desk = Desk::new(&inventory);
+    for choice in ["--tag weld", "--all", "-r c*"] {
+        for order in ["file delete TEST.JBI --yes", "servo on --yes"] {
+            desk.fails(&format!("{choice} yerc {order}"), 7, "2 robots would");
+        }
+        assert_eq!(desk.run(&format!("{choice} yerc var set B0=1")).exit, Some(0), "what can be set again");
+    }
+    assert_eq!(desk.run("-r c0 -r c1 yerc servo on --yes").exit, Some(0));
+}
+
+#[test]
+fn a_flag_that_means_nothing_is_a_mistake() {
+    let desk = Desk::new("");
+    for (line, part) in [
+        ("robots add foo udp://127.0.0.1 --tag line1", "--tag means nothing"),
+        ("robots list -r foo", "--robot means nothing"),
+        ("robots list --tag line1", "--tag means nothing"),
+        ("robots remove foo --dry-run", "--dry-run means nothing"),
+        ("explain yerc 0x2060 --all", "--all means nothing"),
+        ("decode toyo @STOP --timeout 1s", "--timeout means nothing"),
+        ("yrcx io map --bus devicenet --sim", "--sim means nothing"),
+        ("session list --watch", "--watch means nothing"),
+    ] {
+        desk.fails(line, 2, part);
+    }
+    assert!(!desk.run("robots list").stdout.contains("foo"), "nothing was added");
+    assert_eq!(desk.run("--sim yerc status -y").exit, Some(2), "there is no short form of --yes");
+}
+
+#[test]
+fn an_endless_motion_wants_an_end_where_nobody_can_give_one() {
+    let desk = Desk::new("");
+    desk.fails("--sim yrcx jog pulse 1 + --yes", 2, "no terminal for Ctrl-C");
+    assert_eq!(desk.run("--sim yrcx jog pulse 1 + --for 50ms --yes").exit, Some(0));
+}
