@@ -3,6 +3,7 @@
 mod batch;
 mod complete;
 mod flags;
+mod leaves;
 mod misplaced;
 mod parser;
 mod ready;

@@ -1,16 +1,19 @@
 //! Words that are right, and stand in the wrong place: `armctl job select`, `armctl status yerc`, `armctl yerc select`.
 
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 
 use clap::Command;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
+use super::leaves::is_dangerous;
 use crate::settings::target::Family;
 
 /// More ways than this help nobody.
 const MOST: usize = 3;
 
-/// The error, with the command lines that the word it is about belongs to, where there are some.
+/// The error, with the command lines that the word it is about belongs to, where there are some. What moves a robot, or
+/// deletes or overwrites something, is never proposed: it is too easily typed again.
 pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> clap::Error {
     let kind = match error.kind() {
         ErrorKind::InvalidSubcommand => ContextKind::InvalidSubcommand,
@@ -18,7 +21,14 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
         _ => return error,
     };
     let Some(ContextValue::String(word)) = error.get(kind) else { return error };
-    let lines = lines(word, args, whole);
+    let word = word.clone();
+    leave_out_dangerous(&mut error, &path(&word, args, whole));
+    let (safe, dangerous): (Vec<Line>, Vec<Line>) =
+        lines(&word, args, whole).into_iter().partition(|line| !is_dangerous(&words_of(&line.0)));
+    let families: BTreeSet<String> =
+        dangerous.iter().filter_map(|line| Some(format!("`armctl {} -h`", words_of(&line.0).first()?))).collect();
+    let mut lines: Vec<String> = safe.into_iter().map(|line| line.shown()).collect();
+    lines.extend(families.into_iter().map(|help| format!("one that {help} lists")));
     if lines.is_empty() || lines.len() > MOST {
         return error;
     }
@@ -29,8 +39,54 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
     error
 }
 
+/// The words of the command that a wrong word stands behind.
+fn path<'a>(word: &str, args: &'a [OsString], whole: &Command) -> Vec<&'a str> {
+    let mut command = whole;
+    let mut path = Vec::new();
+    for arg in args.iter().skip(1).filter_map(|arg| arg.to_str()).take_while(|arg| *arg != word) {
+        if let Some(below) = command.find_subcommand(arg) {
+            command = below;
+            path.push(arg);
+        }
+    }
+    path
+}
+
+/// Takes out of the similar words those of dangerous commands.
+fn leave_out_dangerous(error: &mut clap::Error, path: &[&str]) {
+    let Some(similar) = error.remove(ContextKind::SuggestedSubcommand) else { return };
+    let is_safe = |word: &String| !is_dangerous(&[path, &[word.as_str()]].concat());
+    let safe = match similar {
+        ContextValue::String(word) => Some(ContextValue::String(word)).filter(|value| {
+            let ContextValue::String(word) = value else { return false };
+            is_safe(word)
+        }),
+        ContextValue::Strings(words) => {
+            let words: Vec<String> = words.into_iter().filter(is_safe).collect();
+            (!words.is_empty()).then_some(ContextValue::Strings(words))
+        }
+        other => Some(other),
+    };
+    if let Some(safe) = safe {
+        error.insert(ContextKind::SuggestedSubcommand, safe);
+    }
+}
+
+/// A command line in which a word has its place, and what follows it there.
+struct Line(String, &'static str);
+
+impl Line {
+    fn shown(&self) -> String {
+        format!("`armctl {}`{}", self.0, self.1)
+    }
+}
+
+fn words_of(line: &str) -> Vec<&str> {
+    line.split(' ').filter(|word| *word != "…").collect()
+}
+
 /// Command lines with the word in its place.
-fn lines(word: &str, args: &[OsString], whole: &Command) -> Vec<String> {
+fn lines(word: &str, args: &[OsString], whole: &Command) -> Vec<Line> {
     let words: Vec<&str> = args.iter().skip(1).filter_map(|word| word.to_str()).collect();
     if word.parse::<Family>().is_ok() {
         let others = words.iter().filter(|other| **other != word && !other.starts_with('-'));
@@ -38,11 +94,11 @@ fn lines(word: &str, args: &[OsString], whole: &Command) -> Vec<String> {
         let family = whole.find_subcommand(word);
         let exists =
             others.first().is_some_and(|first| family.is_some_and(|family| family.find_subcommand(first).is_some()));
-        return if exists { vec![format!("`armctl {word} {}`", others.join(" "))] } else { Vec::new() };
+        return if exists { vec![Line(format!("{word} {}", others.join(" ")), "")] } else { Vec::new() };
     }
     let family = words.iter().find_map(|word| word.parse::<Family>().ok());
     if family.is_some() && whole.find_subcommand(word).is_some() {
-        return vec![format!("`armctl {word}`, which is for all families")];
+        return vec![Line(word.to_owned(), ", which is for all families")];
     }
     let families = Family::ALL.into_iter().filter(|other| family.is_none_or(|family| family == *other));
     let families = families.filter_map(|family| whole.find_subcommand(family.name()));
@@ -50,14 +106,14 @@ fn lines(word: &str, args: &[OsString], whole: &Command) -> Vec<String> {
 }
 
 /// Where a word is a command of a family, or the verb of one of its nouns.
-fn below(family: &Command, word: &str) -> Vec<String> {
+fn below(family: &Command, word: &str) -> Vec<Line> {
     let name = family.get_name();
     if let Some(command) = family.find_subcommand(word) {
         let more = if command.has_subcommands() { " …" } else { "" };
-        return vec![format!("`armctl {name} {word}{more}`")];
+        return vec![Line(format!("{name} {word}{more}"), "")];
     }
     let nouns = family.get_subcommands().filter(|noun| noun.find_subcommand(word).is_some());
-    nouns.map(|noun| format!("`armctl {name} {} {word}`", noun.get_name())).collect()
+    nouns.map(|noun| Line(format!("{name} {} {word}", noun.get_name()), "")).collect()
 }
 
 #[cfg(test)]
@@ -78,9 +134,12 @@ mod tests {
     #[test]
     fn words_in_the_wrong_place_are_shown_in_theirs() {
         for (line, expected) in [
-            ("armctl job list", "the command is `armctl yerc job …`"),
+            ("armctl alarm list", "the command is `armctl yerc alarm …` or `armctl yrcx alarm …`"),
             ("armctl hlock on", "the command is `armctl yerc hlock`"),
-            ("armctl servo on", "the command is `armctl yerc servo` or `armctl yrcx servo` or `armctl toyo servo`"),
+            (
+                "armctl servo on",
+                "the command is `armctl yrcx servo` or one that `armctl toyo -h` lists or one that `armctl yerc -h` lists",
+            ),
             ("armctl status yerc", "the command is `armctl yerc status`"),
             ("armctl --sim status toyo", "the command is `armctl toyo status`"),
             ("armctl yerc select WELD", "the command is `armctl yerc job select`"),

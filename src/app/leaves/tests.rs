@@ -1,0 +1,173 @@
+use std::collections::BTreeSet;
+use std::ffi::OsString;
+
+use clap::CommandFactory as _;
+use clap::Parser as _;
+
+use super::*;
+use crate::app::ready::{Wanted, Work};
+use crate::cli::Cli;
+use crate::command::common::Common;
+use crate::command::run::Run;
+use crate::command::{AnyCommand, Family};
+use crate::failure::{Failure, Kind};
+use crate::gate::Intent;
+use crate::output::redraw::Redraw;
+use crate::output::{ColorChoice, Format, Screen};
+use crate::settings::inventory::Inventory;
+use crate::settings::{Selection, Sources};
+
+const STOPS: [&str; 4] = ["yerc hold on", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
+
+/// Two robots of each family that are not there; the second ones are read-only.
+const ROBOTS: &str = r#"
+[[robot]]
+name = "yerc"
+target = "udp://127.0.0.1:1"
+[[robot]]
+name = "yrcx"
+target = "eip://127.0.0.1:1?role=input_only"
+[[robot]]
+name = "toyo"
+target = "tcp://127.0.0.1:1"
+[[robot]]
+name = "yerc-ro"
+target = "udp://127.0.0.1:2"
+read_only = true
+[[robot]]
+name = "yrcx-ro"
+target = "eip://127.0.0.1:2?role=input_only"
+read_only = true
+[[robot]]
+name = "toyo-ro"
+target = "tcp://127.0.0.1:2"
+read_only = true
+"#;
+
+/// A line where nobody can be asked, for robots that are chosen so.
+fn run(selection: Selection) -> Run {
+    let inventory = Inventory::parse(ROBOTS, "robots.toml").unwrap();
+    Run {
+        screen: Screen::new(Format::Json, ColorChoice::Never, true, 0),
+        sources: Sources { selection, inventory, ..Sources::default() },
+        gate: crate::gate::Gate::default(),
+        repeat: crate::command::run::Repeat::default(),
+        filter: None,
+        trace: None,
+        line: None,
+        redraw: Redraw::default(),
+        unit: 0,
+    }
+}
+
+fn named(name: &str) -> Selection {
+    Selection { robots: vec![name.to_owned()], ..Selection::default() }
+}
+
+/// What the gate is told of a line, and what it says to it.
+struct Seen {
+    intent: Intent,
+    alone: Result<(), Failure>,
+    read_only: Result<(), Failure>,
+    fleet: Result<(), Failure>,
+}
+
+fn seen(line: &str) -> Seen {
+    fn of<F: Family>(command: &dyn AnyCommand<F>, family: &str) -> Seen {
+        Seen {
+            intent: command.intent(None),
+            alone: run(named(family)).check_gate(command),
+            read_only: run(named(&format!("{family}-ro"))).check_gate(command),
+            fleet: run(Selection { robots: vec![format!("{family}*")], ..Selection::default() }).check_gate(command),
+        }
+    }
+    let words = std::iter::once("armctl").chain(line.split(' '));
+    let cli = Cli::try_parse_from(words).unwrap_or_else(|error| panic!("{line}: {error}"));
+    match Wanted::from(cli.command) {
+        Wanted::Work(Work::Yerc(command)) => of(&*command, "yerc"),
+        Wanted::Work(Work::Yrcx(_, command)) => of(&*command, "yrcx"),
+        Wanted::Work(Work::Toyo(command)) => of(&*command, "toyo"),
+        Wanted::Work(Work::Common(Common::Status(command))) => of(&command, "toyo"),
+        Wanted::Work(Work::Common(Common::Backup(command))) => of(&command, "toyo"),
+        Wanted::Work(Work::Common(Common::Restore(command))) => of(&command, "toyo"),
+        Wanted::Work(Work::Common(Common::Diff(command))) => of(&command, "toyo"),
+        _ => panic!("{line} is for no robot"),
+    }
+}
+
+#[test]
+fn every_command_is_held_by_the_gate() {
+    let mut wrong = Vec::new();
+    for (line, risk) in LEAVES {
+        let Seen { intent, alone, read_only, fleet } = seen(line);
+        let is_stop = STOPS.contains(line);
+        let refused =
+            |outcome: &Result<(), Failure>| outcome.as_ref().is_err_and(|failure| failure.kind == Kind::RefusedHere);
+        let is_asked = *risk >= Destroy && intent.confirmation != crate::gate::Confirmation::WhenKnown;
+        for (what, is_right) in [
+            ("its risk", intent.risk == *risk),
+            ("whether it is a stop", intent.is_stop == is_stop),
+            (
+                "a question",
+                *risk < Destroy
+                    || intent.confirmation != crate::gate::Confirmation::Question
+                    || !intent.text.is_empty(),
+            ),
+            ("nobody to ask", refused(&alone) == is_asked),
+            // What depends on the robot reads of a read-only one what reading alone can reach.
+            (
+                "a read-only robot",
+                refused(&read_only) == (*risk > Read && !is_stop) || matches!(*line, "backup folder" | "diff folder"),
+            ),
+            ("a fleet", refused(&fleet) == (*risk >= Destroy || (*risk > Read && !is_stop && refused(&read_only)))),
+            ("its first grant", intent.granted_at_first() <= if is_asked { *risk } else { (*risk).min(Write) }),
+        ] {
+            if !is_right {
+                wrong.push(format!("{line}: {what} ({:?}, {:?})", intent.risk, intent.confirmation));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_command_is_in_the_table() {
+    let mut leaves = BTreeSet::new();
+    let whole = Cli::command();
+    for family in ["yerc", "yrcx", "toyo"] {
+        collect(whole.find_subcommand(family).unwrap(), family, &mut leaves);
+    }
+    let known = |leaf: &String| LEAVES.iter().any(|(line, _)| *line == leaf || line.starts_with(&format!("{leaf} ")));
+    // What takes no robot.
+    const DESK: [&str; 7] =
+        ["yerc repl", "yrcx repl", "toyo repl", "yrcx io map", "toyo ports", "toyo program check", "toyo sim run"];
+    let missing: Vec<&String> = leaves.iter().filter(|leaf| !known(leaf) && !DESK.contains(&leaf.as_str())).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}
+
+fn collect(command: &clap::Command, path: &str, leaves: &mut BTreeSet<String>) {
+    if !command.has_subcommands() || path.split(' ').count() == 1 && command.get_subcommands().next().is_none() {
+        leaves.insert(path.to_owned());
+    }
+    for below in command.get_subcommands() {
+        collect(below, &format!("{path} {}", below.get_name()), leaves);
+    }
+}
+
+#[test]
+fn no_tip_proposes_what_is_dangerous() {
+    for line in
+        ["init", "home", "delete x", "toyo inti", "yerc job strat", "yrcx mvoe --point 1", "toyo jgo", "servo on"]
+    {
+        let args: Vec<OsString> = std::iter::once("armctl").chain(line.split(' ')).map(Into::into).collect();
+        let mut whole = Cli::command();
+        let error = whole.try_get_matches_from_mut(&args).unwrap_err();
+        let text = crate::app::misplaced::explained(error, &args, &whole).render().to_string();
+        let tips: Vec<&str> = text.lines().filter(|line| line.contains("tip: ")).collect();
+        for dangerous in ["init", "delete", "start", "home", "move", "jog"] {
+            let proposes =
+                |tip: &&str| tip.contains(&format!("{dangerous}`")) || tip.contains(&format!("'{dangerous}'"));
+            assert!(!tips.iter().any(proposes), "{line}: {text}");
+        }
+    }
+}
