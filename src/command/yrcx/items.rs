@@ -7,7 +7,6 @@ use serde::Serialize;
 
 use crate::command::backup::gravity;
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Tone};
 
 /// Why one of several things failed: `{"asked":"B300","kind":"refused","code":"0xA001","message":…}`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
@@ -28,20 +27,6 @@ impl ItemError {
     pub fn failure(&self) -> Failure {
         let Self { asked, failure } = self;
         Failure { message: format!("{asked}: {}", failure.message), ..failure.clone() }
-    }
-
-    /// What fits a column.
-    pub fn cell(&self) -> Cell {
-        Cell::from(brief(&self.failure)).tone(Tone::Bad)
-    }
-}
-
-/// What fits a column: the first sentence and the code.
-pub fn brief(failure: &Failure) -> String {
-    let sentence = failure.message.split(". ").next().unwrap_or_default();
-    match &failure.code {
-        Some(code) => format!("{sentence} [{code}]"),
-        None => sentence.to_owned(),
     }
 }
 

@@ -137,10 +137,10 @@ pub struct Given {
 
 impl Given {
     /// What was carried out; a refusal is a failure.
-    fn done(self, row: &Row) -> Result<Done, Failure> {
+    fn done(self, order: &Order) -> Result<Done, Failure> {
         match self.answer {
             Answer::Done(values) | Answer::Running(values) => Ok(Done { values, elapsed: self.elapsed }),
-            Answer::Refused { alarm, .. } => Err(refusal::refused(row, alarm)),
+            Answer::Refused { alarm, .. } => Err(refusal::refused_order(order, alarm)),
         }
     }
 }
@@ -203,7 +203,7 @@ impl Family for Yrcx {
                 Ended::Answered(_) => Ok(format!("{} had been carried out already", row.id)),
                 Ended::NotSent(_) => Ok("nothing was sent that moves the robot".to_owned()),
                 Ended::Stopped => Ok(format!("{} was ended", row.id)),
-                Ended::NoAnswer(_) | Ended::OutcomeUnknown(_) => Err(refusal::unanswered(&link.label, row, &outcome)),
+                Ended::NoAnswer(_) | Ended::OutcomeUnknown(_) => Err(link.unanswered(row, &outcome)),
             };
         }
         if !link.has_started {
@@ -342,7 +342,7 @@ impl Link {
     /// Carries out an order; a refusal is a failure. A dry run notes it, and ends with the first one that reads.
     pub async fn run(&mut self, order: &Order) -> Result<Done, Failure> {
         let given = self.try_run(order).await?;
-        given.done(order.row())
+        given.done(order)
     }
 
     /// In a dry run, notes all the orders and ends it.
@@ -419,7 +419,7 @@ impl Link {
         self.start(order).await?;
         loop {
             if let Some(outcome) = self.ended.take() {
-                return self.given(order.row(), outcome)?.done(order.row()).map(Some);
+                return self.given(order.row(), outcome)?.done(order).map(Some);
             }
             if self.exchange.as_ref().is_some_and(Exchange::is_running) {
                 return Ok(None);
@@ -434,8 +434,13 @@ impl Link {
             Ended::Answered(answer) => {
                 Ok(Given { answer, words: outcome.words.unwrap_or_default(), elapsed: outcome.elapsed })
             }
-            _ => Err(refusal::unanswered(&self.label, row, &outcome)),
+            _ => Err(self.unanswered(row, &outcome)),
         }
+    }
+
+    fn unanswered(&self, row: &Row, outcome: &Outcome) -> Failure {
+        let stop = self.is_up.then(|| input::STOP.is_on(&self.output.next));
+        refusal::unanswered(&self.label, row, outcome, stop)
     }
 
     /// Carries out a procedure of signals, and says how long it took.
