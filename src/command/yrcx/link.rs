@@ -9,6 +9,7 @@ mod driver;
 mod jog;
 mod output;
 mod shared;
+mod words;
 
 use std::convert::Infallible;
 use std::time::Duration;
@@ -82,6 +83,8 @@ pub struct Link {
     unit: u8,
     /// Whether something was started that goes on by itself: a program, or what signals set in motion.
     has_started: bool,
+    /// General-purpose words that were shown before a remote command, to be put back after it.
+    words: Words,
     /// Whether the link outlives the command, so that what it began may go on.
     is_held: bool,
     /// Whether a session holds it, and others may use it at the same time.
@@ -320,6 +323,7 @@ impl Link {
             label: robot.label(),
             unit: 0,
             has_started: false,
+            words: Words::default(),
             is_held: is_simulated,
             is_shared: false,
             is_over: false,

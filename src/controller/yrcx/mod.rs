@@ -14,6 +14,7 @@ pub mod describe;
 pub mod image;
 pub mod order;
 pub mod procedure;
+pub mod register;
 pub mod sequence;
 pub mod session;
 pub mod signal;

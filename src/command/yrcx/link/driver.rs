@@ -8,8 +8,9 @@ use super::{Given, LEAVE_WITHIN, Link, Transport};
 use crate::command::yrcx::{hold, refusal};
 use crate::controller::Now;
 use crate::controller::yrcx::answer::Answer;
-use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::image::{Image, Words};
 use crate::controller::yrcx::order::Order;
+use crate::controller::yrcx::register::general;
 use crate::controller::yrcx::sequence::{self, Sequence};
 use crate::controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome, Silence};
 use crate::controller::yrcx::signal::{input, output};
@@ -44,15 +45,21 @@ impl Link {
     pub(super) async fn start(&mut self, order: &Order) -> Result<(), Failure> {
         self.catch_up().await?;
         self.claim_motion(order.risk()).await?;
-        self.end_earlier().await?;
-        self.take_turn().await?;
-        self.end_others().await?;
+        self.have_words().await?;
+        self.words = general(&self.output.next.command());
         let mut exchange = Exchange::new(order.clone(), self.policy);
         if let Some(image) = &self.input {
             exchange.handle(self.now(), image);
         }
         self.exchange = Some(exchange);
         Ok(())
+    }
+
+    /// Has the words of remote commands for itself: nothing is under way there.
+    pub(super) async fn have_words(&mut self) -> Result<(), Failure> {
+        self.end_earlier().await?;
+        self.take_turn().await?;
+        self.end_others().await
     }
 
     /// Sees to it that a command that was left alone has ended, and tells if it did not end well.
@@ -207,6 +214,7 @@ impl Link {
                 Next::Wait(until) => due = due.min(until),
                 Next::Done(outcome) => {
                     self.exchange = None;
+                    self.output.next.set_command(&self.words);
                     self.ended = Some(outcome);
                     self.is_over = true;
                     has_ended = true;
@@ -295,6 +303,7 @@ impl Link {
         self.shown = None;
         self.input = None;
         self.output.unlinked();
+        self.words = Words::default();
         if let Some(exchange) = &mut self.exchange {
             exchange.lost(now);
         }
