@@ -16,7 +16,7 @@ use crate::controller::yrcx::answer::{Answer, Status as CommandStatus};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::output;
 use crate::controller::yrcx::table;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, Tone, View};
 
 /// Signals; in a session, on a simulator in this process, or with --full, also servos and position.
@@ -57,9 +57,12 @@ impl Command for Status {
             return Ok(StatusReport { not_asked, ..StatusReport::of(&image) });
         }
         let mut report = StatusReport::of(&image);
-        let answers = ask_each(link, screen, "reading servos and position", &orders).await;
-        // The signals are known, whatever became of the rest.
-        let outcomes = answers.map_or_else(|failure| vec![Err(failure.clone()), Err(failure)], |found| found.outcomes);
+        let outcomes = match ask_each(link, screen, "reading servos and position", &orders).await {
+            Ok(answers) => answers.outcomes,
+            Err(failure) if failure.kind == Kind::Usage => return Err(failure),
+            // The signals are known, whatever became of the rest.
+            Err(failure) => vec![Err(failure.clone()), Err(failure)],
+        };
         for (name, outcome) in ["servos", "position"].into_iter().zip(outcomes) {
             match outcome {
                 Ok(values) if name == "servos" => report.servos = Some(servos(&values)),

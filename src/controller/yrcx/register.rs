@@ -39,7 +39,9 @@ impl Register {
             Some(word) if is_double && (FIRST..COMMAND_WORDS).step_by(2).any(|even| even == word) => {
                 Ok(Self { side, word, is_double })
             }
-            Some(0 | 1) => Err(format!("{name}(0) and {name}(1) belong to remote commands; general-purpose are 2 to 15")),
+            Some(0 | 1) => {
+                Err(format!("{name}(0) and {name}(1) belong to remote commands; general-purpose are 2 to 15"))
+            }
             _ if is_double => Err(format!("'{text}' is no double word; there are {name}2, {name}4, … {name}14")),
             _ => Err(format!("'{text}' is no word; there are {name}2 to {name}15")),
         })

@@ -61,10 +61,16 @@ pub enum Step {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
     Down,
-    Connecting { until: Now },
-    Registering { until: Now },
+    Connecting {
+        until: Now,
+    },
+    Registering {
+        until: Now,
+    },
     /// The device had no room for a session; until the next try.
-    Full { until: Now },
+    Full {
+        until: Now,
+    },
     Up,
 }
 

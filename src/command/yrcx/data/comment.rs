@@ -71,7 +71,9 @@ struct Text {
 impl Report for Comments {
     fn view(&self) -> View {
         let name = |which: &Which| [which.point.into()];
-        View::table(self.comments.table(["point"], ["comment"], "no comments", name, |text| [text.comment.as_str().into()]))
+        View::table(
+            self.comments.table(["point"], ["comment"], "no comments", name, |text| [text.comment.as_str().into()]),
+        )
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -149,7 +149,10 @@ mod tests {
         assert_eq!(words(&set).unwrap(), [example("4.3.3-define")]);
         assert_eq!(read_example("4.3.3-define", &set)["done"], "defined pallet 10: 10 x 15 x 1, first point 100");
         let read = read_example("4.3.3-reference", &["pallet-data", "get", "10"]);
-        assert_eq!(read["pallets"], json!([{"pallet": 10, "nx": 10, "ny": 15, "nz": 1, "first_point": 100}]));
+        assert_eq!(
+            read["pallets"],
+            json!([{"pallet": 10, "ok": true, "nx": 10, "ny": 15, "nz": 1, "first_point": 100}])
+        );
     }
 
     #[test]

@@ -216,7 +216,10 @@ mod tests {
         let numbers = points.iter().map(|point| (point["point"].as_i64().unwrap(), point["ok"].as_bool().unwrap()));
         assert_eq!(numbers.collect::<Vec<_>>(), [(3, false), (4, true), (5, false)]);
         let error = &points[0]["error"];
-        assert_eq!((&error["asked"], &error["code"], &error["kind"]), (&json!("point 3"), &json!("2.904"), &json!("refused")));
+        assert_eq!(
+            (&error["asked"], &error["code"], &error["kind"]),
+            (&json!("point 3"), &json!("2.904"), &json!("refused"))
+        );
         let failure = failure.unwrap();
         assert_eq!((failure.kind.exit(), failure.code.as_deref()), (9, Some("2.904")));
         assert!(failure.message.starts_with("2 of 3 failed: point 3: the controller refused point-get"), "{failure}");

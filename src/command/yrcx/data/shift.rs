@@ -45,8 +45,7 @@ impl Command for Get {
     async fn run(&self, context: Context<'_, Family>) -> Result<Shifts, Failure> {
         let nouns = ["shift", "shifts"];
         let field = (table::Command::ShiftGet, Key::Shift);
-        let of =
-            |values: &_| Way { shift_mm: Position::of(values, Some(Unit::Mm)).position_mm.unwrap_or_default() };
+        let of = |values: &_| Way { shift_mm: Position::of(values, Some(Unit::Mm)).position_mm.unwrap_or_default() };
         let (numbers, shifts) = read_numbers(context, nouns, field, &self.shifts, of).await?;
         Ok(Shifts { shifts: shifts.rows(numbers.into_iter().map(|shift| Which { shift })) })
     }

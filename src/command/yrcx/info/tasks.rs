@@ -70,7 +70,8 @@ impl Chosen {
         }
         // What a half came to is what each of its tasks did.
         let asked = &halves[..answers.asked];
-        let places: Vec<(usize, usize)> = halves.iter().flat_map(|half| (0..HALF.len()).map(|at| (*half, at))).collect();
+        let places: Vec<(usize, usize)> =
+            halves.iter().flat_map(|half| (0..HALF.len()).map(|at| (*half, at))).collect();
         let places: Vec<(usize, usize)> = places.into_iter().filter(|(half, at)| self.has(task(*half, *at))).collect();
         let outcome = |half: usize| {
             let at = halves.iter().position(|other| *other == half).unwrap_or_default();

@@ -170,8 +170,14 @@ mod tests {
     fn words_that_follow_each_other_change_at_once() {
         let noted = frames(&["io", "set", "SIW2=5", "SID4=-2", "20=on", "siw(2)=0x10"]).unwrap();
         assert_eq!(noted.len(), 3);
-        assert_eq!(noted[0]["wi"].as_array().unwrap()[..6], ["0x0000", "0x0000", "0x0005", "0x0000", "0xFFFE", "0xFFFF"]);
-        assert_eq!((&noted[0]["about"], &noted[2]["wi"][2]), (&"SIW(2) = 5, SID(4) = 4294967294".into(), &"0x0010".into()));
+        assert_eq!(
+            noted[0]["wi"].as_array().unwrap()[..6],
+            ["0x0000", "0x0000", "0x0005", "0x0000", "0xFFFE", "0xFFFF"]
+        );
+        assert_eq!(
+            (&noted[0]["about"], &noted[2]["wi"][2]),
+            (&"SIW(2) = 5, SID(4) = 4294967294".into(), &"0x0010".into())
+        );
         assert_eq!(risk(&["io", "set", "SIW2=5"]), Risk::Write);
         assert_eq!(intent(&["io", "set", "SIW2=5", "20=on"]), "switch SIW(2) = 5, SI(20) on");
     }

@@ -243,6 +243,18 @@ impl Target {
         };
         pairs.into_iter().map(target).collect()
     }
+
+    /// Of one axis; none where it goes by a point.
+    fn one(axis: &str, mm: Option<&String>, pulses: Option<&String>) -> Vec<Self> {
+        let number = |text: &String| text.parse().ok();
+        let target = axis.parse().ok().filter(|_| mm.or(pulses).is_some());
+        let target = target.map(|axis| Self {
+            axis,
+            mm: mm.and_then(|text| text.parse().ok()),
+            pulses: pulses.and_then(number),
+        });
+        target.into_iter().collect()
+    }
 }
 
 impl Moved {

@@ -148,7 +148,7 @@ mod tests {
         let mut end = [0; 16];
         end[0] = 0x0200;
         let (moved, peer) = run_on(Scripted::new([Reply::Ends(1, place), Reply::Ends(1, end)]), &line);
-        assert_eq!(peer.taken[0][0], 0x0516, "the present position");
+        assert_eq!(peer.taken[0][0], 0x0506, "the present position");
         assert_eq!(peer.taken[1][..11], [0x0006, 1, 8, 0, 1000, 0, 0xF830, 0xFFFF, 0, 0, 0x5F90]);
         assert_eq!(moved.unwrap()["targets"], json!([{"axis": 4, "mm": 90.0, "pulses": null}]));
         let noted = frames(&line).unwrap();
