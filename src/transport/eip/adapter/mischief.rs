@@ -31,7 +31,7 @@ pub enum Mischief {
     Garbage,
     /// Puts a socket address behind the items that it counts when it answers ForwardOpen, as OpENer boards do.
     Trailing,
-    /// Does not say of itself that it has an owner.
+    /// Does not say of itself that it has an owner, and names it before it looks at sizes, as OpENer boards do.
     Unowned,
 }
 
