@@ -82,7 +82,7 @@ impl Command for Get {
         let orders = wanted.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, "reading parameters", &orders).await?;
         let names = wanted.iter().map(|(parameter, axis)| match axis {
-            Some(axis) => format!("{} of axis {axis}", parameter.name),
+            Some(number) => format!("{} of axis {number}", parameter.name),
             None => parameter.name.to_owned(),
         });
         let set = Several::of(names, answers, |at, values| {

@@ -101,8 +101,8 @@ impl<V> Several<V> {
         Answers { outcomes, asked }: Answers,
         mut of: impl FnMut(usize, &Values) -> V,
     ) -> Result<Self, Failure> {
-        let named = names.into_iter().zip(outcomes).enumerate();
-        let outcomes = named.map(|(at, (name, outcome))| ItemOutcome::new(name, outcome.map(|values| of(at, &values))));
+        let pairs = names.into_iter().zip(outcomes).enumerate();
+        let outcomes = pairs.map(|(at, (name, outcome))| ItemOutcome::new(name, outcome.map(|values| of(at, &values))));
         let outcomes: Vec<_> = outcomes.collect();
         alone(outcomes.len(), outcomes.iter().filter_map(ItemOutcome::error))?;
         Ok(Self { outcomes, asked })

@@ -64,9 +64,9 @@ impl Chosen {
         let orders = halves.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, "reading tasks", &orders).await?;
         let task = |half: usize, place: usize| half * HALF.len() + place + 1;
-        let named = |half: &usize| format!("tasks {} to {}", task(*half, 0), task(*half, HALF.len() - 1));
+        let told = |half: &usize| format!("tasks {} to {}", task(*half, 0), task(*half, HALF.len() - 1));
         if let ([half], [Err(failure)]) = (&halves[..], &answers.outcomes[..]) {
-            return Err(Failure { message: format!("{}: {}", named(half), failure.message), ..failure.clone() });
+            return Err(Failure { message: format!("{}: {}", told(half), failure.message), ..failure.clone() });
         }
         // What a half came to is what each of its tasks did.
         let asked = &halves[..answers.asked];

@@ -16,7 +16,9 @@ impl Link {
         self.admit("set-words", Risk::Write)?;
         if let Transport::Notes(notes) = &mut self.transport {
             let mut words = self.output.next.command();
-            changes.iter().for_each(|(register, value)| register.write(&mut words, *value));
+            for (register, value) in changes {
+                register.write(&mut words, *value);
+            }
             self.output.next.set_command(&words);
             let about: Vec<String> = changes.iter().map(|(register, value)| format!("{register} = {value}")).collect();
             notes.push(json!({ "wi": hex(&words), "about": about.join(", ") }));
@@ -32,7 +34,9 @@ impl Link {
 
     async fn show_words(&mut self, changes: &[(Register, u32)]) -> Result<(), Failure> {
         let mut words = general(&self.output.next.command());
-        changes.iter().for_each(|(register, value)| register.write(&mut words, *value));
+        for (register, value) in changes {
+            register.write(&mut words, *value);
+        }
         self.output.next.set_command(&words);
         let until = Instant::now() + self.timeout;
         while self.output.last_sent().is_none_or(|sent| sent.command() != words) {
