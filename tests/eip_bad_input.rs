@@ -147,6 +147,49 @@ fn an_owner_that_is_there_already() {
     assert_eq!(owner.wait().unwrap().code(), Some(130));
 }
 
+/// Layers of `robots check` by their names, and whether `yrcx eip probe` finds an owner.
+fn owner(target: &str) -> (Value, Value) {
+    let data = |line: &str| {
+        let output = armctl(target, line).output().unwrap();
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()["data"].clone()
+    };
+    let checked = data("robots check");
+    let layers = checked["layers"].as_array().unwrap();
+    let layer = layers.iter().find(|layer| layer["layer"] == "owner").unwrap();
+    (layer["state"].clone(), data("yrcx eip probe")["owned"].clone())
+}
+
+#[test]
+fn an_owner_is_found_where_the_board_says_so_but_once() {
+    for mischief in ["trailing", "unowned"] {
+        let board = Board::start(&["--mischief", mischief]);
+        assert_eq!(owner(&board.target), ("ok".into(), false.into()), "{mischief}");
+        let mut holder = armctl(&board.target, "yrcx info servo --watch 1h").spawn().unwrap();
+        BufReader::new(holder.stdout.take().unwrap()).lines().next().unwrap().unwrap();
+        let (exit, _, code, message, _) = told(&board.target, "yrcx info servo");
+        assert_eq!((exit, &*code), (3, "0x0106"), "{mischief}: {message}");
+        assert_eq!(owner(&board.target), ("warning".into(), true.into()), "{mischief}");
+        let sent = Command::new("kill").args(["-s", "INT", &holder.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+        assert_eq!(holder.wait().unwrap().code(), Some(130));
+    }
+}
+
+#[test]
+fn many_at_once_find_room_one_after_the_other() {
+    let board = Board::start(&[]);
+    let mut looks = Vec::new();
+    for _ in 0..30 {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.env_clear().stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        looks.push(command.args(["-t", &board.target, "--timeout", "20s", "yrcx", "status"]).spawn().unwrap());
+    }
+    for look in looks {
+        let output = look.wait_with_output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
 const NOBODY: &str = "check the address, that the controller is on, and that its EtherNet/IP board is enabled";
 
 #[test]

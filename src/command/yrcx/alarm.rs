@@ -2,13 +2,16 @@
 
 use clap::Args;
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
 use super::Family;
-use super::link;
-use super::single::Single;
-use crate::command::commands;
-use crate::command::orders::Done;
-use crate::controller::yrcx::table::Command;
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::Risk;
+use crate::controller::yrcx::signal::output;
+use crate::controller::yrcx::table;
 use crate::failure::Failure;
+use crate::output::view::View;
 
 commands! {
     /// What can be done about alarms.
@@ -25,25 +28,57 @@ commands! {
 )]
 pub struct Reset {}
 
-impl Single for Reset {
-    type Report = Done;
+impl Command for Reset {
+    type Family = Family;
+    type Report = WasReset;
     const ID: &'static str = "yrcx.alarm.reset";
 
-    fn command(&self) -> Command {
-        Command::AlarmReset
+    fn risk(&self) -> Risk {
+        table::Command::AlarmReset.row().risk
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new("the alarm was reset"))
+    async fn run(&self, context: Context<'_, Family>) -> Result<WasReset, Failure> {
+        let Context { link, screen, .. } = context;
+        let order = link.draft(table::Command::AlarmReset)?.build()?;
+        link.run(&order).await?;
+        if link.is_dry() {
+            return Ok(WasReset { alarm: false, servo_on: false });
+        }
+        let image = link.look().await?;
+        let report = WasReset { alarm: output::ALARM.is_on(&image), servo_on: output::SERVO_ON.is_on(&image) };
+        if !report.servo_on {
+            screen.note(POWER_OFF);
+        }
+        Ok(report)
+    }
+}
+
+/// What comes next where an alarm has switched the motors off.
+const POWER_OFF: &str = "hint: motor power is off: `yrcx recover` clears the emergency stop and switches the servos on";
+
+/// An alarm that was reset.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct WasReset {
+    /// SO(03) after it: there is still one.
+    alarm: bool,
+    /// SO(02): motor power is on.
+    servo_on: bool,
+}
+
+impl Report for WasReset {
+    fn view(&self) -> View {
+        View::text(if self.alarm { "alarm reset accepted; there is still an alarm" } else { "alarm reset" })
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::command::yrcx::testing::{example, words};
+    use crate::command::yrcx::testing::{example, read_example, words};
 
     #[test]
     fn the_example_of_the_manual() {
         assert_eq!(words(&["alarm", "reset"]).unwrap(), [example("4.8.3-reset")]);
+        let read = read_example("4.8.3-reset", &["alarm", "reset"]);
+        assert_eq!((&read["alarm"], &read["servo_on"]), (&false.into(), &false.into()));
     }
 }

@@ -130,39 +130,111 @@ impl Axes {
         draft.with_some(Key::Axes, self.axes.clone())
     }
 
-    /// Fills them in, with a number for each of them in ascending order.
+    /// Fills them in, with a number for each of them; see [`Axes::pairs`].
     pub fn put_numbers(&self, draft: Draft, given: &[String]) -> Result<Draft, Failure> {
-        let keys = self.keys()?;
-        if keys.len() != given.len() {
-            let message = format!("{} numbers for {} axes", given.len(), keys.len());
-            return Err(
-                Failure::usage(message).hint("give one for each axis; name the axes with --axes if not all move")
-            );
-        }
-        Ok(keys.into_iter().zip(given).fold(self.put(draft), |draft, (key, text)| draft.with(key, text.trim())))
+        let pairs = self.pairs(given)?;
+        let draft = if self.names_some(given) {
+            let axes: Vec<String> = pairs.iter().map(|(axis, _)| axis.to_string()).collect();
+            draft.with(Key::Axes, axes.join(","))
+        } else {
+            draft
+        };
+        Ok(pairs.into_iter().fold(draft, |draft, (axis, text)| draft.with(Key::AXES[axis - 1], text)))
     }
 
-    fn keys(&self) -> Result<Vec<Key>, Failure> {
-        let Some(axes) = &self.axes else { return Ok(Key::AXES.to_vec()) };
-        let key = |axis: &str| {
-            let number: usize = axis.trim().parse().ok()?;
-            Key::AXES.get(number.checked_sub(1)?).copied()
+    /// Which number is for which axis, 1 to 4, in the order typed: `--axes 3,2 --to 10,20` and `--to 3=10,2=20` say the
+    /// same.
+    pub fn pairs<'a>(&self, given: &'a [String]) -> Result<Vec<(usize, &'a str)>, Failure> {
+        let named: Vec<Option<(&str, &str)>> = given.iter().map(|text| text.split_once('=')).collect();
+        let pairs: Vec<(usize, &str)> = match named.into_iter().collect::<Option<Vec<_>>>() {
+            Some(_) if self.axes.is_some() => {
+                return Err(Failure::usage("the axes are named twice, by --axes and beside the numbers")
+                    .hint("name them once, as in --to 1=300,3=10"));
+            }
+            Some(named) => {
+                let pairs = named.into_iter().map(|(name, text)| axis(name).map(|axis| (axis, text.trim())));
+                pairs.collect::<Result<_, Failure>>()?
+            }
+            None if given.iter().any(|text| text.contains('=')) => {
+                return Err(Failure::usage("some numbers name their axis and some do not")
+                    .hint("name the axis of each, as in --to 1=300,3=10"));
+            }
+            None => {
+                let axes = self.numbers()?;
+                if axes.len() != given.len() {
+                    let message = format!("{} numbers for {} axes", given.len(), axes.len());
+                    return Err(Failure::usage(message)
+                        .hint("give one for each axis; if not all move, name them, as in --to 1=300,3=10"));
+                }
+                axes.into_iter().zip(given.iter().map(|text| text.trim())).collect()
+            }
         };
-        let keys: Option<Vec<Key>> = axes.split(',').map(key).collect();
-        let mut keys = keys.ok_or_else(|| {
+        let mut seen = [false; 4];
+        for (axis, _) in &pairs {
+            if std::mem::replace(&mut seen[axis - 1], true) {
+                return Err(Failure::usage(format!("axis {axis} is named twice")).hint("name each axis once"));
+            }
+        }
+        Ok(pairs)
+    }
+
+    /// Whether the axes are named, so that those that are not stay.
+    fn names_some(&self, given: &[String]) -> bool {
+        self.axes.is_some() || given.iter().any(|text| text.contains('='))
+    }
+
+    fn numbers(&self) -> Result<Vec<usize>, Failure> {
+        let Some(axes) = &self.axes else { return Ok((1..=4).collect()) };
+        axes.split(',').map(axis).collect::<Result<Vec<usize>, Failure>>().map_err(|_| {
             Failure::usage(format!("'{axes}' is no list of axes of 1 to 4, as in 1,3"))
                 .hint("name axes by their numbers, with commas between")
-        })?;
-        keys.sort_unstable();
-        if keys.windows(2).any(|pair| pair[0] == pair[1]) {
-            return Err(Failure::usage(format!("--axes {axes} names an axis twice")).hint("name each axis once"));
-        }
-        Ok(keys)
+        })
     }
 
-    /// `all axes`.
-    pub fn told(&self) -> String {
-        self.axes.as_ref().map_or_else(|| "all axes".to_owned(), |axes| format!("axes {axes} alone"))
+    /// Axes 1 and 2 as far as they are not named beside these numbers (4.2.1); none where all axes move.
+    pub fn unnamed(&self, given: &[String]) -> Vec<usize> {
+        let named = self.pairs(given).unwrap_or_default();
+        let is_named = |axis: &usize| named.iter().any(|(named, _)| named == axis);
+        if named.is_empty() { Vec::new() } else { (1..=2).filter(|axis| !is_named(axis)).collect() }
+    }
+
+    /// Whether a motion to these points is for others than axes 1 and 2.
+    pub fn leaves_out(&self, points: &[String]) -> bool {
+        let named = self.numbers().unwrap_or_default();
+        !points.is_empty() && self.axes.is_some() && !(named.contains(&1) && named.contains(&2))
+    }
+
+    /// `axis 3: 10 mm, axis 2: 20 mm`.
+    pub fn told_numbers(&self, given: &[String], unit: Unit) -> String {
+        match self.pairs(given) {
+            Ok(pairs) => {
+                let told = pairs.iter().map(|(axis, text)| format!("axis {axis}: {text} {}", unit.symbol()));
+                told.collect::<Vec<_>>().join(", ")
+            }
+            // It is refused before anything moves.
+            Err(_) => format!("{} {}", given.join(", "), unit.symbol()),
+        }
+    }
+
+    /// `all axes`, `axes 3, 1 alone`; with the numbers that may name them.
+    pub fn told(&self, given: &[String]) -> String {
+        let axes = match (&self.axes, self.pairs(given)) {
+            (_, Ok(pairs)) if !given.is_empty() && self.names_some(given) => {
+                pairs.iter().map(|(axis, _)| axis.to_string()).collect::<Vec<_>>().join(", ")
+            }
+            (Some(axes), _) => axes.clone(),
+            (None, _) => return "all axes".to_owned(),
+        };
+        let noun = if axes.contains(',') { "axes" } else { "axis" };
+        format!("{noun} {axes} alone")
+    }
+}
+
+/// The number of an axis as typed.
+fn axis(text: &str) -> Result<usize, Failure> {
+    match text.trim().parse() {
+        Ok(axis @ 1..=4) => Ok(axis),
+        _ => Err(Failure::usage(format!("'{text}' is no axis of 1 to 4")).hint("name axes by their numbers")),
     }
 }
 

@@ -67,13 +67,19 @@ async fn look(link: &mut Link, layers: &mut Layers) -> Result<(), Failure> {
         }
         None => layers.warn("identity", "it does not say who it is", "check the address"),
     }
-    match board.rehearse().await {
-        Err(failure) => layers.fail("connection", &failure),
-        Ok(probed) => connection(board, &probed, layers),
-    }
+    let owned = match board.rehearse(identity.as_ref()).await {
+        Err(failure) => {
+            layers.fail("connection", &failure);
+            identity.is_some_and(|identity| identity.owned)
+        }
+        Ok(probed) => {
+            connection(board, &probed, layers);
+            probed.owned
+        }
+    };
     layers.judge(
         "owner",
-        !identity.is_some_and(|identity| identity.owned),
+        !owned,
         ("no master commands it", "another master, such as a PLC or a session, commands it"),
         "commands want that connection stopped first; what only looks works beside it",
     );

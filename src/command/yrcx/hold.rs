@@ -23,6 +23,7 @@ pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<(Im
     let rules = Rules {
         is_owner: !matches!(&way, Way::Eip(eip) if eip.role != EipRole::Owner),
         exclusive: 2 * COMMAND_WORDS,
+        command: 2,
         resting: first,
         rest: |before| {
             let mut after = after_loss(&image(before)).to_bytes().to_vec();

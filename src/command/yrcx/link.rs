@@ -9,6 +9,7 @@ mod driver;
 mod jog;
 mod output;
 mod shared;
+mod words;
 
 use std::time::Duration;
 
@@ -83,6 +84,8 @@ pub struct Link {
     unit: u8,
     /// Whether something was started that goes on by itself: a program, or what signals set in motion.
     has_started: bool,
+    /// General-purpose words that were shown before a remote command, to be put back after it.
+    words: Words,
     /// Whether the link outlives the command, so that what it began may go on.
     is_held: bool,
     /// Whether a session holds it, and others may use it at the same time.
@@ -138,10 +141,10 @@ pub struct Given {
 
 impl Given {
     /// What was carried out; a refusal is a failure.
-    fn done(self, row: &Row) -> Result<Done, Failure> {
+    fn done(self, order: &Order) -> Result<Done, Failure> {
         match self.answer {
             Answer::Done(values) | Answer::Running(values) => Ok(Done { values, elapsed: self.elapsed }),
-            Answer::Refused { alarm, .. } => Err(refusal::refused(row, alarm)),
+            Answer::Refused { alarm, .. } => Err(refusal::refused_order(order, alarm)),
         }
     }
 }
@@ -204,7 +207,7 @@ impl Family for Yrcx {
                 Ended::Answered(_) => Ok(format!("{} had been carried out already", row.id)),
                 Ended::NotSent(_) => Ok("nothing was sent that moves the robot".to_owned()),
                 Ended::Stopped => Ok(format!("{} was ended", row.id)),
-                Ended::NoAnswer(_) | Ended::OutcomeUnknown(_) => Err(refusal::unanswered(&link.label, row, &outcome)),
+                Ended::NoAnswer(_) | Ended::OutcomeUnknown(_) => Err(link.unanswered(row, &outcome)),
             };
         }
         if !link.has_started {
@@ -340,6 +343,7 @@ impl Link {
             label: robot.label(),
             unit: access.unit,
             has_started: false,
+            words: Words::default(),
             is_held: is_simulated,
             is_shared: false,
             is_over: false,
@@ -362,7 +366,7 @@ impl Link {
     /// Carries out an order; a refusal is a failure. A dry run notes it, and ends with the first one that reads.
     pub async fn run(&mut self, order: &Order) -> Result<Done, Failure> {
         let given = self.try_run(order).await?;
-        given.done(order.row())
+        given.done(order)
     }
 
     /// In a dry run, notes all the questions, whose answers are not known then.
@@ -440,7 +444,7 @@ impl Link {
         self.start(order).await?;
         loop {
             if let Some(outcome) = self.ended.take() {
-                return self.given(order.row(), outcome)?.done(order.row()).map(Some);
+                return self.given(order.row(), outcome)?.done(order).map(Some);
             }
             if self.exchange.as_ref().is_some_and(Exchange::is_running) {
                 return Ok(None);
@@ -455,8 +459,13 @@ impl Link {
             Ended::Answered(answer) => {
                 Ok(Given { answer, words: outcome.words.unwrap_or_default(), elapsed: outcome.elapsed })
             }
-            _ => Err(refusal::unanswered(&self.label, row, &outcome)),
+            _ => Err(self.unanswered(row, &outcome)),
         }
+    }
+
+    fn unanswered(&self, row: &Row, outcome: &Outcome) -> Failure {
+        let stop = self.is_up.then(|| input::STOP.is_on(&self.output.next));
+        refusal::unanswered(&self.label, row, outcome, stop)
     }
 
     /// Carries out a procedure of signals, and says how long it took.

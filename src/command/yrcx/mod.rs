@@ -25,6 +25,7 @@ pub mod eip;
 mod hold;
 mod info;
 mod io;
+mod items;
 pub mod link;
 mod motion;
 mod numbers;

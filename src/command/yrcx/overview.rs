@@ -9,10 +9,12 @@ use crate::controller::yrcx::signal::{input, output};
 use crate::failure::Failure;
 
 /// Why there is no position.
-const NOT_ASKED: &str = "asking for the position takes command of the controller: `yrcx status --full`, or a session";
+const NOT_ASKED: &str =
+    "servos and position are remote commands, which take command of the controller: `yrcx status --full`, or a session";
 
 /// The same while a session gives somebody else's command.
-const BUSY: &str = "another client's remote command is under way, and there is one at a time";
+const BUSY: &str =
+    "servos and position were not asked for: another client's remote command is under way, and there is one at a time";
 
 /// Looks at the signals, and asks for the position where that does not take command of the controller first.
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {

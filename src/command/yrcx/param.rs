@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::numbers::single;
-use super::several::ask_all;
+use super::several::{Rows, Several, ask_each};
 use super::single::Single;
 use super::{Family, link};
 use crate::command::ValueKind;
@@ -17,7 +17,7 @@ use crate::controller::yrcx::table;
 use crate::controller::yrcx::table::parameter::{PARAMETERS, Parameter};
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
-use crate::output::view::{Cell, Table, View};
+use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with parameters.
@@ -80,33 +80,44 @@ impl Command for Get {
             Ok(draft.with_some(Key::Axes, axis.map(|axis| axis.to_string())).build()?)
         };
         let orders = wanted.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
-        let answers = ask_all(link, screen, "reading parameters", &orders).await?;
-        let parameters = wanted.iter().zip(&answers).map(|((parameter, axis), values)| Row {
+        let answers = ask_each(link, screen, "reading parameters", &orders).await?;
+        let names = wanted.iter().map(|(parameter, axis)| match axis {
+            Some(number) => format!("{} of axis {number}", parameter.name),
+            None => parameter.name.to_owned(),
+        });
+        let set = Several::of(names, answers, |at, values| {
+            let (unit, meaning) = wanted.get(at).map_or(("", ""), |(parameter, _)| (parameter.unit, parameter.meaning));
+            let value = values.int(Key::Value).unwrap_or_default();
+            Setting { value, unit: Some(unit).filter(|unit| !unit.is_empty()), meaning }
+        })?;
+        let which = wanted.iter().map(|(parameter, axis)| Which {
             parameter: parameter.name,
             number: parameter.number,
             axis: *axis,
-            value: values.int(Key::Value).unwrap_or_default(),
-            unit: Some(parameter.unit).filter(|unit| !unit.is_empty()),
-            meaning: parameter.meaning,
         });
-        Ok(Parameters { parameters: parameters.collect() })
+        Ok(Parameters { parameters: set.rows(which) })
     }
 }
 
 /// Parameters.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Parameters {
-    parameters: Vec<Row>,
+    parameters: Rows<Which, Setting>,
 }
 
 /// A parameter.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Row {
+struct Which {
     /// Its name in the robot language.
     parameter: &'static str,
     number: u16,
     /// 1 to 4; null for a parameter of the robot.
     axis: Option<u8>,
+}
+
+/// What a parameter is set to.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Setting {
     value: i32,
     /// What it is measured in; null where the manual does not say.
     unit: Option<&'static str>,
@@ -115,12 +126,17 @@ struct Row {
 
 impl Report for Parameters {
     fn view(&self) -> View {
-        let mut table = Table::new(&["parameter", "axis", "value", "unit", "meaning"], "no parameters");
-        for row in &self.parameters {
-            let axis = row.axis.map_or_else(|| "-".into(), Cell::from);
-            table.row([row.parameter.into(), axis, row.value.into(), Cell::maybe(row.unit), row.meaning.into()]);
-        }
-        View::table(table)
+        let name = |which: &Which| {
+            let axis = which.axis.map_or_else(|| "-".into(), Cell::from);
+            [which.parameter.into(), axis]
+        };
+        let cells = |set: &Setting| [set.value.into(), Cell::maybe(set.unit), set.meaning.into()];
+        let (names, values) = (["parameter", "axis"], ["value", "unit", "meaning"]);
+        View::table(self.parameters.table(names, values, "no parameters", name, cells))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.parameters.failure()
     }
 }
 
@@ -172,7 +188,7 @@ mod tests {
         assert_eq!(read_example("4.4.2-assign", &set)["done"], "TOLE of axis 3 = 1000 pulses");
         let read = read_example("4.4.2-reference", &["param", "get", "outpos", "--axis", "1"]);
         let row = json!({
-            "parameter": "OUTPOS", "number": 260, "axis": 1, "value": 131_071, "unit": "pulses",
+            "parameter": "OUTPOS", "number": 260, "axis": 1, "ok": true, "value": 131_071, "unit": "pulses",
             "meaning": "OUT effective position",
         });
         assert_eq!(read, json!({"parameters": [row]}));

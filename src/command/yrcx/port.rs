@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::numbers::{named, single};
-use super::several::ask_all;
+use super::several::{Rows, Several, ask_each};
 use super::single::Single;
 use super::{Family, link};
 use crate::command::ValueKind;
@@ -13,9 +13,9 @@ use crate::command::orders::Done;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table;
-use crate::controller::yrcx::value::Key;
+use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
-use crate::output::view::{Cell, Table, View};
+use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with ports.
@@ -117,47 +117,57 @@ impl Command for Get {
         let Context { link, screen, .. } = context;
         let order = |place: &Place| place.order(link.draft(table::Command::PortGet)?).map_err(Failure::usage);
         let orders = self.places.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
-        let answers = ask_all(link, screen, "reading ports", &orders).await?;
-        let rows = self.places.iter().zip(&answers);
-        let rows = rows.map(|(place, values)| Row::of(*place, values.int(Key::Value).unwrap_or_default()));
-        Ok(Ports { ports: rows.collect() })
+        let answers = ask_each(link, screen, "reading ports", &orders).await?;
+        let names = || self.places.iter().map(|place| place.told());
+        let of = |at: usize, values: &Values| {
+            let bit = self.places.get(at).and_then(|place| place.bit);
+            State::of(bit, values.int(Key::Value).unwrap_or_default())
+        };
+        let states = Several::of(names(), answers, of)?;
+        Ok(Ports { ports: states.rows(names().map(|port| Which { port })) })
     }
 }
 
 /// Ports and signals.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Ports {
-    ports: Vec<Row>,
+    ports: Rows<Which, State>,
 }
 
 /// A port, or a signal of it.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Row {
+struct Which {
     /// `DO12`, or `DO2.1` for a signal.
     port: String,
+}
+
+/// The state of a port, or of a signal.
+#[derive(Debug, Serialize, JsonSchema)]
+struct State {
     /// Of a port, 0 to 255; of a signal, 0 or 1.
     value: i32,
     /// Of a port, bit 7 first: `00000111`; null for a signal.
     bits: Option<String>,
 }
 
-impl Row {
-    fn of(place: Place, value: i32) -> Self {
-        let port = place.told();
-        match place.bit {
-            Some(bit) => Self { port, value: value >> bit & 1, bits: None },
-            None => Self { port, value, bits: Some(format!("{value:08b}")) },
+impl State {
+    fn of(bit: Option<i32>, value: i32) -> Self {
+        match bit {
+            Some(bit) => Self { value: value >> bit & 1, bits: None },
+            None => Self { value, bits: Some(format!("{value:08b}")) },
         }
     }
 }
 
 impl Report for Ports {
     fn view(&self) -> View {
-        let mut table = Table::new(&["port", "value", "bits 7 - 0"], "no ports");
-        for Row { port, value, bits } in &self.ports {
-            table.row([port.as_str().into(), (*value).into(), Cell::maybe(bits.as_deref())]);
-        }
-        View::table(table)
+        let name = |which: &Which| [which.port.as_str().into()];
+        let cells = |state: &State| [state.value.into(), Cell::maybe(state.bits.as_deref())];
+        View::table(self.ports.table(["port"], ["value", "bits 7 - 0"], "no ports", name, cells))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.ports.failure()
     }
 }
 
@@ -232,11 +242,11 @@ mod tests {
             assert_eq!(read_example(id, &line)["done"], done);
         }
         let read = read_example("4.5.1-reference-do12", &["port", "get", "DO12()"]);
-        assert_eq!(read["ports"], json!([{"port": "DO12", "value": 7, "bits": "00000111"}]));
+        assert_eq!(read["ports"], json!([{"port": "DO12", "ok": true, "value": 7, "bits": "00000111"}]));
         let read = read_example("4.5.1-reference-di2", &["port", "get", "DI2"]);
-        assert_eq!(read["ports"], json!([{"port": "DI2", "value": 127, "bits": "01111111"}]));
+        assert_eq!(read["ports"], json!([{"port": "DI2", "ok": true, "value": 127, "bits": "01111111"}]));
         let read = read_example("4.5.1-reference-di2", &["port", "get", "di2.7"]);
-        assert_eq!(read["ports"], json!([{"port": "DI2.7", "value": 0, "bits": null}]));
+        assert_eq!(read["ports"], json!([{"port": "DI2.7", "ok": true, "value": 0, "bits": null}]));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::sequence;
 use crate::controller::yrcx::session::{Ended, Hindrance, Outcome, Silence};
 use crate::controller::yrcx::table::{Command, Pace, Row};
-use crate::controller::yrcx::value::{Key, Values};
+use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::{Failure, Kind};
 
 /// Words that the manual does not allow to be sent are a mistake of the command line.
@@ -23,7 +23,42 @@ impl From<WordError> for Failure {
     }
 }
 
-/// The controller's "no", be it at once or in the middle.
+/// The controller's "no" to an order, be it at once or in the middle; it names what the order was about.
+pub fn refused_order(order: &Order, alarm: Alarm) -> Failure {
+    let failure = refused(order.row(), alarm);
+    let id = order.row().id;
+    let about = order.row().request().filter(|field| INSTANCES.contains(&field.key));
+    let about = about.filter_map(|field| {
+        let value = order.values().value(field.key)?;
+        // The first robot is named by 0 as well, and then not at all.
+        let is_named = field.key != Key::Robot || *value != Value::Int(0);
+        is_named.then(|| format!("{} {}", field.key.name().replace('_', " "), field.show(value)))
+    });
+    let about: Vec<String> = about.collect();
+    if about.is_empty() {
+        return failure;
+    }
+    let named = format!("{id} ({}): alarm", about.join(", "));
+    Failure { message: failure.message.replacen(&format!("{id}: alarm"), &named, 1), ..failure }
+}
+
+/// The fields that say which one of several a command is about.
+const INSTANCES: [Key; 12] = [
+    Key::Robot,
+    Key::Point,
+    Key::Point2,
+    Key::Pallet,
+    Key::WorkPosition,
+    Key::Shift,
+    Key::Hand,
+    Key::Variable,
+    Key::Parameter,
+    Key::PortType,
+    Key::Port,
+    Key::History,
+];
+
+/// The controller's "no" to a command, whatever it was about.
 pub fn refused(row: &Row, alarm: Alarm) -> Failure {
     let what = match (row.risk, row.pace) {
         (Risk::Motion, Pace::Motion | Pace::Jog) => "refused or broke off",
@@ -70,8 +105,8 @@ pub fn stopped(order: &Order, values: &Values) -> String {
     format!("{position}{}", kept(order.row(), ""))
 }
 
-/// An exchange that ended without an answer.
-pub fn unanswered(label: &str, row: &Row, outcome: &Outcome) -> Failure {
+/// An exchange that ended without an answer; `stop` is how the stop input stands now, `None` while the link is down.
+pub fn unanswered(label: &str, row: &Row, outcome: &Outcome, stop: Option<bool>) -> Failure {
     match outcome.ended {
         Ended::NotSent(hindrance) => not_sent(label, row, hindrance),
         Ended::NoAnswer(silence) => {
@@ -80,7 +115,13 @@ pub fn unanswered(label: &str, row: &Row, outcome: &Outcome) -> Failure {
                 .hint("`yrcx status` tells how the controller stands")
         }
         Ended::OutcomeUnknown(silence) => {
-            let held = if outcome.stop_held { "; the stop input SI(06) stays off" } else { "" };
+            let held = match (silence, stop) {
+                (Silence::LinkLost, None) => "; it is still down",
+                (Silence::LinkLost, Some(true)) => "; it is up again, and the stop input SI(06) is on",
+                (Silence::LinkLost, Some(false)) => "; it is up again, and the stop input SI(06) is off",
+                (_, Some(false)) if outcome.stop_held => "; the stop input SI(06) stays off",
+                _ => "",
+            };
             let message = format!(
                 "{label}: {} was sent, but whether it was carried out is unknown: {}{held}",
                 row.id,

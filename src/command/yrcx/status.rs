@@ -6,22 +6,26 @@ use serde::Serialize;
 
 use super::Family;
 use super::info::{AxisServo, servos};
+use super::items::{ItemError, verdict};
 use super::link::Link;
+use super::overview::not_asked;
 use super::position::{Position, Unit};
+use super::several::ask_each;
 use crate::command::{Command, Context, Need, Report};
 use crate::controller::yrcx::answer::{Answer, Status as CommandStatus};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::output;
 use crate::controller::yrcx::table;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, Tone, View};
 
-/// Signals; on a simulator in this process, or with --full, also servos and position.
+/// Signals; in a session, on a simulator in this process, or with --full, also servos and position.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Signals are seen without a connection that the controller would miss. Servos and position are \
-                        remote commands: --full takes command of the controller for them, which is an alarm for it when \
-                        the command ends (`armctl help safety`), unless a session has the command already."
+                        remote commands: a session asks for them by itself unless another client's command is under way. \
+                        Without one, --full takes command of the controller for them, which is an alarm for it when the \
+                        command ends (`armctl help safety`)."
 )]
 pub struct Status {
     /// Take command of the controller, and ask for servos and position as well
@@ -39,28 +43,39 @@ impl Command for Status {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<StatusReport, Failure> {
-        let link = context.link;
-        // Through a session, too: what is seen at once does not wait for somebody else's motion to end.
-        if !self.full && (link.is_shared() || !link.commands()) {
-            let not_asked = Some(if link.is_shared() { NOT_ASKED_YET } else { NOT_ASKED });
-            return Ok(StatusReport { not_asked, ..StatusReport::of(&link.look().await?) });
-        }
+        let Context { link, screen, .. } = context;
         let servo = link.draft(table::Command::ServoStatus)?.build()?;
         let position = link.draft(table::Command::PositionMm)?.build()?;
-        link.rehearse(&[servo.clone(), position])?;
+        let orders = [servo, position];
+        if link.is_dry() && (self.full || link.commands()) {
+            link.rehearse(&orders)?;
+        }
         let image = link.look().await?;
-        let servos = servos(&link.run(&servo).await?.values);
-        let position_mm = position_mm(link).await?;
-        let position = Position { position_mm, ..Position::default() };
-        Ok(StatusReport { servos: Some(servos), position, ..StatusReport::of(&image) })
+        // What is seen at once does not wait for somebody else's motion to end.
+        let not_asked = if self.full { None } else { not_asked(link, &image) };
+        if not_asked.is_some() {
+            return Ok(StatusReport { not_asked, ..StatusReport::of(&image) });
+        }
+        let mut report = StatusReport::of(&image);
+        let outcomes = match ask_each(link, screen, "reading servos and position", &orders).await {
+            Ok(answers) => answers.outcomes,
+            Err(failure) if failure.kind == Kind::Usage => return Err(failure),
+            // The signals are known, whatever became of the rest.
+            Err(failure) => vec![Err(failure.clone()), Err(failure)],
+        };
+        for (name, outcome) in ["servos", "position"].into_iter().zip(outcomes) {
+            match outcome {
+                Ok(values) if name == "servos" => report.servos = Some(servos(&values)),
+                Ok(values) => report.position = Position::of(&values, Some(Unit::Mm)),
+                Err(failure) => report.errors.push(ItemError::new(name, failure)),
+            }
+        }
+        Ok(report)
     }
 }
 
-/// Why a report has no servos and no position.
-const NOT_ASKED: &str = "asking for servos and position takes command of the controller: --full, or a session";
-
-/// The same where a session has the command.
-const NOT_ASKED_YET: &str = "servos and position are remote commands: --full asks for them";
+/// What is looked at: signals, servos, position.
+const PARTS: usize = 3;
 
 /// How the controller stands (chapter 1, section 2).
 #[derive(Debug, Serialize, JsonSchema, Default)]
@@ -96,6 +111,8 @@ pub struct StatusReport {
     not_asked: Option<&'static str>,
     #[serde(flatten)]
     position: Position,
+    /// What was asked and not told, and why.
+    errors: Vec<ItemError>,
 }
 
 impl StatusReport {
@@ -117,6 +134,7 @@ impl StatusReport {
             servos: None,
             not_asked: None,
             position: Position::default(),
+            errors: Vec::new(),
         }
     }
 }
@@ -156,6 +174,10 @@ impl Report for StatusReport {
             (None, Some(why)) => view.and(Section::Text(why.to_owned())),
             (None, None) => view,
         }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        verdict(PARTS, &self.errors)
     }
 }
 

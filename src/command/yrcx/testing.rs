@@ -125,6 +125,13 @@ pub(super) fn run_on(scripted: Scripted, line: &[&str]) -> (Result<Value, Failur
     (outcome, bench.into_peer())
 }
 
+/// The same for a command whose report may be no success: its data, and why it is none.
+pub(super) fn report_on(scripted: Scripted, line: &[&str]) -> (Value, Option<Failure>, Scripted) {
+    let mut bench = Bench::new(scripted);
+    let (data, failure) = bench.report(line).expect("a report");
+    (data, failure, bench.into_peer())
+}
+
 /// A scripted controller and a link to it that last for several command lines, in virtual time.
 pub(super) struct Bench {
     pub(super) runtime: tokio::runtime::Runtime,
@@ -173,12 +180,17 @@ impl Bench {
 
     /// Runs `armctl yrcx WORDS…`: the data of its report. A report that is no success is a failure.
     pub(super) fn run(&mut self, words: &[&str]) -> Result<Value, Failure> {
+        let (data, failure) = self.report(words)?;
+        failure.map_or(Ok(data), Err)
+    }
+
+    /// The same with the data of a report that is no success.
+    pub(super) fn report(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link, .. } = self;
         link.set_unit(unit(words));
         let report = runtime.block_on(command.run(context(robot, link)))?;
-        report.failure().map_or(Ok(()), Err)?;
-        report.data()
+        Ok((report.data()?, report.failure()))
     }
 
     /// Lets a command line run for so long, and drops it then, as Ctrl-C does.

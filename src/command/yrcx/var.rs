@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::{Number, Value as Json};
 
 use super::numbers::{Numbers, named, single};
-use super::several::ask_all;
+use super::several::{Rows, Several, ask_each};
 use super::single::Single;
 use super::{Family, link};
 use crate::command::ValueKind;
@@ -16,7 +16,7 @@ use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Value};
 use crate::failure::Failure;
-use crate::output::view::{Cell, Table, View};
+use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with static variables.
@@ -55,39 +55,44 @@ impl Command for Get {
         let numbers = Numbers::of(&self.variables);
         let order = |number: &i32| Ok(link.draft(table::Command::VarGet)?.with(Key::Variable, *number).build()?);
         let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
-        let answers = ask_all(link, screen, "reading variables", &orders).await?;
-        let variables = numbers.iter().zip(&answers);
-        let variables = variables.map(|(number, values)| Row::of(*number, values.value(Key::Value)));
-        Ok(Variables { variables: variables.collect() })
+        let answers = ask_each(link, screen, "reading variables", &orders).await?;
+        let names = || numbers.iter().map(|number| name(*number));
+        let held = Several::of(names(), answers, |_, values| Held::of(values.value(Key::Value)))?;
+        Ok(Variables { variables: held.rows(names().map(|variable| Which { variable })) })
     }
 }
 
 /// Static variables.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Variables {
-    variables: Vec<Row>,
+    variables: Rows<Which, Held>,
 }
 
-/// A static variable.
+/// Which variable.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Row {
+struct Which {
     /// `SGI1`, `SGR1`.
     variable: String,
+}
+
+/// What a variable holds.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Held {
     /// A whole or a real number; null where the controller holds what is no number.
     value: Option<Number>,
     #[serde(skip)]
     text: String,
 }
 
-impl Row {
-    fn of(number: i32, value: Option<&Value>) -> Self {
+impl Held {
+    fn of(value: Option<&Value>) -> Self {
         let (value, text) = match value {
             Some(Value::Int(number)) => (Some(Number::from(*number)), number.to_string()),
             // By its digits: as a double it would get more than it has.
             Some(Value::Real(number)) => (real(*number), number.to_string()),
             Some(Value::Text(_)) | None => (None, "-".to_owned()),
         };
-        Self { variable: name(number), value, text }
+        Self { value, text }
     }
 }
 
@@ -101,11 +106,13 @@ fn real(number: f32) -> Option<Number> {
 
 impl Report for Variables {
     fn view(&self) -> View {
-        let mut table = Table::new(&["variable", "value"], "no variables");
-        for Row { variable, text, .. } in &self.variables {
-            table.row([variable.as_str().into(), Cell::number(text.as_str())]);
-        }
-        View::table(table)
+        let (name, value) =
+            (|which: &Which| [which.variable.as_str().into()], |held: &Held| [Cell::number(held.text.as_str())]);
+        View::table(self.variables.table(["variable"], ["value"], "no variables", name, value))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.variables.failure()
     }
 }
 
@@ -227,7 +234,7 @@ mod tests {
             assert_eq!(read_example(id, &line)["done"], done);
         }
         let read = read_example("4.4.1-reference", &["var", "get", "SGI5"]);
-        assert_eq!(read, json!({"variables": [{"variable": "SGI5", "value": 50}]}));
+        assert_eq!(read, json!({"variables": [{"variable": "SGI5", "ok": true, "value": 50}]}));
     }
 
     #[test]

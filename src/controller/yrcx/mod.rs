@@ -15,6 +15,7 @@ pub mod image;
 pub mod order;
 pub mod passing;
 pub mod procedure;
+pub mod register;
 pub mod sequence;
 pub mod session;
 pub mod signal;

@@ -4,7 +4,7 @@ use std::net::{SocketAddr, SocketAddrV4};
 
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
-use tokio::time::{Duration, Instant, timeout_at};
+use tokio::time::{Duration, Instant, sleep_until, timeout_at};
 
 use super::explicit::{Answer, Message};
 use super::session::{Ask, Session, Step, Token};
@@ -14,6 +14,8 @@ use super::wire::{Command, Identity, Services};
 
 /// The one request that is on its way.
 const TOKEN: Token = Token(0);
+/// How long to wait for room for a session, in time-outs.
+pub const PATIENCE: u32 = 4;
 /// Room for what is read at once.
 const BUFFER: usize = 4096;
 
@@ -29,9 +31,11 @@ pub struct Client {
 }
 
 impl Client {
-    /// For the device whose TCP address this is; `timeout` is for connecting, and for each answer.
+    /// For the device whose TCP address this is; `timeout` is for connecting, and for each answer. Where the device has no
+    /// room for another session, it comes back for [`PATIENCE`] times as long.
     pub fn new(target: SocketAddrV4, timeout: Duration, tap: Tap) -> Self {
-        Self { target, session: Session::new(timeout), stream: None, start: Instant::now(), timeout, tap }
+        let session = Session::new(timeout).patient(timeout.saturating_mul(PATIENCE));
+        Self { target, session, stream: None, start: Instant::now(), timeout, tap }
     }
 
     /// Where the device is.
@@ -118,9 +122,9 @@ impl Client {
 
     /// Reads once, or waits until the session wants to do something.
     async fn read(&mut self, what: &'static str) {
-        let Some(stream) = &mut self.stream else { return };
-        let mut buffer = [0; BUFFER];
         let until = self.session.wake().map_or_else(|| Instant::now() + self.timeout, |wake| self.start + wake);
+        let Some(stream) = &mut self.stream else { return sleep_until(until).await };
+        let mut buffer = [0; BUFFER];
         match timeout_at(until, stream.read(&mut buffer)).await {
             Ok(Ok(len @ 1..)) => {
                 if let Ok(SocketAddr::V4(here)) = stream.local_addr() {

@@ -68,7 +68,7 @@ impl Answer {
     /// Reads the data of a frame that answers `what`.
     pub fn parse(what: &'static str, data: &[u8]) -> Result<Self, Trouble> {
         let malformed = |error| Trouble::Malformed { what, error };
-        let message = RrData::parse(data).map_err(malformed)?.message;
+        let message = RrData::parse_answer(data).map_err(malformed)?.message;
         let reply = Reply::parse(message).map_err(malformed)?;
         Ok(Self { status: reply.status, data: reply.data.to_vec() })
     }

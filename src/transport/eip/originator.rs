@@ -382,7 +382,7 @@ impl Originator {
         let malformed = |error| Trouble::Malformed { what: FORWARD_OPEN, error };
         let senseless = |why| Trouble::Senseless { what: FORWARD_OPEN, why };
         let answer = Answer::parse(FORWARD_OPEN, data)?;
-        let addresses = RrData::parse(data).map_err(malformed)?;
+        let addresses = RrData::parse_answer(data).map_err(malformed)?;
         let opened = Opened::parse(&answer.done(FORWARD_OPEN)?).map_err(malformed)?;
         if opened.triad != self.triad {
             return Err(senseless("it is about another connection"));

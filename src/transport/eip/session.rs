@@ -12,6 +12,11 @@ use super::wire::{Command, Frame, Frames};
 
 /// Most requests that wait.
 const MOST_WAITING: usize = 64;
+/// Status of RegisterSession: the device has no room for another session now.
+const NO_ROOM: u32 = 0x02;
+/// Longest wait before another try to register where there was no room; the first one is a sixteenth of it. Chance
+/// shortens each, so that those who were refused together do not come back together.
+const MOST_PAUSE: Duration = Duration::from_millis(800);
 
 /// Tells answers apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -56,8 +61,16 @@ pub enum Step {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
     Down,
-    Connecting { until: Now },
-    Registering { until: Now },
+    Connecting {
+        until: Now,
+    },
+    Registering {
+        until: Now,
+    },
+    /// The device had no room for a session; until the next try.
+    Full {
+        until: Now,
+    },
     Up,
 }
 
@@ -72,6 +85,10 @@ pub struct Session {
     /// Number of the request that is on its way; it goes in the context, so that no late answer is mistaken.
     number: u64,
     timeout: Duration,
+    /// How long to try again where there is no room for a session.
+    patience: Duration,
+    /// Since when there is none, and how often it was tried.
+    full: Option<(Now, u32)>,
     steps: VecDeque<Step>,
 }
 
@@ -86,8 +103,16 @@ impl Session {
             pending: None,
             number: 0,
             timeout,
+            patience: Duration::ZERO,
+            full: None,
             steps: VecDeque::new(),
         }
+    }
+
+    /// The same, which comes back for so long where a device has no room for another session. No request was sent then.
+    #[must_use]
+    pub fn patient(self, patience: Duration) -> Self {
+        Self { patience, ..self }
     }
 
     /// Asks, after what waits already.
@@ -111,7 +136,7 @@ impl Session {
     /// When to call again at the latest.
     pub fn wake(&self) -> Option<Now> {
         match self.phase {
-            Phase::Connecting { until } | Phase::Registering { until } => Some(until),
+            Phase::Connecting { until } | Phase::Registering { until } | Phase::Full { until } => Some(until),
             Phase::Down | Phase::Up => self.pending.as_ref().map(|(_, until)| *until),
         }
     }
@@ -128,7 +153,7 @@ impl Session {
 
     /// Something arrived on the TCP connection.
     pub fn received(&mut self, now: Now, bytes: &[u8]) {
-        if self.phase == Phase::Down {
+        if matches!(self.phase, Phase::Down | Phase::Full { .. }) {
             return;
         }
         self.frames.push(bytes);
@@ -166,10 +191,8 @@ impl Session {
 
     fn advance(&mut self, now: Now) {
         match self.phase {
-            Phase::Down if !self.waiting.is_empty() => {
-                self.steps.push_back(Step::Connect);
-                self.phase = Phase::Connecting { until: now.saturating_add(self.timeout) };
-            }
+            Phase::Down if !self.waiting.is_empty() => self.connect(now),
+            Phase::Full { until } if now >= until => self.connect(now),
             Phase::Connecting { until } if now >= until => self.give_up("the TCP connection"),
             Phase::Registering { until } if now >= until => self.give_up("RegisterSession"),
             Phase::Up => match &self.pending {
@@ -184,6 +207,26 @@ impl Session {
                 None => self.send_next(now),
             },
             _ => {}
+        }
+    }
+
+    fn connect(&mut self, now: Now) {
+        self.steps.push_back(Step::Connect);
+        self.phase = Phase::Connecting { until: now.saturating_add(self.timeout) };
+    }
+
+    /// RegisterSession was refused: waits for room, or gives up.
+    fn refused(&mut self, now: Now, status: u32) {
+        self.disconnect();
+        let (since, tries) = self.full.unwrap_or((now, 0));
+        let longest = MOST_PAUSE / 16 * 2_u32.pow(tries.min(4));
+        let pause = longest.mul_f64(0.5 + fastrand::f64() / 2.0);
+        if status == NO_ROOM && now.saturating_add(pause) < since.saturating_add(self.patience) {
+            self.full = Some((since, tries + 1));
+            self.phase = Phase::Full { until: now.saturating_add(pause) };
+        } else {
+            self.full = None;
+            self.fail_waiting(&Trouble::Encapsulation { what: "RegisterSession", status });
         }
     }
 
@@ -204,12 +247,11 @@ impl Session {
             Phase::Registering { .. } if frame.command == Command::REGISTER_SESSION => {
                 if frame.status == 0 {
                     self.handle = frame.session;
+                    self.full = None;
                     self.phase = Phase::Up;
                     self.advance(now);
                 } else {
-                    let trouble = Trouble::Encapsulation { what: "RegisterSession", status: frame.status };
-                    self.disconnect();
-                    self.fail_waiting(&trouble);
+                    self.refused(now, frame.status);
                 }
             }
             Phase::Up => {
@@ -234,8 +276,10 @@ impl Session {
 
     fn disconnect(&mut self) {
         if self.phase != Phase::Down {
+            if !matches!(self.phase, Phase::Full { .. }) {
+                self.steps.push_back(Step::Disconnect);
+            }
             self.phase = Phase::Down;
-            self.steps.push_back(Step::Disconnect);
         }
     }
 
@@ -339,6 +383,41 @@ mod tests {
             assert_eq!(session.poll(NOW), Some(Step::Answer { token: Token(token), sent: false, result }));
         }
         assert_eq!(session.poll(NOW), None);
+    }
+
+    #[test]
+    fn a_device_without_room_is_asked_again_for_a_while() {
+        let mut session = Session::new(TIMEOUT).patient(TIMEOUT);
+        session.ask(ask(1));
+        let mut now = NOW;
+        let mut tries = 0;
+        let result = loop {
+            match session.poll(now) {
+                Some(Step::Connect) => session.connected(now),
+                Some(Step::Send(register)) => {
+                    tries += 1;
+                    session.received(now, &answer(&register, NO_ROOM, &[1, 0, 0, 0]));
+                }
+                Some(Step::Disconnect) => {}
+                Some(Step::Answer { sent, result, .. }) => break (sent, result),
+                None => now = session.wake().expect("it waits for something").max(now),
+            }
+        };
+        assert!((4..30).contains(&tries), "{tries}");
+        assert!(now < NOW + TIMEOUT, "not longer than its patience");
+        let trouble = Trouble::Encapsulation { what: "RegisterSession", status: NO_ROOM };
+        assert_eq!(result, (false, Err(trouble)));
+        // Any other refusal, and one without patience, is told at once.
+        for (patience, status) in [(TIMEOUT, 0x69), (Duration::ZERO, NO_ROOM)] {
+            let mut session = Session::new(TIMEOUT).patient(patience);
+            session.ask(ask(1));
+            assert_eq!(session.poll(NOW), Some(Step::Connect));
+            session.connected(NOW);
+            let register = sent(&mut session, NOW);
+            session.received(NOW, &answer(&register, status, &[]));
+            assert_eq!(session.poll(NOW), Some(Step::Disconnect));
+            assert!(matches!(session.poll(NOW), Some(Step::Answer { sent: false, result: Err(_), .. })));
+        }
     }
 
     #[test]

@@ -38,7 +38,7 @@ pub(super) struct SimYrcx {
     #[arg(long, value_name = "FAULTS", value_parser = faults)]
     fault: Option<FaultSpec>,
     /// What the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, frozen, unreadable,
-    /// reset, mute, garbage
+    /// reset, mute, garbage, trailing, unowned
     #[arg(long, value_name = "WHAT", value_parser = mischief)]
     mischief: Option<Mischief>,
     /// Take lines on stdin; `help` lists them

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
-use crate::command::yrcx::several::{Refused, read_numbers};
+use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
 use crate::command::yrcx::{Family, link};
 use crate::command::{Command, Context, Report, commands};
@@ -14,7 +14,7 @@ use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
-use crate::output::view::{Table, View};
+use crate::output::view::View;
 
 commands! {
     /// What can be done with comments of points.
@@ -41,38 +41,43 @@ impl Command for Get {
     const ID: &'static str = "yrcx.comment.get";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Comments, Failure> {
-        let found = read_numbers(context, "comments", (table::Command::CommentGet, Key::Point), &self.points).await?;
-        let row = |(point, values): &(i32, Values)| Row {
-            point: *point,
-            comment: values.text(Key::Comment).unwrap_or_default().to_owned(),
-        };
-        Ok(Comments { comments: found.entries.iter().map(row).collect(), refused: found.refused })
+        let nouns = ["comment of point", "comments"];
+        let field = (table::Command::CommentGet, Key::Point);
+        let of = |values: &Values| Text { comment: values.text(Key::Comment).unwrap_or_default().to_owned() };
+        let (numbers, comments) = read_numbers(context, nouns, field, &self.points, of).await?;
+        Ok(Comments { comments: comments.rows(numbers.into_iter().map(|point| Which { point })) })
     }
 }
 
 /// Comments of points.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Comments {
-    comments: Vec<Row>,
-    /// Points that the controller has not.
-    refused: Vec<Refused>,
+    comments: Rows<Which, Text>,
+}
+
+/// Which point.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Which {
+    point: i32,
 }
 
 /// The comment of a point.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Row {
-    point: i32,
+struct Text {
     /// Up to 16 characters; empty if there is none.
     comment: String,
 }
 
 impl Report for Comments {
     fn view(&self) -> View {
-        let mut table = Table::new(&["point", "comment"], "no comments");
-        for Row { point, comment } in &self.comments {
-            table.row([(*point).into(), comment.as_str().into()]);
-        }
-        View::table(table)
+        let name = |which: &Which| [which.point.into()];
+        View::table(
+            self.comments.table(["point"], ["comment"], "no comments", name, |text| [text.comment.as_str().into()]),
+        )
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.comments.failure()
     }
 }
 
@@ -119,7 +124,7 @@ mod tests {
         assert_eq!(words(&set).unwrap(), [example("4.3.2-define")]);
         assert_eq!(read_example("4.3.2-define", &set)["done"], "comment of point 100: WAIT ORG");
         let read = read_example("4.3.2-reference", &["comment", "get", "50"]);
-        assert_eq!(read["comments"], json!([{"point": 50, "comment": "WAIT ORG"}]));
+        assert_eq!(read["comments"], json!([{"point": 50, "ok": true, "comment": "WAIT ORG"}]));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::mm;
 use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
-use crate::command::yrcx::several::{Refused, read_numbers};
+use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
 use crate::command::yrcx::{Family, link};
 use crate::command::{Command, Context, Report, commands};
@@ -15,7 +15,7 @@ use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
-use crate::output::view::{Cell, Table, View};
+use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with hands.
@@ -47,24 +47,27 @@ impl Command for Get {
     const ID: &'static str = "yrcx.hand-data.get";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Hands, Failure> {
-        let found = read_numbers(context, "hands", (table::Command::HandGet, Key::Hand), &self.hands).await?;
-        let hands = found.entries.iter().map(|(hand, values)| Row::of(*hand, values)).collect();
-        Ok(Hands { hands, refused: found.refused })
+        let (nouns, field) = (["hand", "hands"], (table::Command::HandGet, Key::Hand));
+        let (numbers, hands) = read_numbers(context, nouns, field, &self.hands, Data::of).await?;
+        Ok(Hands { hands: hands.rows(numbers.into_iter().map(|hand| Which { hand })) })
     }
 }
 
 /// Hands.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Hands {
-    hands: Vec<Row>,
-    /// Hands that the controller has not.
-    refused: Vec<Refused>,
+    hands: Rows<Which, Data>,
+}
+
+/// Which hand.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Which {
+    hand: i32,
 }
 
 /// A hand.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Row {
-    hand: i32,
+struct Data {
     /// The robot that has it.
     robot: i32,
     /// As it travels: the manual does not tell its unit for certain.
@@ -75,11 +78,10 @@ struct Row {
     data_4: i32,
 }
 
-impl Row {
-    fn of(hand: i32, values: &Values) -> Self {
+impl Data {
+    fn of(values: &Values) -> Self {
         let int = |key| values.int(key).unwrap_or_default();
         Self {
-            hand,
             robot: int(Key::Owner),
             data_1: int(Key::Data1),
             data_2_mm: f64::from(int(Key::Data2)) / 1000.0,
@@ -91,17 +93,20 @@ impl Row {
 
 impl Report for Hands {
     fn view(&self) -> View {
-        let columns = ["hand", "robot", "data 1", "data 2 (mm)", "data 3 (mm)", "on R axis"];
-        let mut table = Table::new(&columns, "no hands");
-        for Row { hand, robot, data_1, data_2_mm, data_3_mm, data_4 } in &self.hands {
+        let columns = ["robot", "data 1", "data 2 (mm)", "data 3 (mm)", "on R axis"];
+        let cells = |Data { robot, data_1, data_2_mm, data_3_mm, data_4 }: &Data| {
             let on_r_axis = match data_4 {
                 0 => "no".into(),
                 1 => "yes".into(),
                 other => Cell::from(*other),
             };
-            table.row([(*hand).into(), (*robot).into(), (*data_1).into(), mm(*data_2_mm), mm(*data_3_mm), on_r_axis]);
-        }
-        View::table(table)
+            [(*robot).into(), (*data_1).into(), mm(*data_2_mm), mm(*data_3_mm), on_r_axis]
+        };
+        View::table(self.hands.table(["hand"], columns, "no hands", |which| [which.hand.into()], cells))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.hands.failure()
     }
 }
 
@@ -161,7 +166,7 @@ mod tests {
         assert_eq!(words(&SET).unwrap(), [example("4.3.5-define")]);
         assert_eq!(read_example("4.3.5-define", &SET)["done"], "defined hand 1: 10000, -2 mm, 5 mm");
         let read = read_example("4.3.5-reference", &["hand-data", "get", "1"]);
-        let hand = json!({"hand": 1, "robot": 1, "data_1": 10000, "data_2_mm": -2.0, "data_3_mm": 5.0, "data_4": 0});
+        let hand = json!({"hand": 1, "ok": true, "robot": 1, "data_1": 10000, "data_2_mm": -2.0, "data_3_mm": 5.0, "data_4": 0});
         assert_eq!(read["hands"], json!([hand]));
     }
 

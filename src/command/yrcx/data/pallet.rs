@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
-use crate::command::yrcx::several::{Refused, read_numbers};
+use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
 use crate::command::yrcx::{Family, link};
 use crate::command::{Command, Context, Report, commands};
@@ -14,7 +14,7 @@ use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
-use crate::output::view::{Table, View};
+use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with pallets.
@@ -41,24 +41,28 @@ impl Command for Get {
     const ID: &'static str = "yrcx.pallet-data.get";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Pallets, Failure> {
-        let found = read_numbers(context, "pallets", (table::Command::PalletGet, Key::Pallet), &self.pallets).await?;
-        let pallets = found.entries.iter().map(|(pallet, values)| Row::of(*pallet, values)).collect();
-        Ok(Pallets { pallets, refused: found.refused })
+        let nouns = ["pallet", "pallets"];
+        let field = (table::Command::PalletGet, Key::Pallet);
+        let (numbers, pallets) = read_numbers(context, nouns, field, &self.pallets, Places::of).await?;
+        Ok(Pallets { pallets: pallets.rows(numbers.into_iter().map(|pallet| Which { pallet })) })
     }
 }
 
 /// Pallets.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Pallets {
-    pallets: Vec<Row>,
-    /// Pallets that the controller has not.
-    refused: Vec<Refused>,
+    pallets: Rows<Which, Places>,
+}
+
+/// Which pallet.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Which {
+    pallet: i32,
 }
 
 /// A pallet.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Row {
-    pallet: i32,
+struct Places {
     /// Places in X.
     nx: i32,
     /// Places in Y.
@@ -69,21 +73,23 @@ struct Row {
     first_point: i32,
 }
 
-impl Row {
-    fn of(pallet: i32, values: &Values) -> Self {
+impl Places {
+    fn of(values: &Values) -> Self {
         let [nx, ny, nz, first_point] =
             [Key::CountX, Key::CountY, Key::CountZ, Key::FirstPoint].map(|key| values.int(key).unwrap_or_default());
-        Self { pallet, nx, ny, nz, first_point }
+        Self { nx, ny, nz, first_point }
     }
 }
 
 impl Report for Pallets {
     fn view(&self) -> View {
-        let mut table = Table::new(&["pallet", "nx", "ny", "nz", "first point"], "no pallets");
-        for Row { pallet, nx, ny, nz, first_point } in &self.pallets {
-            table.row([pallet, nx, ny, nz, first_point].map(|number| (*number).into()));
-        }
-        View::table(table)
+        let cells = |places: &Places| [places.nx, places.ny, places.nz, places.first_point].map(Cell::from);
+        let (name, columns) = (|which: &Which| [which.pallet.into()], ["nx", "ny", "nz", "first point"]);
+        View::table(self.pallets.table(["pallet"], columns, "no pallets", name, cells))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.pallets.failure()
     }
 }
 
@@ -143,7 +149,10 @@ mod tests {
         assert_eq!(words(&set).unwrap(), [example("4.3.3-define")]);
         assert_eq!(read_example("4.3.3-define", &set)["done"], "defined pallet 10: 10 x 15 x 1, first point 100");
         let read = read_example("4.3.3-reference", &["pallet-data", "get", "10"]);
-        assert_eq!(read["pallets"], json!([{"pallet": 10, "nx": 10, "ny": 15, "nz": 1, "first_point": 100}]));
+        assert_eq!(
+            read["pallets"],
+            json!([{"pallet": 10, "ok": true, "nx": 10, "ny": 15, "nz": 1, "first_point": 100}])
+        );
     }
 
     #[test]

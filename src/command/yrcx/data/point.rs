@@ -8,7 +8,7 @@ use super::{Four, four, mm};
 use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
 use crate::command::yrcx::position::{Position, Unit};
-use crate::command::yrcx::several::{Refused, read_numbers};
+use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::{Single, shown};
 use crate::command::yrcx::{Family, link};
 use crate::command::{Command, Context, Report, commands};
@@ -16,7 +16,7 @@ use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
-use crate::output::view::{Cell, Table, View};
+use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with points.
@@ -31,7 +31,7 @@ commands! {
 /// Reads points, one after the other.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Points that are not defined are named on stderr, and in `refused` of the JSON. `-o csv` prints a \
+    after_help = "A point that is not defined is refused, and the others are told all the same: exit code 9. `-o csv` prints a \
     table for a spreadsheet."
 )]
 pub struct Get {
@@ -47,24 +47,28 @@ impl Command for Get {
     const ID: &'static str = "yrcx.point.get";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Points, Failure> {
-        let found = read_numbers(context, "points", (table::Command::PointGet, Key::Point), &self.points).await?;
-        let points = found.entries.iter().map(|(point, values)| Row::of(*point, values)).collect();
-        Ok(Points { points, refused: found.refused })
+        let nouns = ["point", "points"];
+        let field = (table::Command::PointGet, Key::Point);
+        let (numbers, points) = read_numbers(context, nouns, field, &self.points, Coordinates::of).await?;
+        Ok(Points { points: points.rows(numbers.into_iter().map(|point| Which { point })) })
     }
 }
 
 /// Points.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Points {
-    points: Vec<Row>,
-    /// Points that the controller has not.
-    refused: Vec<Refused>,
+    points: Rows<Which, Coordinates>,
+}
+
+/// Which point.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Which {
+    point: i32,
 }
 
 /// A point.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Row {
-    point: i32,
+struct Coordinates {
     /// In the unit that it was defined in; the other one is null.
     #[serde(flatten)]
     position: Position,
@@ -72,14 +76,14 @@ struct Row {
     hand: Option<String>,
 }
 
-impl Row {
-    fn of(point: i32, values: &Values) -> Self {
+impl Coordinates {
+    fn of(values: &Values) -> Self {
         let unit = if values.int(Key::Unit) == Some(1) { Unit::Mm } else { Unit::Pulse };
         let hand = shown(table::Command::PointGet, values, Key::HandSystem).filter(|hand| hand != "none");
-        Self { point, position: Position::of(values, Some(unit)), hand }
+        Self { position: Position::of(values, Some(unit)), hand }
     }
 
-    fn cells(&self) -> [Cell; 4] {
+    fn axes(&self) -> [Cell; 4] {
         match (self.position.position_mm, self.position.position_pulses) {
             (Some(axes), _) => axes.map(mm),
             (None, Some(axes)) => axes.map(Cell::from),
@@ -90,14 +94,17 @@ impl Row {
 
 impl Report for Points {
     fn view(&self) -> View {
-        let mut table = Table::new(&["point", "axis 1", "axis 2", "axis 3", "axis 4", "unit", "hand"], "no points");
-        for row in &self.points {
-            let unit = if row.position.position_mm.is_some() { "mm" } else { "pulses" };
-            let [first, second, third, fourth] = row.cells();
-            let hand = Cell::maybe(row.hand.as_deref());
-            table.row([row.point.into(), first, second, third, fourth, unit.into(), hand]);
-        }
-        View::table(table)
+        let columns = ["axis 1", "axis 2", "axis 3", "axis 4", "unit", "hand"];
+        let cells = |point: &Coordinates| {
+            let unit = if point.position.position_mm.is_some() { "mm" } else { "pulses" };
+            let [first, second, third, fourth] = point.axes();
+            [first, second, third, fourth, unit.into(), Cell::maybe(point.hand.as_deref())]
+        };
+        View::table(self.points.table(["point"], columns, "no points", |which| [which.point.into()], cells))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.points.failure()
     }
 }
 
@@ -154,7 +161,7 @@ impl Single for Set {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{Reply, Scripted, example, objection, read_example, run_on, words};
+    use crate::command::yrcx::testing::{Reply, Scripted, example, objection, read_example, report_on, run_on, words};
     use crate::failure::Kind;
 
     #[test]
@@ -164,8 +171,8 @@ mod tests {
         assert_eq!(read_example("4.3.1-define", &set)["done"], "defined point 100: 10000, -20000, 5000, -18000 pulses");
         let read = read_example("4.3.1-reference", &["point", "get", "50"]);
         let mm = [10.0, -20.0, 5.0, -18.0];
-        let row = json!({"point": 50, "position_mm": mm, "position_pulses": null, "hand": null});
-        assert_eq!(read, json!({"points": [row], "refused": []}));
+        let row = json!({"point": 50, "ok": true, "position_mm": mm, "position_pulses": null, "hand": null});
+        assert_eq!(read, json!({"points": [row]}));
     }
 
     #[test]
@@ -204,20 +211,34 @@ mod tests {
     #[test]
     fn what_is_not_defined_stands_beside_what_is() {
         let line = ["point", "get", "3..5"];
-        let (read, _) = run_on(Scripted::new([refusal(2, 904), answer(4), refusal(2, 904)]), &line);
-        let read = read.unwrap();
-        assert_eq!((&read["points"][0]["point"], &read["refused"][1]["number"]), (&json!(4), &json!(5)));
-        assert_eq!(read["refused"][0]["code"], "2.904");
-        let (none, peer) = run_on(Scripted::new([refusal(2, 904), refusal(2, 904), refusal(2, 904)]), &line);
-        assert_eq!((none.unwrap_err().code.as_deref(), peer.taken.len()), (Some("2.904"), 3));
+        let (read, failure, _) = report_on(Scripted::new([refusal(2, 904), answer(4), refusal(2, 904)]), &line);
+        let points = read["points"].as_array().unwrap();
+        let numbers = points.iter().map(|point| (point["point"].as_i64().unwrap(), point["ok"].as_bool().unwrap()));
+        assert_eq!(numbers.collect::<Vec<_>>(), [(3, false), (4, true), (5, false)]);
+        let error = &points[0]["error"];
+        assert_eq!(
+            (&error["asked"], &error["code"], &error["kind"]),
+            (&json!("point 3"), &json!("2.904"), &json!("refused"))
+        );
+        let failure = failure.unwrap();
+        assert_eq!((failure.kind.exit(), failure.code.as_deref()), (9, Some("2.904")));
+        assert!(failure.message.starts_with("2 of 3 failed: point 3: the controller refused point-get"), "{failure}");
+        let (_, failure, peer) = report_on(Scripted::new([refusal(2, 904), refusal(2, 904), refusal(2, 904)]), &line);
+        assert_eq!((failure.unwrap().kind.exit(), peer.taken.len()), (3, 3));
+        let (only, _) = run_on(Scripted::new([refusal(2, 904)]), &["point", "get", "3"]);
+        assert!(only.unwrap_err().message.starts_with("point 3: the controller refused point-get: alarm 2.904"));
     }
 
     #[test]
     fn a_controller_that_takes_no_commands_is_not_asked_again() {
-        let (outcome, peer) = run_on(Scripted::new([answer(3), refusal(12, 76)]), &["point", "get", "3..29999"]);
-        let failure = outcome.unwrap_err();
-        assert_eq!((failure.code.as_deref(), peer.taken.len()), (Some("12.76"), 2));
-        assert!(failure.message.ends_with("; it was number 2 of 29997"), "{failure}");
+        let line = ["point", "get", "3..29999"];
+        let (read, failure, peer) = report_on(Scripted::new([answer(3), refusal(12, 76)]), &line);
+        let failure = failure.unwrap();
+        assert_eq!((failure.kind.exit(), failure.code.as_deref(), peer.taken.len()), (9, Some("12.76"), 2));
+        assert!(failure.message.ends_with("; 29995 were not asked for"), "{failure}");
+        assert_eq!((&read["points"][0]["ok"], &read["points"][29_996]["ok"]), (&json!(true), &json!(false)));
+        let (outcome, peer) = run_on(Scripted::new([refusal(12, 76)]), &line);
+        assert_eq!((outcome.unwrap_err().kind, peer.taken.len()), (Kind::Refused, 1));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::{Four, four, mm};
 use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
 use crate::command::yrcx::position::{Position, Unit};
-use crate::command::yrcx::several::{Refused, read_numbers};
+use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
 use crate::command::yrcx::{Family, link};
 use crate::command::{Command, Context, Report, commands};
@@ -16,7 +16,7 @@ use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
-use crate::output::view::{Table, View};
+use crate::output::view::View;
 
 commands! {
     /// What can be done with shifts.
@@ -43,40 +43,42 @@ impl Command for Get {
     const ID: &'static str = "yrcx.shift-data.get";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Shifts, Failure> {
-        let found = read_numbers(context, "shifts", (table::Command::ShiftGet, Key::Shift), &self.shifts).await?;
-        let row = |(shift, values): &(i32, _)| Row {
-            shift: *shift,
-            shift_mm: Position::of(values, Some(Unit::Mm)).position_mm.unwrap_or_default(),
-        };
-        Ok(Shifts { shifts: found.entries.iter().map(row).collect(), refused: found.refused })
+        let nouns = ["shift", "shifts"];
+        let field = (table::Command::ShiftGet, Key::Shift);
+        let of = |values: &_| Way { shift_mm: Position::of(values, Some(Unit::Mm)).position_mm.unwrap_or_default() };
+        let (numbers, shifts) = read_numbers(context, nouns, field, &self.shifts, of).await?;
+        Ok(Shifts { shifts: shifts.rows(numbers.into_iter().map(|shift| Which { shift })) })
     }
 }
 
 /// Shifts.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Shifts {
-    shifts: Vec<Row>,
-    /// Shifts that the controller has not.
-    refused: Vec<Refused>,
+    shifts: Rows<Which, Way>,
+}
+
+/// Which shift.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Which {
+    shift: i32,
 }
 
 /// A shift.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Row {
-    shift: i32,
+struct Way {
     /// Of axes 1 to 4; degrees of what turns.
     shift_mm: [f64; 4],
 }
 
 impl Report for Shifts {
     fn view(&self) -> View {
-        let columns = ["shift", "axis 1 (mm)", "axis 2 (mm)", "axis 3 (mm)", "axis 4 (mm)"];
-        let mut table = Table::new(&columns, "no shifts");
-        for Row { shift, shift_mm } in &self.shifts {
-            let [first, second, third, fourth] = shift_mm.map(mm);
-            table.row([(*shift).into(), first, second, third, fourth]);
-        }
-        View::table(table)
+        let columns = ["axis 1 (mm)", "axis 2 (mm)", "axis 3 (mm)", "axis 4 (mm)"];
+        let name = |which: &Which| [which.shift.into()];
+        View::table(self.shifts.table(["shift"], columns, "no shifts", name, |way| way.shift_mm.map(mm)))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.shifts.failure()
     }
 }
 
@@ -120,7 +122,7 @@ mod tests {
         assert_eq!(words(&set).unwrap(), [example("4.3.4-define")]);
         assert_eq!(read_example("4.3.4-define", &set)["done"], "defined shift 5: 10, -20, 5, -18 mm");
         let read = read_example("4.3.4-reference", &["shift-data", "get", "5"]);
-        assert_eq!(read["shifts"], json!([{"shift": 5, "shift_mm": [10.0, -20.0, 5.0, -18.0]}]));
+        assert_eq!(read["shifts"], json!([{"shift": 5, "ok": true, "shift_mm": [10.0, -20.0, 5.0, -18.0]}]));
     }
 
     #[test]

@@ -108,18 +108,18 @@ impl Board {
         })
     }
 
-    /// Finds assemblies, their sizes, and what makes a connection.
-    pub async fn probe(&mut self) -> Result<Probed, Failure> {
+    /// Finds assemblies, their sizes, and what makes a connection; `identity` is what the board says of itself.
+    pub async fn probe(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
         let thought = self.thought();
         let found = probe::probe(&mut self.client, thought).await.map_err(|trouble| self.failure(trouble))?;
-        Ok(Probed::of(&found, &self.eip))
+        Ok(Probed::of(&found, &self.eip, identity))
     }
 
-    /// Whether a connection as the URL says could be opened, without opening one.
-    pub async fn rehearse(&mut self) -> Result<Probed, Failure> {
+    /// Whether a connection as the URL says could be opened, without opening one; likewise.
+    pub async fn rehearse(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
         let thought = self.thought();
         let found = probe::rehearse(&mut self.client, thought).await.map_err(|trouble| self.failure(trouble))?;
-        Ok(Probed::of(&found, &self.eip))
+        Ok(Probed::of(&found, &self.eip, identity))
     }
 
     /// Takes leave of it.
@@ -316,6 +316,9 @@ pub struct Probed {
     pub attempts: Vec<Attempt>,
     /// What a connection would be made of; null if nothing fits.
     pub connectable: Option<Connectable>,
+    /// Another master owns the outputs now: the board says so of itself, or refuses another owner. Some boards do but one
+    /// of them.
+    pub owned: bool,
 }
 
 /// An assembly.
@@ -365,8 +368,6 @@ pub struct Connectable {
     pub in_size: Option<u16>,
     /// Bytes to the controller, likewise.
     pub out_size: Option<u16>,
-    /// Another master owns it now.
-    pub owned: bool,
     /// The URL that says so.
     pub target: String,
 }
@@ -375,7 +376,9 @@ pub struct Connectable {
 const OWNED: u16 = 0x0106;
 
 impl Probed {
-    fn of(found: &Findings, eip: &target::Eip) -> Self {
+    fn of(found: &Findings, eip: &target::Eip, identity: Option<&Identity>) -> Self {
+        let refuses = found.attempts.iter().any(|attempt| attempt.status.extended.first() == Some(&OWNED));
+        let owned = refuses || identity.is_some_and(|identity| identity.owned);
         let attempts: Vec<Attempt> = found
             .attempts
             .iter()
@@ -403,20 +406,18 @@ impl Probed {
                     target.push_str(&format!("&{name}={size}"));
                 }
             }
-            let last = found.attempts.last();
             Connectable {
                 input,
                 output,
                 config: configuration,
                 in_size: connectable.input_size,
                 out_size: connectable.output_size,
-                owned: last.is_some_and(|last| last.status.extended.first() == Some(&OWNED)),
                 target,
             }
         });
         let assemblies = found.assemblies.iter();
         let assemblies = assemblies.map(|found| Assembly { instance: found.instance, bytes: found.size }).collect();
-        Self { assemblies, attempts, connectable }
+        Self { assemblies, attempts, connectable, owned }
     }
 }
 

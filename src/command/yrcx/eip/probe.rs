@@ -32,7 +32,8 @@ impl Command for Probe {
         context.link.no_unit(NO_UNIT)?;
         let board = context.link.board().await?;
         let identity = board.identity().await?;
-        Ok(Found { identity, probed: board.probe().await? })
+        let probed = board.probe(identity.as_ref()).await?;
+        Ok(Found { identity, probed })
     }
 }
 
@@ -63,7 +64,7 @@ impl Report for Found {
         view = view.and(Section::Table(assemblies)).and(Section::Table(attempts));
         let Some(found) = &self.probed.connectable else { return view };
         let bytes = |size: Option<u16>| Cell::maybe(size.map(|size| format!("{size} bytes")));
-        let owner = if found.owned { warned("another master, at present") } else { "free".into() };
+        let owner = if self.probed.owned { warned("another master, at present") } else { "free".into() };
         view.and(Section::Fields(vec![
             ("from the controller", bytes(found.in_size)),
             ("to the controller", bytes(found.out_size)),

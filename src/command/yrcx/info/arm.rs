@@ -5,6 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::yrcx::Family;
+use crate::command::yrcx::items::{ItemError, verdict};
+use crate::command::yrcx::several::ask_each;
 use crate::command::yrcx::single::shown;
 use crate::command::{Command, Context, Report};
 use crate::controller::yrcx::table;
@@ -26,10 +28,20 @@ impl Command for Arm {
         let link = context.link;
         let selected = link.draft(table::Command::ArmDesignation)?.build()?;
         let current = link.draft(table::Command::ArmStatus)?.build()?;
-        link.rehearse(&[selected.clone(), current.clone()])?;
-        let selected = shown(table::Command::ArmDesignation, &link.run(&selected).await?.values, Key::Arm);
-        let current = shown(table::Command::ArmStatus, &link.run(&current).await?.values, Key::Arm);
-        Ok(Arms { selected, current })
+        let answers = ask_each(link, context.screen, "reading hand systems", &[selected, current]).await?;
+        let commands = [table::Command::ArmDesignation, table::Command::ArmStatus];
+        let mut arms = [None, None];
+        let mut errors = Vec::new();
+        for (((arm, command), name), outcome) in
+            arms.iter_mut().zip(commands).zip(["selected", "current"]).zip(answers.outcomes)
+        {
+            match outcome {
+                Ok(values) => *arm = shown(command, &values, Key::Arm),
+                Err(failure) => errors.push(ItemError::new(format!("{name} hand system"), failure)),
+            }
+        }
+        let [selected, current] = arms;
+        Ok(Arms { selected, current, errors })
     }
 }
 
@@ -40,6 +52,8 @@ pub struct Arms {
     selected: Option<String>,
     /// `right` or `left`: what the arm has.
     current: Option<String>,
+    /// What was not told, and why.
+    errors: Vec<ItemError>,
 }
 
 impl Report for Arms {
@@ -49,18 +63,33 @@ impl Report for Arms {
             ("current", Cell::maybe(self.current.as_deref())),
         ])
     }
+
+    fn failure(&self) -> Option<Failure> {
+        verdict(2, &self.errors)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{example, read_in_turn, words};
+    use crate::command::yrcx::testing::{Reply, Scripted, answer, example, read_in_turn, report_on, words};
 
     #[test]
     fn the_examples_of_the_manual() {
         let ids = ["4.7.9-reference", "4.7.10-reference"];
         assert_eq!(words(&["info", "arm"]).unwrap(), ids.map(example));
-        assert_eq!(read_in_turn(&ids, &["info", "arm"]), json!({"selected": "left", "current": "left"}));
+        assert_eq!(read_in_turn(&ids, &["info", "arm"]), json!({"selected": "left", "current": "left", "errors": []}));
+    }
+
+    #[test]
+    fn one_that_is_refused_does_not_hide_the_other() {
+        let mut no = [0; 16];
+        no[..3].copy_from_slice(&[0x4000, 5, 1]);
+        let script = [Reply::Ends(1, no), Reply::Ends(1, answer("4.7.10-reference"))];
+        let (read, failure, _) = report_on(Scripted::new(script), &["info", "arm"]);
+        assert_eq!((&read["selected"], &read["current"]), (&json!(null), &json!("left")));
+        assert_eq!(read["errors"][0]["asked"], "selected hand system");
+        assert_eq!(failure.unwrap().kind.exit(), 9);
     }
 }

@@ -7,12 +7,12 @@ use serde::Serialize;
 use super::alarm::AlarmReport;
 use crate::command::yrcx::Family;
 use crate::command::yrcx::numbers::Numbers;
-use crate::command::yrcx::several::{Refused, read_numbers};
+use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::{Command, Context, Report};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
-use crate::output::view::{Cell, Table, View};
+use crate::output::view::{Cell, View};
 
 /// Reads messages of the alarm history, one after the other.
 #[derive(Debug, Args)]
@@ -33,45 +33,40 @@ impl Command for Message {
     const ID: &'static str = "yrcx.info.message";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Messages, Failure> {
-        let found =
-            read_numbers(context, "messages", (table::Command::AlarmHistory, Key::History), &self.numbers).await?;
-        let rows = found.entries.iter().map(|(number, values)| Row { number: *number, alarm: AlarmReport::of(values) });
-        let messages = rows.filter(|row| row.alarm.code.is_some()).collect();
-        Ok(Messages { messages, refused: found.refused })
+        let nouns = ["message", "messages"];
+        let field = (table::Command::AlarmHistory, Key::History);
+        let (numbers, messages) = read_numbers(context, nouns, field, &self.numbers, AlarmReport::of).await?;
+        let mut messages = messages.rows(numbers.into_iter().map(|number| Which { number }));
+        messages.retain(|_, alarm| alarm.code.is_some());
+        Ok(Messages { messages })
     }
 }
 
 /// Messages that are there.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Messages {
-    messages: Vec<Row>,
-    /// Numbers that the controller refused to tell.
-    refused: Vec<Refused>,
+    messages: Rows<Which, AlarmReport>,
 }
 
-/// A message.
+/// Which message.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Row {
+struct Which {
     /// Its number in the history.
     number: i32,
-    #[serde(flatten)]
-    alarm: AlarmReport,
 }
 
 impl Report for Messages {
     fn view(&self) -> View {
-        let mut table = Table::new(&["number", "alarm", "meaning", "place", "part"], "no alarms");
-        for Row { number, alarm } in &self.messages {
-            let AlarmReport { code, meaning, place, part, .. } = alarm;
-            table.row([
-                (*number).into(),
-                Cell::maybe(code.as_deref()),
-                Cell::maybe(*meaning),
-                Cell::maybe(place.as_deref()),
-                Cell::maybe(part.as_deref()),
-            ]);
-        }
-        View::table(table)
+        let cells = |AlarmReport { code, meaning, place, part, .. }: &AlarmReport| {
+            let [code, place, part] = [code, place, part].map(|text| Cell::maybe(text.as_deref()));
+            [code, Cell::maybe(*meaning), place, part]
+        };
+        let columns = ["alarm", "meaning", "place", "part"];
+        View::table(self.messages.table(["number"], columns, "no alarms", |which| [which.number.into()], cells))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.messages.failure()
     }
 }
 

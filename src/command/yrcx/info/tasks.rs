@@ -7,14 +7,14 @@ use serde::Serialize;
 use crate::command::ValueKind;
 use crate::command::yrcx::Family;
 use crate::command::yrcx::program;
-use crate::command::yrcx::several::ask_all;
+use crate::command::yrcx::several::{Answers, Rows, Several, ask_each};
 use crate::command::yrcx::single::shown;
 use crate::command::{Command, Context, Report};
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
-use crate::output::view::{Cell, Table, Tone, View};
+use crate::output::view::{Cell, Tone, View};
 
 /// Tasks of one command.
 const HALF: [Key; 8] = [Key::Task1, Key::Task2, Key::Task3, Key::Task4, Key::Task5, Key::Task6, Key::Task7, Key::Task8];
@@ -50,24 +50,39 @@ impl Chosen {
         self.tasks.is_empty() || self.tasks.iter().any(|Span(first, last)| (*first..=*last).contains(&task))
     }
 
-    /// Asks for the halves that have one of them, and returns the tasks with the half they are in.
-    async fn read(
+    /// Asks for the halves that have one of them, and returns the tasks with what the half says that they are in.
+    async fn read<V>(
         &self,
         context: Context<'_, Family>,
         command: table::Command,
-    ) -> Result<Vec<(usize, Key, Values)>, Failure> {
+        of: impl Fn(&Values, Key) -> V,
+    ) -> Result<Rows<Which, V>, Failure> {
         let Context { link, screen, .. } = context;
         let halves: Vec<usize> =
             (0..2).filter(|half| (1..=HALF.len()).any(|place| self.has(half * HALF.len() + place))).collect();
         let order = |half: &usize| Ok(link.draft(command)?.with(Key::TaskRange, *half == 1).build()?);
         let orders = halves.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
-        let answers = ask_all(link, screen, "reading tasks", &orders).await?;
-        let of_half = |(half, values): (&usize, &Values)| {
-            let tasks = (half * HALF.len() + 1..).zip(HALF);
-            tasks.map(|(task, key)| (task, key, values.clone())).collect::<Vec<_>>()
+        let answers = ask_each(link, screen, "reading tasks", &orders).await?;
+        let task = |half: usize, place: usize| half * HALF.len() + place + 1;
+        let told = |half: &usize| format!("tasks {} to {}", task(*half, 0), task(*half, HALF.len() - 1));
+        if let ([half], [Err(failure)]) = (&halves[..], &answers.outcomes[..]) {
+            return Err(Failure { message: format!("{}: {}", told(half), failure.message), ..failure.clone() });
+        }
+        // What a half came to is what each of its tasks did.
+        let asked = &halves[..answers.asked];
+        let places: Vec<(usize, usize)> =
+            halves.iter().flat_map(|half| (0..HALF.len()).map(|at| (*half, at))).collect();
+        let places: Vec<(usize, usize)> = places.into_iter().filter(|(half, at)| self.has(task(*half, *at))).collect();
+        let outcome = |half: usize| {
+            let at = halves.iter().position(|other| *other == half).unwrap_or_default();
+            answers.outcomes[at].clone()
         };
-        let tasks = halves.iter().zip(&answers).flat_map(of_half);
-        Ok(tasks.filter(|(task, ..)| self.has(*task)).collect())
+        let outcomes = places.iter().map(|(half, _)| outcome(*half)).collect();
+        let count = places.iter().filter(|(half, _)| asked.contains(half)).count();
+        let names = places.iter().map(|(half, at)| format!("task {}", task(*half, *at)));
+        let of_task = |place: usize, values: &Values| of(values, HALF[places[place].1]);
+        let several = Several::of(names, Answers { outcomes, asked: count }, of_task)?;
+        Ok(several.rows(places.iter().map(|(half, at)| Which { task: task(*half, *at) })))
     }
 }
 
@@ -84,12 +99,11 @@ impl Command for Tasks {
     const ID: &'static str = "yrcx.info.tasks";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<States, Failure> {
-        let tasks = self.chosen.read(context, table::Command::TaskStatus).await?;
-        let states = tasks.iter().filter_map(|(task, key, values)| {
-            Some(State { task: *task, state: shown(table::Command::TaskStatus, values, *key)? })
-        });
-        let is_wanted = |state: &State| !self.chosen.tasks.is_empty() || state.state != NO_TASK;
-        Ok(States { tasks: states.filter(is_wanted).collect() })
+        let command = table::Command::TaskStatus;
+        let of = |values: &Values, key| State { state: shown(command, values, key).unwrap_or_default() };
+        let mut tasks = self.chosen.read(context, command, of).await?;
+        tasks.retain(|_, state| !self.chosen.tasks.is_empty() || state.state != NO_TASK);
+        Ok(States { tasks })
     }
 }
 
@@ -98,26 +112,34 @@ const NO_TASK: &str = "no task";
 /// Tasks.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct States {
-    tasks: Vec<State>,
+    tasks: Rows<Which, State>,
+}
+
+/// Which task.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Which {
+    /// 1 to 16.
+    task: usize,
 }
 
 /// What a task does.
 #[derive(Debug, Serialize, JsonSchema)]
 struct State {
-    /// 1 to 16.
-    task: usize,
     /// `execution`, `stop`, `suspend`, `standby`, or `no task`.
     state: String,
 }
 
 impl Report for States {
     fn view(&self) -> View {
-        let mut table = Table::new(&["task", "state"], "no tasks");
-        for State { task, state } in &self.tasks {
+        let cells = |State { state }: &State| {
             let tone = if state == "execution" { Tone::Good } else { Tone::Plain };
-            table.row([(*task).into(), Cell::from(state.as_str()).tone(tone)]);
-        }
-        View::table(table)
+            [Cell::from(state.as_str()).tone(tone)]
+        };
+        View::table(self.tasks.table(["task"], ["state"], "no tasks", |which| [which.task.into()], cells))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.tasks.failure()
     }
 }
 
@@ -134,31 +156,25 @@ impl Command for Line {
     const ID: &'static str = "yrcx.info.line";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Lines, Failure> {
-        let tasks = self.chosen.read(context, table::Command::TaskLines).await?;
-        let lines = tasks.iter().map(|(task, key, values)| {
-            let line = values.int(*key).filter(|line| *line != 0).map(program::Line::of);
-            TaskLine {
-                task: *task,
-                line: line.map(|line| line.line),
-                in_common: line.is_some_and(|line| line.in_common),
-            }
-        });
-        let is_wanted = |line: &TaskLine| !self.chosen.tasks.is_empty() || line.line.is_some();
-        Ok(Lines { tasks: lines.filter(is_wanted).collect() })
+        let of = |values: &Values, key| {
+            let line = values.int(key).filter(|line| *line != 0).map(program::Line::of);
+            TaskLine { line: line.map(|line| line.line), in_common: line.is_some_and(|line| line.in_common) }
+        };
+        let mut tasks = self.chosen.read(context, table::Command::TaskLines, of).await?;
+        tasks.retain(|_, line| !self.chosen.tasks.is_empty() || line.line.is_some());
+        Ok(Lines { tasks })
     }
 }
 
 /// Lines of tasks.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Lines {
-    tasks: Vec<TaskLine>,
+    tasks: Rows<Which, TaskLine>,
 }
 
 /// Where a task stands.
 #[derive(Debug, Serialize, JsonSchema)]
 struct TaskLine {
-    /// 1 to 16.
-    task: usize,
     /// From 1; null if there is no such task.
     line: Option<i32>,
     /// Whether it is a line of the COMMON program.
@@ -167,12 +183,15 @@ struct TaskLine {
 
 impl Report for Lines {
     fn view(&self) -> View {
-        let mut table = Table::new(&["task", "line"], "no tasks");
-        for TaskLine { task, line, in_common } in &self.tasks {
+        let cells = |TaskLine { line, in_common }: &TaskLine| {
             let told = line.map(|line| program::Line { line, in_common: *in_common }.told());
-            table.row([(*task).into(), Cell::number(told.unwrap_or_else(|| "-".to_owned()))]);
-        }
-        View::table(table)
+            [Cell::number(told.unwrap_or_else(|| "-".to_owned()))]
+        };
+        View::table(self.tasks.table(["task"], ["line"], "no tasks", |which| [which.task.into()], cells))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.tasks.failure()
     }
 }
 
@@ -192,7 +211,7 @@ mod tests {
         assert_eq!(states, ["execution", "execution", none, none, "suspend", none, none, none]);
         assert_eq!(words(&["info", "line", "1..8"]).unwrap(), [example("4.7.6-reference")]);
         let read = read_example("4.7.6-reference", &["info", "line", "2-3,5"]);
-        let task = |task, line: Option<i32>| json!({"task": task, "line": line, "in_common": false});
+        let task = |task, line: Option<i32>| json!({"task": task, "ok": true, "line": line, "in_common": false});
         assert_eq!(read["tasks"], json!([task(2, Some(19)), task(3, None), task(5, Some(99))]));
     }
 

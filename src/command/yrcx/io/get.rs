@@ -4,20 +4,21 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Family, State, readable, table};
+use super::{Family, Readable, State, WordState, readable, table, word_table};
 use crate::command::ValueKind;
 use crate::command::{Command, Context, Need, Report};
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
-use crate::output::view::View;
+use crate::output::view::{Section, View};
 
-/// Reads signals.
+/// Reads signals and general-purpose words.
 #[derive(Debug, Args)]
+#[command(after_help = "Words are those of remote commands and their answers, too, as long as those last.")]
 pub struct Get {
-    /// Names or numbers, as in servo-on, 20 or SO(157); SI20 for what the controller is shown. All dedicated outputs, and
-    /// the general-purpose ones that are on, unless given
+    /// Names or numbers, as in servo-on, 20 or SO(157); SI20 for what the controller is shown; SOW2, SOD4, SIW2, SID4 for
+    /// words. All dedicated outputs, and the general-purpose ones that are on, unless given
     #[arg(value_name = "SIGNAL", value_parser = readable, add = ValueKind::YrcxOutput)]
-    signals: Vec<Signal>,
+    signals: Vec<Readable>,
 }
 
 impl Command for Get {
@@ -41,24 +42,33 @@ impl Command for Get {
         }
         let given = given.unwrap_or_default();
         let shown = context.link.look().await?;
-        let of = |signal: Signal| State::of(signal, if signal.side() == Side::Input { &given } else { &shown });
-        let signals = if self.signals.is_empty() {
-            Signal::all(Side::Output).filter(|signal| !signal.is_general() || signal.is_on(&shown)).map(of).collect()
-        } else {
-            self.signals.iter().copied().map(of).collect()
-        };
-        Ok(States { signals })
+        let image = |side| if side == Side::Input { &given } else { &shown };
+        let mut states = States { signals: Vec::new(), words: Vec::new() };
+        if self.signals.is_empty() {
+            let told = Signal::all(Side::Output).filter(|signal| !signal.is_general() || signal.is_on(&shown));
+            states.signals = told.map(|signal| State::of(signal, &shown)).collect();
+        }
+        for readable in &self.signals {
+            match *readable {
+                Readable::Signal(signal) => states.signals.push(State::of(signal, image(signal.side()))),
+                Readable::Word(register) => states.words.push(WordState::of(register, image(register.side()))),
+            }
+        }
+        Ok(states)
     }
 }
 
-/// Signals.
+/// Signals and words.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct States {
     signals: Vec<State>,
+    words: Vec<WordState>,
 }
 
 impl Report for States {
     fn view(&self) -> View {
-        View::table(table(&self.signals, "no signals"))
+        let signals = (!self.signals.is_empty() || self.words.is_empty()).then(|| table(&self.signals, "no signals"));
+        let words = (!self.words.is_empty()).then(|| word_table(&self.words));
+        View { sections: signals.into_iter().chain(words).map(Section::Table).collect() }
     }
 }

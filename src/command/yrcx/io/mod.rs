@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::Family;
 use crate::command::{AtDesk, commands};
 use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::register::Register;
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::output::view::{Cell, Table};
 
@@ -19,7 +20,7 @@ commands! {
     pub enum Io of Family {
         /// Read signals
         Get(get::Get),
-        /// Switch inputs of the controller: servo-on=on, 20=off
+        /// Switch inputs of the controller: servo-on=on, 20=off, SIW2=5
         Set(set::Set),
         /// Switch an input of the controller on and off again
         Pulse(set::Pulse),
@@ -30,9 +31,41 @@ commands! {
     }
 }
 
+/// A signal or a word as typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Readable {
+    Signal(Signal),
+    Word(Register),
+}
+
+impl Readable {
+    fn side(self) -> Side {
+        match self {
+            Self::Signal(signal) => signal.side(),
+            Self::Word(register) => register.side(),
+        }
+    }
+}
+
+impl std::fmt::Display for Readable {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Signal(signal) => signal.fmt(f),
+            Self::Word(register) => register.fmt(f),
+        }
+    }
+}
+
+fn readable(text: &str) -> Result<Readable, String> {
+    match Register::parse(text) {
+        Some(register) => register.map(Readable::Word),
+        None => signal(text).map(Readable::Signal),
+    }
+}
+
 /// A signal as typed: `servo-on`, `20` and `SO(20)` are outputs of the controller, `SI20` is an input, and so is what only
 /// an input is called, such as `stop`.
-fn readable(text: &str) -> Result<Signal, String> {
+fn signal(text: &str) -> Result<Signal, String> {
     let is_input = text.get(..2).is_some_and(|prefix| prefix.eq_ignore_ascii_case("SI"));
     let side = if is_input { Side::Input } else { Side::Output };
     Signal::parse(side, text).or_else(|error| input(text).map_err(|_| error.to_string()))
@@ -70,6 +103,36 @@ impl State {
             meaning: dedicated.map(|dedicated| dedicated.text),
         }
     }
+}
+
+/// A general-purpose word and what it holds.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+struct WordState {
+    /// `SOW(2)`, `SID(4)`.
+    word: String,
+    /// Without a sign.
+    value: u32,
+    /// The same, as in `0x0005`.
+    hex: String,
+    /// A remote command or its answer has the words now: this is a part of it.
+    in_command: bool,
+}
+
+impl WordState {
+    fn of(register: Register, image: &Image) -> Self {
+        let words = image.command();
+        let value = register.read(&words);
+        Self { word: register.to_string(), value, hex: register.hex(value), in_command: words[0] != 0 }
+    }
+}
+
+fn word_table(words: &[WordState]) -> Table {
+    let mut table = Table::new(&["word", "value", "hex", "of a remote command"], "no words");
+    for WordState { word, value, hex, in_command } in words {
+        let in_command = if *in_command { "yes" } else { "no" };
+        table.row([word.as_str().into(), (*value).into(), hex.as_str().into(), in_command.into()]);
+    }
+    table
 }
 
 fn table(states: &[State], empty: &'static str) -> Table {

@@ -5,41 +5,80 @@ use clap::Args;
 use super::{Family, input, named};
 use crate::command::ValueKind;
 use crate::command::orders::Done;
+use crate::command::yrcx::link::Link;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yrcx::procedure::Procedure;
-use crate::controller::yrcx::signal::Signal;
+use crate::controller::yrcx::register::Register;
+use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
 
-/// Switches inputs of the controller, one after the other.
+/// Switches inputs of the controller, one after the other, and sets general-purpose words.
 #[derive(Debug, Args)]
-#[command(after_help = "Inputs go back to rest when the connection ends. Two edges have 100 ms and more between them.")]
+#[command(
+    after_help = "Inputs go back to rest, and words to 0, when the connection ends: `armctl session open` keeps it. Two \
+    edges have 100 ms and more between them; words that follow each other change at once. A remote command has the words \
+    for itself as long as it lasts, and puts them back."
+)]
 pub struct Set {
-    /// Name or number and state, as in servo-on=on or 20=off
+    /// Name or number and state, as in servo-on=on or 20=off; or a word and its value, as in SIW2=5 or SID4=0x1F
     #[arg(value_name = "SIGNAL=STATE", required = true, value_parser = change, add = ValueKind::YrcxInputState)]
     changes: Vec<Change>,
 }
 
-/// An input and what to switch it to.
+/// An input and what to switch it to, or a word and what to set it to.
 #[derive(Debug, Clone, Copy)]
-struct Change {
-    signal: Signal,
-    on: bool,
+enum Change {
+    Signal { signal: Signal, on: bool },
+    Word { register: Register, value: u32 },
 }
 
 fn change(text: &str) -> Result<Change, String> {
     let (signal, state) = text.split_once('=').ok_or("say what to switch it to, as in servo-on=on")?;
+    if let Some(register) = Register::parse(signal) {
+        let register = register?;
+        if register.side() == Side::Output {
+            return Err(format!("{register} is the controller's to set; SIW and SID are set from here"));
+        }
+        return Ok(Change::Word { register, value: register.value(state)? });
+    }
     let on = match state {
         "on" | "1" => true,
         "off" | "0" => false,
         _ => return Err(format!("a signal is on or off, not '{state}'")),
     };
-    Ok(Change { signal: input(signal)?, on })
+    Ok(Change::Signal { signal: input(signal)?, on })
 }
 
 impl Change {
     fn told(self) -> String {
-        format!("{} {}", named(self.signal), if self.on { "on" } else { "off" })
+        match self {
+            Self::Signal { signal, on } => format!("{} {}", named(signal), if on { "on" } else { "off" }),
+            Self::Word { register, value } => format!("{register} = {value}"),
+        }
+    }
+
+    fn risk(self) -> Risk {
+        match self {
+            Self::Signal { signal, on } => signal.risk(on),
+            Self::Word { .. } => Risk::Write,
+        }
+    }
+
+    /// The word, if it is one.
+    fn word(self) -> Option<(Register, u32)> {
+        match self {
+            Self::Signal { .. } => None,
+            Self::Word { register, value } => Some((register, value)),
+        }
+    }
+
+    /// Does it, or all of these words at once.
+    async fn carry_out(together: &[Self], link: &mut Link) -> Result<(), Failure> {
+        if let [Self::Signal { signal, on }] = together {
+            return link.carry_out(switching(Procedure::set(*signal, *on))?).await.map(|_| ());
+        }
+        link.set_words(&together.iter().filter_map(|change| change.word()).collect::<Vec<_>>()).await
     }
 }
 
@@ -49,7 +88,7 @@ impl Command for Set {
     const ID: &'static str = "yrcx.io.set";
 
     fn risk(&self) -> Risk {
-        self.changes.iter().map(|change| change.signal.risk(change.on)).max().unwrap_or(Risk::Write)
+        self.changes.iter().map(|change| change.risk()).max().unwrap_or(Risk::Write)
     }
 
     fn intent(&self) -> String {
@@ -57,8 +96,14 @@ impl Command for Set {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
-        for change in &self.changes {
-            context.link.carry_out(switching(Procedure::set(change.signal, change.on))?).await?;
+        let mut done = 0;
+        for together in self.changes.chunk_by(|one, next| one.word().is_some() && next.word().is_some()) {
+            let before = &self.changes[..done];
+            Change::carry_out(together, context.link).await.map_err(|failure| match before {
+                [] => failure,
+                _ => Failure { message: format!("{}; switched before: {}", failure.message, told(before)), ..failure },
+            })?;
+            done += together.len();
         }
         Ok(Done::new(format!("switched {}", told(&self.changes))))
     }
@@ -105,7 +150,7 @@ fn switching(procedure: Option<Procedure>) -> Result<Procedure, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::yrcx::testing::{frames, intent, objection, risk};
+    use crate::command::yrcx::testing::{Bench, Reply, Scripted, frames, intent, objection, risk};
     use crate::controller::Risk;
 
     #[test]
@@ -119,6 +164,36 @@ mod tests {
         assert_eq!(bits[1][..2], ["0x0001", "0x0001"]);
         assert_eq!((bits[2][6], bits[3][1]), ("0x8000", "0x0000"));
         assert_eq!(frames(&["io", "pulse", "alarm-reset"]).unwrap().len(), 2);
+    }
+
+    #[test]
+    fn words_that_follow_each_other_change_at_once() {
+        let noted = frames(&["io", "set", "SIW2=5", "SID4=-2", "20=on", "siw(2)=0x10"]).unwrap();
+        assert_eq!(noted.len(), 3);
+        assert_eq!(
+            noted[0]["wi"].as_array().unwrap()[..6],
+            ["0x0000", "0x0000", "0x0005", "0x0000", "0xFFFE", "0xFFFF"]
+        );
+        assert_eq!(
+            (&noted[0]["about"], &noted[2]["wi"][2]),
+            (&"SIW(2) = 5, SID(4) = 4294967294".into(), &"0x0010".into())
+        );
+        assert_eq!(risk(&["io", "set", "SIW2=5"]), Risk::Write);
+        assert_eq!(intent(&["io", "set", "SIW2=5", "20=on"]), "switch SIW(2) = 5, SI(20) on");
+    }
+
+    #[test]
+    fn words_stay_beside_remote_commands() {
+        let mut place = [0; 16];
+        place[0] = 0x0200;
+        let mut bench = Bench::new(Scripted::new([Reply::Ends(1, place)]));
+        bench.run(&["io", "set", "SIW2=5"]).unwrap();
+        let shown = |bench: &mut Bench| bench.run(&["io", "get", "SIW2"]).unwrap()["words"][0].clone();
+        assert_eq!(shown(&mut bench)["value"], 5);
+        bench.run(&["info", "position"]).unwrap();
+        let word = shown(&mut bench);
+        assert_eq!((&word["value"], &word["hex"], &word["in_command"]), (&5.into(), &"0x0005".into(), &false.into()));
+        assert_eq!(bench.into_peer().taken[0][2], 0, "the command had the words for itself");
     }
 
     #[test]
@@ -139,6 +214,9 @@ mod tests {
             (&["io", "set", "20=maybe"], "on or off"),
             (&["io", "set", "SI(02)=on"], "reserved"),
             (&["io", "pulse", "cpu-ok"], "is no signal"),
+            (&["io", "set", "SOW2=5"], "the controller's to set"),
+            (&["io", "set", "SIW1=5"], "belong to remote commands"),
+            (&["io", "set", "SIW2=65536"], "does not fit SIW(2)"),
         ] {
             let objection = objection(line);
             assert!(objection.contains(part), "{line:?}: {objection}");

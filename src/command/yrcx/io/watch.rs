@@ -1,5 +1,7 @@
 //! `yrcx io watch`: each change, as it comes.
 
+use std::time::Duration;
+
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -11,13 +13,17 @@ use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
 use crate::output::view::View;
+use crate::settings::duration;
 
-/// Tells how signals stand, and then each change, until Ctrl-C or so many reports as --count says.
+/// Tells how signals stand, and then each change, until Ctrl-C, --for, or so many reports as --count says.
 #[derive(Debug, Args)]
 pub struct Watch {
     /// Names or numbers of outputs of the controller, as in servo-on or 20; all unless given
     #[arg(value_name = "SIGNAL", value_parser = output, add = ValueKind::YrcxOutput)]
     signals: Vec<Signal>,
+    /// How long to go on
+    #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
+    within: Option<Duration>,
 }
 
 fn output(text: &str) -> Result<Signal, String> {

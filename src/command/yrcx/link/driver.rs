@@ -4,14 +4,16 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::{LEAVE_WITHIN, Link, Transport};
-use crate::command::yrcx::hold;
+use super::{Given, LEAVE_WITHIN, Link, Transport};
+use crate::command::yrcx::{hold, refusal};
 use crate::controller::Now;
-use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::answer::Answer;
+use crate::controller::yrcx::image::{Image, Words};
 use crate::controller::yrcx::order::Order;
+use crate::controller::yrcx::register::general;
 use crate::controller::yrcx::sequence::{self, Sequence};
-use crate::controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome};
-use crate::controller::yrcx::signal::output;
+use crate::controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome, Silence};
+use crate::controller::yrcx::signal::{input, output};
 use crate::controller::yrcx::table::Pace;
 use crate::failure::{Failure, Kind};
 use crate::transport::image::Event;
@@ -43,15 +45,21 @@ impl Link {
     pub(super) async fn start(&mut self, order: &Order) -> Result<(), Failure> {
         self.catch_up().await?;
         self.claim_motion(order.risk()).await?;
-        self.end_earlier().await?;
-        self.take_turn().await?;
-        self.end_others().await?;
+        self.have_words().await?;
+        self.words = general(&self.output.next.command());
         let mut exchange = Exchange::new(order.clone(), self.policy);
         if let Some(image) = &self.input {
             exchange.handle(self.now(), image);
         }
         self.exchange = Some(exchange);
         Ok(())
+    }
+
+    /// Has the words of remote commands for itself: nothing is under way there.
+    pub(super) async fn have_words(&mut self) -> Result<(), Failure> {
+        self.end_earlier().await?;
+        self.take_turn().await?;
+        self.end_others().await
     }
 
     /// Sees to it that a command that was left alone has ended, and tells if it did not end well.
@@ -73,7 +81,11 @@ impl Link {
         }
         if let Some(outcome) = self.ended.take().filter(|outcome| outcome.ended != Ended::Stopped) {
             let row = outcome.row;
-            if let Err(failure) = self.given(row, outcome).and_then(|given| given.done(row)) {
+            let refused = |given: Given| match given.answer {
+                Answer::Refused { alarm, .. } => Err(refusal::refused(row, alarm)),
+                Answer::Done(_) | Answer::Running(_) => Ok(()),
+            };
+            if let Err(failure) = self.given(row, outcome).and_then(refused) {
                 self.screen.note(&format!("warning: {failure}"));
             }
         }
@@ -84,10 +96,23 @@ impl Link {
     pub(super) async fn until_ended(&mut self) -> Result<Outcome, Failure> {
         loop {
             if let Some(outcome) = self.ended.take() {
+                self.await_link(&outcome).await;
                 return Ok(outcome);
             }
             self.turn().await?;
         }
+    }
+
+    /// After a motion whose link was lost, waits for a while until it is up again: how the stop input stands then is
+    /// worth knowing.
+    pub(super) async fn await_link(&mut self, outcome: &Outcome) {
+        let moves = matches!(outcome.row.pace, Pace::Motion | Pace::Jog);
+        if !moves || outcome.ended != Ended::OutcomeUnknown(Silence::LinkLost) {
+            return;
+        }
+        let until = Instant::now() + self.timeout;
+        // What goes wrong meanwhile is told by whatever comes next.
+        while !self.is_up && Instant::now() < until && self.turn_until(until).await.is_ok() {}
     }
 
     /// Begins a procedure.
@@ -189,6 +214,7 @@ impl Link {
                 Next::Wait(until) => due = due.min(until),
                 Next::Done(outcome) => {
                     self.exchange = None;
+                    self.output.next.set_command(&self.words);
                     self.ended = Some(outcome);
                     self.is_over = true;
                     has_ended = true;
@@ -237,13 +263,15 @@ impl Link {
             Event::Image(bytes) => self.take(now, &bytes)?,
             Event::Lost(why) => self.lost(now, &why),
             Event::Reopened => {
-                self.screen.note(&format!("{}: the link is open again", self.label));
                 self.is_up = true;
                 if self.is_shared {
                     self.shown_now();
                 } else {
                     self.output.next = hold::after_loss(&self.output.next);
                 }
+                let stop = if input::STOP.is_on(&self.output.next) { "on" } else { "off" };
+                let stop = if self.is_owner { format!("; the stop input SI(06) is {stop}") } else { String::new() };
+                self.screen.note(&format!("{}: the link is open again{stop}", self.label));
             }
             Event::Shown(change) => self.shown_by_others(now, &change),
         }
@@ -275,6 +303,7 @@ impl Link {
         self.shown = None;
         self.input = None;
         self.output.unlinked();
+        self.words = Words::default();
         if let Some(exchange) = &mut self.exchange {
             exchange.lost(now);
         }

@@ -53,7 +53,7 @@ impl Link {
             Answer::Refused { alarm: STOP_INPUT, positions } if is_stopped => {
                 Ok(Done { values: positions, elapsed: given.elapsed })
             }
-            _ => given.done(order.row()),
+            _ => given.done(order),
         });
         match (cut, done) {
             (None, done) => done,
@@ -90,6 +90,7 @@ impl Link {
             let message = format!("{why}the axis may still move: nothing reaches the controller any more");
             return Err(Failure::new(Kind::OutcomeUnknown, message).hint("press the emergency stop"));
         };
+        self.await_link(&outcome).await;
         self.bequeath_stop(false);
         self.count(order, &outcome);
         Ok(Seen { outcome, is_stopped, cut })

@@ -29,7 +29,7 @@ impl Link {
         let mut held: Option<(Done, Instant)> = None;
         loop {
             if let Some(outcome) = self.ended.take() {
-                return self.given(order.row(), outcome)?.done(order.row());
+                return self.given(order.row(), outcome)?.done(order);
             }
             let now = self.now();
             if let Some(exchange) = &mut self.exchange

@@ -6,7 +6,7 @@ use super::{Link, Transport};
 use crate::command::attach::hindered;
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::describe::{answer_summary, command_summary};
-use crate::controller::yrcx::image::{Image, Output, Words};
+use crate::controller::yrcx::image::{Image, Output};
 use crate::controller::{Now, Risk};
 use crate::failure::{Failure, Kind};
 use crate::settings::Robot;
@@ -85,7 +85,7 @@ impl Link {
     /// Sees to it that a command that another client left to itself has ended: to take it away would stop what it does.
     pub(super) async fn end_others(&mut self) -> Result<(), Failure> {
         let words = self.output.next.command();
-        if !self.is_shared || self.exchange.is_some() || words == Words::default() {
+        if !self.is_shared || self.exchange.is_some() || words[0] == Status::Ready.word() {
             return Ok(());
         }
         let until = Instant::now() + self.policy.accept;

@@ -2,7 +2,7 @@
 
 use clap::{ArgGroup, Args};
 
-use super::{Motion, Moved};
+use super::{Motion, Moved, Target};
 use crate::command::yrcx::arguments::Pace;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
@@ -107,6 +107,11 @@ impl Motion for Drive {
         self.pace.told()
     }
 
+    fn targets(&self) -> Vec<Target> {
+        let Destination { to, to_pulse, .. } = &self.destination;
+        Target::one(&self.axis, to.as_ref(), to_pulse.as_ref())
+    }
+
     fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
         moved
     }
@@ -157,6 +162,11 @@ impl Motion for Drivei {
 
     fn manner(&self) -> String {
         self.pace.told()
+    }
+
+    fn targets(&self) -> Vec<Target> {
+        let Distance { by, by_pulse, .. } = &self.distance;
+        Target::one(&self.axis, by.as_ref(), by_pulse.as_ref())
     }
 
     fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {

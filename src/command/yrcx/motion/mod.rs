@@ -19,15 +19,16 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use super::arguments::{Ending, Which};
+use super::arguments::{Axes, Ending, Which};
 use super::link::{Done, Link};
 use super::position::{Position, Unit};
+use crate::command::dry_run::{Reason, unknown};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table;
-use crate::controller::yrcx::value::Values;
-use crate::failure::Failure;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::{Section, View};
 
@@ -67,6 +68,16 @@ pub trait Motion: Args {
 
     /// Which axes, and how fast: `all axes, at 50 %`.
     fn manner(&self) -> String;
+
+    /// Axes that are not named and are sent where they are, so that they stay (4.2.1).
+    fn stays(&self) -> Vec<usize> {
+        Vec::new()
+    }
+
+    /// The axes with their coordinates or distances, as far as they were typed.
+    fn targets(&self) -> Vec<Target> {
+        Vec::new()
+    }
 
     /// In which unit to report the position, where the command line does not say.
     fn usual_unit(&self) -> Option<Unit> {
@@ -116,15 +127,44 @@ impl<M: Motion> Command for Moving<M> {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<M::Report, Failure> {
         let draft = context.link.draft(self.motion.command())?;
-        let order = Ending::put(self.motion.fill(draft)?, self.unit()).build()?;
+        let draft = Ending::put(self.motion.fill(draft)?, self.unit());
+        let order = staying(context.link, draft, &self.motion.stays()).await?;
         let [_, moving, moved] = M::VERB;
         let object = self.object();
         let doing = format!("{moving} {object}");
         let done = go(context.link, context.screen, &order, self.ending.no_wait, &doing).await?;
         let has_done = format!("{moved} {object}");
         let report = Moved::new(if done.is_some() { has_done } else { doing }, done.as_ref(), self.unit());
+        let report = Moved { targets: self.motion.targets(), ..report };
         Ok(self.motion.report(report, done.as_ref().map(|done| &done.values)))
     }
+}
+
+/// The order with these axes sent where they are: a SCARA moves them to the target position although they are not named.
+async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order, Failure> {
+    let order = draft.clone().build()?;
+    if axes.is_empty() {
+        return Ok(order);
+    }
+    let present = link.draft(table::Command::PositionMm)?.build()?;
+    if link.is_dry() {
+        let names = axes.iter().map(usize::to_string).collect::<Vec<_>>().join(" and ");
+        link.foresee(&present, "where the robot is");
+        let one = draft.clone();
+        let keys: Vec<Key> = axes.iter().filter_map(|axis| Key::AXES.get(axis - 1).copied()).collect();
+        let other = keys.into_iter().fold(one, |draft, key| draft.with(key, -1)).build()?;
+        let kept = format!("the present position of what is not named: axis {names}");
+        link.foresee_depending(&order, &other, Reason::default().depending_on(&kept));
+        return Err(unknown());
+    }
+    let not_moved = |failure: Failure| Failure {
+        message: format!("nothing was moved: where the axes are that are not named is not known: {}", failure.message),
+        ..failure.hint("name axes 1 and 2 as well, or use `yrcx drive`")
+    };
+    let place = link.run(&present).await.map_err(not_moved)?.values.axes();
+    let place = place.ok_or_else(|| not_moved(Failure::new(Kind::Malformed, "the answer has no position")))?;
+    let keys = axes.iter().filter_map(|axis| Some((*Key::AXES.get(axis - 1)?, *place.get(axis - 1)?)));
+    Ok(keys.fold(draft, |draft, (key, steps)| draft.with(key, steps)).build()?)
 }
 
 /// Carries out a motion and waits for its end, unless that is not wanted.
@@ -180,9 +220,46 @@ pub struct Moved {
     ended: bool,
     /// From sending the command to its end; null unless it has ended.
     elapsed_ms: Option<u64>,
+    /// Where each axis was sent, or by how much, in the order typed; empty for points.
+    targets: Vec<Target>,
     /// Where the robot is at the end, if that was asked for.
     #[serde(flatten)]
     position: Position,
+}
+
+/// Where an axis is sent, or by how much.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Target {
+    /// 1 to 4.
+    axis: usize,
+    /// Millimetres, degrees of what turns; null where it is pulses.
+    mm: Option<f64>,
+    /// Pulses; null where it is mm.
+    pulses: Option<i32>,
+}
+
+impl Target {
+    /// Of numbers in mm, or of those in pulses.
+    fn of(axes: &Axes, mm: &[String], pulses: &[String]) -> Vec<Self> {
+        let pairs = axes.pairs(if mm.is_empty() { pulses } else { mm }).unwrap_or_default();
+        let target = |(axis, text): (usize, &str)| match mm {
+            [] => Self { axis, mm: None, pulses: text.parse().ok() },
+            _ => Self { axis, mm: text.parse().ok(), pulses: None },
+        };
+        pairs.into_iter().map(target).collect()
+    }
+
+    /// Of one axis; none where it goes by a point.
+    fn one(axis: &str, mm: Option<&String>, pulses: Option<&String>) -> Vec<Self> {
+        let number = |text: &String| text.parse().ok();
+        let target = axis.parse().ok().filter(|_| mm.or(pulses).is_some());
+        let target = target.map(|axis| Self {
+            axis,
+            mm: mm.and_then(|text| text.parse().ok()),
+            pulses: pulses.and_then(number),
+        });
+        target.into_iter().collect()
+    }
 }
 
 impl Moved {
@@ -190,6 +267,7 @@ impl Moved {
         Self {
             done,
             ended: answer.is_some(),
+            targets: Vec::new(),
             elapsed_ms: answer.map(|answer| u64::try_from(answer.elapsed.as_millis()).unwrap_or(u64::MAX)),
             position: answer.map(|answer| Position::of(&answer.values, unit)).unwrap_or_default(),
         }

@@ -2,8 +2,9 @@
 
 use clap::{ArgGroup, Args};
 
-use super::{Motion, Moved};
+use super::{Motion, Moved, Target};
 use crate::command::yrcx::arguments::{Arch, Axes, Hand, Pace, Ramps};
+use crate::command::yrcx::position::Unit;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
@@ -12,17 +13,18 @@ use crate::failure::Failure;
 /// Moves to a point, or to coordinates.
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("destination").required(true), after_help = "Without --speed the robot moves at the program speed. \
-    While it moves the controller tells that it does and no position: it carries out one remote command at a time.")]
+    A SCARA takes axes 1 and 2 along even if only others are named (4.2.1): with --to they are sent where they are, which \
+    is asked first, so that they stay; with --point they may go to the point.")]
 pub struct Move {
     /// Point to move to; two points of an arc with --circular, as in 100,101
     #[arg(long, value_name = "POINT", group = "destination", value_delimiter = ',')]
     point: Vec<String>,
-    /// Coordinates of the axes in mm, of all four or of those of --axes
-    #[arg(long, value_name = "MM,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
+    /// Coordinates of the axes in mm, of all four, in the order of --axes, or named: 1=300,3=10
+    #[arg(long, value_name = "[AXIS=]MM,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
         conflicts_with_all = ["linear", "circular", "peak"])]
     to: Vec<String>,
     /// Coordinates of the axes in pulses, likewise
-    #[arg(long, value_name = "PULSES,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
+    #[arg(long, value_name = "[AXIS=]PULSES,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
         conflicts_with_all = ["linear", "circular", "peak"])]
     to_pulse: Vec<String>,
     /// In a straight line; --speed may be 200mm/s then
@@ -78,8 +80,8 @@ impl Motion for Move {
         let place = match (&self.point[..], &self.to[..], &self.to_pulse[..]) {
             ([first, second], ..) => format!("over point {first} to point {second}"),
             ([point, ..], ..) => format!("to point {point}"),
-            (_, [_, ..], _) => format!("to {} mm", self.to.join(", ")),
-            _ => format!("to {} pulses", self.to_pulse.join(", ")),
+            (_, [_, ..], _) => format!("to {}", self.axes.told_numbers(&self.to, Unit::Mm)),
+            _ => format!("to {}", self.axes.told_numbers(&self.to_pulse, Unit::Pulse)),
         };
         let way = match self.command() {
             Command::MoveLinear => " in a straight line".to_owned(),
@@ -90,7 +92,23 @@ impl Motion for Move {
     }
 
     fn manner(&self) -> String {
-        format!("{}, {}", self.axes.told(), self.pace.told())
+        let axes = self.axes.told(if self.to.is_empty() { &self.to_pulse } else { &self.to });
+        let along = match (&self.stays()[..], self.axes.leaves_out(&self.point)) {
+            ([], false) => "",
+            ([], true) => ", though a SCARA may take axes 1 and 2 to the point",
+            ([1], _) => ", axis 1 where it is",
+            ([2], _) => ", axis 2 where it is",
+            _ => ", axes 1 and 2 where they are",
+        };
+        format!("{axes}{along}, {}", self.pace.told())
+    }
+
+    fn stays(&self) -> Vec<usize> {
+        self.axes.unnamed(&self.to)
+    }
+
+    fn targets(&self) -> Vec<Target> {
+        Target::of(&self.axes, &self.to, &self.to_pulse)
     }
 
     fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
@@ -100,18 +118,48 @@ impl Motion for Move {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::yrcx::testing::{intent, objection, words};
+    use serde_json::json;
+
+    use crate::command::yrcx::testing::{Reply, Scripted, frames, intent, objection, run_on, words};
     use crate::failure::Kind;
 
     #[test]
     fn some_axes_and_another_robot() {
-        let sent = words(&["--unit", "2", "move", "--to", "1.5,-2", "--axes", "3,1", "--hand", "left"]).unwrap();
-        assert_eq!(
-            sent[0][..10],
-            ["0x2006", "0x0011", "0x0005", "0x0000", "0x05DC", "0x0000", "0x0000", "0x0000", "0xF830", "0xFFFF"]
-        );
+        // As typed: 1.5 is for axis 3.
+        for line in ["move --to 1.5,-2,3 --axes 3,1,2 --hand left", "move --to 3=1.5,1=-2,2=3 --hand left"] {
+            let sent = words(&["--unit", "2"].into_iter().chain(line.split(' ')).collect::<Vec<_>>()).unwrap();
+            assert_eq!(
+                sent[0][..10],
+                ["0x2006", "0x0011", "0x0007", "0x0000", "0xF830", "0xFFFF", "0x0BB8", "0x0000", "0x05DC", "0x0000"],
+                "{line}"
+            );
+        }
+        let sent = words(&["move", "--to-pulse", "4=7"]).unwrap();
+        assert_eq!((sent[0][2].as_str(), sent[0][10].as_str()), ("0x0008", "0x0007"));
         let sent = words(&["move", "--point", "1", "--unit=4", "--speed-of-max", "12.34"]).unwrap();
         assert_eq!(sent[0][..5], ["0x4001", "0x0002", "0x0000", "0x04D2", "0x0001"]);
+    }
+
+    #[test]
+    fn what_is_not_named_stays_where_it_is() {
+        let line = ["move", "--to", "4=90"];
+        let mut place = [0; 16];
+        (place[0], place[4], place[6], place[7]) = (0x0200, 1000, 0xF830, 0xFFFF);
+        let mut end = [0; 16];
+        end[0] = 0x0200;
+        let (moved, peer) = run_on(Scripted::new([Reply::Ends(1, place), Reply::Ends(1, end)]), &line);
+        assert_eq!(peer.taken[0][0], 0x0506, "the present position");
+        assert_eq!(peer.taken[1][..11], [0x0006, 1, 8, 0, 1000, 0, 0xF830, 0xFFFF, 0, 0, 0x5F90]);
+        assert_eq!(moved.unwrap()["targets"], json!([{"axis": 4, "mm": 90.0, "pulses": null}]));
+        let noted = frames(&line).unwrap();
+        assert_eq!((&noted[0]["about"], noted.len()), (&json!("where the robot is"), 2));
+        // Nothing moves if nobody knows where it is.
+        let mut no = [0; 16];
+        no[..3].copy_from_slice(&[0x4000, 5, 1]);
+        let (refused, peer) = run_on(Scripted::new([Reply::Ends(1, no)]), &line);
+        assert!(refused.unwrap_err().message.starts_with("nothing was moved"));
+        assert_eq!(peer.taken.len(), 1);
+        assert_eq!(frames(&["move", "--to", "1=1,2=2"]).unwrap().len(), 1);
     }
 
     #[test]
@@ -120,7 +168,11 @@ mod tests {
             ("move --to 1,2,3", "3 numbers for 4 axes"),
             ("move --to 1,2 --axes 1", "2 numbers for 1 axes"),
             ("move --to 1 --axes 5", "axes of 1 to 4"),
-            ("move --to 1,2 --axes 1,1", "names an axis twice"),
+            ("move --to 1,2 --axes 1,1", "axis 1 is named twice"),
+            ("move --to 1=1,1=2", "axis 1 is named twice"),
+            ("move --to 1=1,2", "some numbers name their axis"),
+            ("move --to 1=1 --axes 1", "named twice, by --axes"),
+            ("move --to 5=1", "'5' is no axis"),
             ("move --to 1.0005,2,3,4", "axis_1"),
             ("move --point 30000", "point: 30000 is out of range; allowed: 0 to 29999"),
             ("move --point 1 --speed 101", "speed_percent: 101 is out of range; allowed: 1 to 100 %"),
@@ -158,7 +210,24 @@ mod tests {
     fn the_question_names_robot_target_axes_and_speed() {
         for (line, told) in [
             ("move --point 19 --speed 50", "move robot 1 to point 19 (all axes, at 50 %)"),
-            ("--unit 2 move --to 1,2 --axes 1,2", "move robot 2 to 1, 2 mm (axes 1,2 alone, at the program speed)"),
+            (
+                "--unit 2 move --to 1,2 --axes 2,1",
+                "move robot 2 to axis 2: 1 mm, axis 1: 2 mm (axes 2, 1 alone, at the program speed)",
+            ),
+            (
+                "move --to 4=90",
+                "move robot 1 to axis 4: 90 mm (axis 4 alone, axes 1 and 2 where they are, at the program speed)",
+            ),
+            (
+                "move --point 3 --axes 4",
+                "move robot 1 to point 3 (axis 4 alone, though a SCARA may take axes 1 and 2 to the point, at the \
+                 program speed)",
+            ),
+            (
+                "move --to-pulse 1,2,3,4",
+                "move robot 1 to axis 1: 1 pulses, axis 2: 2 pulses, axis 3: 3 pulses, axis 4: 4 pulses (all axes, at \
+                 the program speed)",
+            ),
             (
                 "move --point 5 --arch 3:0 --arch-unit pulse --speed-of-max 0.5",
                 "move robot 1 to point 5 in an arch over axis 3 at 0 pulses (all axes, at 0.5 % of the maximum)",

@@ -2,8 +2,9 @@
 
 use clap::{ArgGroup, Args};
 
-use super::{Motion, Moved};
+use super::{Motion, Moved, Target};
 use crate::command::yrcx::arguments::{Axes, Hand, Pace, Ramps};
+use crate::command::yrcx::position::Unit;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
@@ -17,10 +18,10 @@ pub struct Movei {
     /// Point whose data are the distances
     #[arg(long, value_name = "POINT", group = "distance")]
     point: Option<String>,
-    /// Distances of the axes in mm, of all four or of those of --axes
+    /// Distances of the axes in mm, of all four, in the order of --axes, or named: 1=-5,3=10
     #[arg(
         long,
-        value_name = "MM,…",
+        value_name = "[AXIS=]MM,…",
         group = "distance",
         value_delimiter = ',',
         allow_hyphen_values = true,
@@ -30,7 +31,7 @@ pub struct Movei {
     /// Distances of the axes in pulses, likewise
     #[arg(
         long,
-        value_name = "PULSES,…",
+        value_name = "[AXIS=]PULSES,…",
         group = "distance",
         value_delimiter = ',',
         allow_hyphen_values = true,
@@ -77,13 +78,18 @@ impl Motion for Movei {
         let way = if self.linear { " in a straight line" } else { "" };
         match (&self.point, &self.by[..]) {
             (Some(point), _) => format!("by the distances of point {point}{way}"),
-            (None, []) => format!("by {} pulses", self.by_pulse.join(", ")),
-            (None, by) => format!("by {} mm", by.join(", ")),
+            (None, []) => format!("by {}", self.axes.told_numbers(&self.by_pulse, Unit::Pulse)),
+            (None, by) => format!("by {}", self.axes.told_numbers(by, Unit::Mm)),
         }
     }
 
     fn manner(&self) -> String {
-        format!("{}, {}", self.axes.told(), self.pace.told())
+        let axes = self.axes.told(if self.by.is_empty() { &self.by_pulse } else { &self.by });
+        format!("{axes}, {}", self.pace.told())
+    }
+
+    fn targets(&self) -> Vec<Target> {
+        Target::of(&self.axes, &self.by, &self.by_pulse)
     }
 
     fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
@@ -122,7 +128,7 @@ mod tests {
         }
         assert_eq!(
             intent(&["movei", "--by", "1,-2", "--axes", "1,2", "--speed", "5", "--unit", "2"]),
-            "move robot 2 by 1, -2 mm (axes 1,2 alone, at 5 %)"
+            "move robot 2 by axis 1: 1 mm, axis 2: -2 mm (axes 1, 2 alone, at 5 %)"
         );
     }
 }

@@ -46,7 +46,7 @@ impl Motion for Movet {
     }
 
     fn manner(&self) -> String {
-        format!("{}, {}", self.axes.told(), self.pace.told())
+        format!("{}, {}", self.axes.told(&[]), self.pace.told())
     }
 
     fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {

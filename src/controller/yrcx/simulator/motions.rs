@@ -2,7 +2,7 @@
 
 use super::alarms::Fault;
 use super::commands::{Work, not_here};
-use super::geometry::{Arm, Four, STEPS};
+use super::geometry::{Arm, Four, Kind, STEPS};
 use super::memory::PointUnit;
 use super::motion::{End, Leg, Owner};
 use super::moves::{Frame, Homing, Rate, Speed};
@@ -110,7 +110,9 @@ fn target(world: &World, request: &Request) -> Result<Four, Fault> {
         Command::MoveCircular => world.point_target(robot, axes, &world.memory.point(request.index(Key::Point2))?),
         Command::MoveMm => {
             let arm = Arm::of_hand_system(request.int(Key::HandSystem));
-            world.pose_target(robot, axes, &mm(), arm)
+            // Even if only others are named, axes 1 and 2 of a SCARA go to the target position, too (4.2.1).
+            let along = if matches!(world.robot(robot)?.kind, Kind::Scara { .. }) { 0b0011 } else { 0 };
+            world.pose_target(robot, axes | along, &mm(), arm)
         }
         Command::MovePulse => world.pulse_target(robot, axes, &numbers()),
         Command::MoveiPtp | Command::MoveiLinear => world.relative_target(robot, axes, &point()?),

@@ -29,11 +29,18 @@ pub enum Mischief {
     Mute,
     /// Answers noise.
     Garbage,
+    /// Puts a socket address behind the items that it counts when it answers ForwardOpen, as OpENer boards do.
+    Trailing,
+    /// Does not say of itself that it has an owner, and names it before it looks at sizes, as OpENer boards do.
+    Unowned,
 }
+
+/// An item of a socket address, 0.0.0.0:2222.
+pub(super) const TRAILING: [u8; 20] = [0x01, 0x80, 16, 0, 0, 2, 0x08, 0xAE, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 
 impl Mischief {
     /// All there are, with the names they are asked for by.
-    pub const ALL: [(&'static str, Self); 12] = [
+    pub const ALL: [(&'static str, Self); 14] = [
         ("drop", Self::Drop),
         ("stall", Self::Stall),
         ("stale", Self::Stale),
@@ -46,6 +53,8 @@ impl Mischief {
         ("reset", Self::Reset),
         ("mute", Self::Mute),
         ("garbage", Self::Garbage),
+        ("trailing", Self::Trailing),
+        ("unowned", Self::Unowned),
     ];
 }
 
@@ -76,6 +85,8 @@ pub(super) fn images(mischief: Option<Mischief>, number: u64, bytes: Vec<u8>) ->
         | Mischief::Unreadable
         | Mischief::Reset
         | Mischief::Mute
-        | Mischief::Garbage => vec![bytes],
+        | Mischief::Garbage
+        | Mischief::Trailing
+        | Mischief::Unowned => vec![bytes],
     }
 }

@@ -385,6 +385,7 @@ impl<A: Application> Adapter<A> {
     /// Who it is, with a status of now (volume 1, 5-2.2.1.5).
     fn identity(&self) -> Identity {
         let is_owned = self.held.iter().any(|held| held.peer.role == Role::ExclusiveOwner);
+        let is_owned = is_owned && self.mischief != Some(Mischief::Unowned);
         let extended = match (self.held.is_empty(), self.held.iter().any(|held| held.run)) {
             (true, _) => 3,
             (false, true) => 6,
@@ -424,7 +425,11 @@ impl<A: Application> Adapter<A> {
             Err((status, data)) => (status, data),
         };
         let reply = Reply { service: request.service, status, data: &data }.emit();
-        RrData { o_t: addresses.0, t_o: addresses.1, ..RrData::new(&reply) }.emit()
+        let mut answer = RrData { o_t: addresses.0, t_o: addresses.1, ..RrData::new(&reply) }.emit();
+        if self.mischief == Some(Mischief::Trailing) && request.service == service::FORWARD_OPEN {
+            answer.extend(mischief::TRAILING);
+        }
+        answer
     }
 
     fn close(&mut self, now: Now, data: &[u8]) -> Result<Vec<u8>, (Status, Vec<u8>)> {

@@ -47,19 +47,29 @@ impl<'a> Item<'a> {
         Self::read_all(&mut Reader::new(bytes))
     }
 
-    pub(super) fn read_all(reader: &mut Reader<'a>) -> Result<Vec<Self>, WireError> {
+    fn read_all(reader: &mut Reader<'a>) -> Result<Vec<Self>, WireError> {
+        let items = Self::read_counted(reader)?;
+        reader.end("end of the items")?;
+        Ok(items)
+    }
+
+    /// Reads the count and so many items; what follows is left.
+    fn read_counted(reader: &mut Reader<'a>) -> Result<Vec<Self>, WireError> {
         let count = reader.u16("item count")?;
         if count > MOST_ITEMS {
             return Err(reader.wrong("item count", 2, count));
         }
         let mut items = Vec::with_capacity(usize::from(count));
         for _ in 0..count {
-            let kind = reader.u16("item type")?;
-            let len = reader.u16("item length")?;
-            items.push(Self { kind, data: reader.take(usize::from(len), "item")? });
+            items.push(Self::read(reader)?);
         }
-        reader.end("end of the items")?;
         Ok(items)
+    }
+
+    fn read(reader: &mut Reader<'a>) -> Result<Self, WireError> {
+        let kind = reader.u16("item type")?;
+        let len = reader.u16("item length")?;
+        Ok(Self { kind, data: reader.take(usize::from(len), "item")? })
     }
 
     /// The count and the items.
@@ -94,20 +104,41 @@ impl<'a> RrData<'a> {
         Self { timeout: 0, message, o_t: None, t_o: None }
     }
 
-    /// Reads the data of a frame.
+    /// Reads the data of a frame; nothing may follow the items that are counted.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::new(bytes);
+        let timeout = Self::head(&mut reader)?;
+        let items = Item::read_all(&mut reader)?;
+        let address = |kind| items.iter().find(|item| item.kind == kind).map(|item| sockaddr(item.data)).transpose();
+        let (o_t, t_o) = (address(kind::SOCKADDR_O_T)?, address(kind::SOCKADDR_T_O)?);
+        Ok(Self { timeout, message: Self::message(&items, &reader)?, o_t, t_o })
+    }
+
+    /// Reads the data of an answer, as devices send it: some put items behind those that they count, such as a socket
+    /// address behind a refusal. Those count as well where they can be read, and are no fault where they cannot.
+    pub fn parse_answer(bytes: &'a [u8]) -> Result<Self, WireError> {
+        let mut reader = Reader::new(bytes);
+        let timeout = Self::head(&mut reader)?;
+        let mut items = Item::read_counted(&mut reader)?;
+        let room = usize::from(MOST_ITEMS).saturating_sub(items.len());
+        items.extend(std::iter::from_fn(|| Item::read(&mut reader).ok()).take(room));
+        let address = |kind| items.iter().filter(|item| item.kind == kind).find_map(|item| sockaddr(item.data).ok());
+        let (o_t, t_o) = (address(kind::SOCKADDR_O_T), address(kind::SOCKADDR_T_O));
+        Ok(Self { timeout, message: Self::message(&items, &reader)?, o_t, t_o })
+    }
+
+    /// What stands before the items: the time-out.
+    fn head(reader: &mut Reader<'a>) -> Result<u16, WireError> {
         let interface = reader.u32("interface handle")?;
         if interface != 0 {
             return Err(reader.wrong("interface handle", 4, interface));
         }
-        let timeout = reader.u16("timeout")?;
-        let items = Item::read_all(&mut reader)?;
-        let address = |kind| items.iter().find(|item| item.kind == kind).map(|item| sockaddr(item.data)).transpose();
-        let (o_t, t_o) = (address(kind::SOCKADDR_O_T)?, address(kind::SOCKADDR_T_O)?);
+        reader.u16("timeout")
+    }
+
+    fn message(items: &[Item<'a>], reader: &Reader<'_>) -> Result<&'a [u8], WireError> {
         let message = items.iter().find(|item| item.kind == kind::UNCONNECTED_DATA);
-        let message = message.ok_or_else(|| reader.wrong("unconnected data item", 0, 0u8))?.data;
-        Ok(Self { timeout, message, o_t, t_o })
+        Ok(message.ok_or_else(|| reader.wrong("unconnected data item", 0, 0u8))?.data)
     }
 
     /// The data of a frame.
@@ -157,6 +188,24 @@ mod tests {
         let bytes = hex("00000000 0000 0300 0000 0000 B200 0200 0E00 0180 1000 0002 08AE 00000000 0000000000000000");
         assert_eq!(data.emit(), bytes);
         assert_eq!(RrData::parse(&bytes), Ok(data));
+    }
+
+    /// A refusal with two items by its count, and a socket address behind them; then with what is no item.
+    #[test]
+    fn what_stands_behind_an_answer_is_no_fault() {
+        let counted = "00000000 0000 0200 0000 0000 B200 0600 D400 0101 0601";
+        let address = "0080 1000 0002 08AE 0A000001 0000000000000000";
+        let bytes = hex(&format!("{counted} {address}"));
+        assert_eq!(RrData::parse(&bytes).unwrap_err().field, "end of the items");
+        let answer = RrData::parse_answer(&bytes).unwrap();
+        assert_eq!(answer.message, hex("D400 0101 0601"));
+        assert_eq!(answer.o_t, Some("10.0.0.1:2222".parse().unwrap()));
+        for junk in ["00", "0180 1000 0002", "FFFF FFFF FF", "0080 0200 FFFF"] {
+            let bytes = hex(&format!("{counted} {junk}"));
+            let answer = RrData::parse_answer(&bytes).unwrap();
+            assert_eq!((answer.message.len(), answer.o_t, answer.t_o), (6, None, None), "{junk}");
+        }
+        assert!(RrData::parse_answer(&hex(&counted.replace("0601", "06"))).is_err(), "what is counted must be there");
     }
 
     #[test]

@@ -158,8 +158,10 @@ impl Held {
 pub struct Rules {
     /// Whether anything may be shown at all.
     pub is_owner: bool,
-    /// Bytes of the output, from the first, that one client at a time changes; all 0 when nothing is under way there.
+    /// Bytes of the output, from the first, that one client at a time changes.
     pub exclusive: usize,
+    /// So many of them, from the first, are 0 when nothing is under way there.
+    pub command: usize,
     /// What is shown at first.
     pub resting: Vec<u8>,
     /// What is shown after a loss, of what was shown before.
@@ -254,7 +256,7 @@ impl Images {
 
     /// Whether nothing is under way on the exclusive part.
     pub fn is_clear(&self) -> bool {
-        self.shown.iter().take(self.rules.exclusive).all(|byte| *byte == 0)
+        self.shown.iter().take(self.rules.command).all(|byte| *byte == 0)
     }
 
     /// Whether something moves.

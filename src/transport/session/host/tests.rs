@@ -54,6 +54,7 @@ fn images() -> Held {
     let rules = Rules {
         is_owner: true,
         exclusive: 2,
+        command: 2,
         resting: vec![0, 0, 0x41],
         rest: <[u8]>::to_vec,
         under_way: |_, seen| seen.first().is_some_and(|byte| *byte != 0),

@@ -132,7 +132,7 @@ fn identity(frame: &Frame<'_>) -> Said {
 
 /// A CIP message outside a connection.
 fn unconnected(frame: &Frame<'_>) -> Said {
-    let message = match RrData::parse(frame.data) {
+    let message = match RrData::parse_answer(frame.data) {
         Ok(data) => data.message,
         Err(error) => return broken("SendRRData", false, &error),
     };

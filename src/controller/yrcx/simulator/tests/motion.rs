@@ -81,11 +81,14 @@ fn one_axis_of_a_scara_may_take_others_along() {
     let mut bench = Bench::new(SCARA);
     bench.go_to(["200", "100", "0", "0"]);
     let before = bench.pulses(1);
-    // R is turned, X and Y stay: axes 1 and 2 need not move, axis 4 does.
-    bench.done(Command::MoveMm.order().with(Key::Axes, "4").with(Key::Axis4, "30"));
+    // R is turned; X and Y of the command count although they are not named, and here they are where they were.
+    let turn = |x, y| Command::MoveMm.order().with(Key::Axes, "4").with(Key::Axis1, x).with(Key::Axis2, y);
+    bench.done(turn("200", "100").with(Key::Axis4, "30"));
     assert_eq!(bench.steps(1), [200_000, 100_000, 0, 30_000]);
+    // Left at 0 they would be the target: out of reach here.
+    assert_eq!(bench.refused(turn("0", "0").with(Key::Axis4, "40")), "2.905");
     // X alone moves both arms and turns R back.
-    bench.done(Command::MoveMm.order().with(Key::Axes, "1").with(Key::Axis1, "250"));
+    bench.done(turn("250", "100").with(Key::Axes, "1"));
     assert_eq!(bench.steps(1), [250_000, 100_000, 0, 30_000]);
     assert!(bench.pulses(1).iter().zip(before).all(|(a, b)| *a != b || b == 0));
 }
