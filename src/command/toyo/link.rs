@@ -1,6 +1,7 @@
 //! The connection to a controller: the one driver that moves characters between the session and a line.
 
 mod borrowed;
+mod fence;
 mod stop;
 
 use std::convert::Infallible;
@@ -11,6 +12,7 @@ use std::time::Duration;
 use serde_json::json;
 use tokio::time::Instant;
 
+use super::letters::Letters;
 use super::position::Place;
 use super::reach;
 use super::refusal;
@@ -59,8 +61,14 @@ pub struct Link {
     started: Instant,
     trace: Trace,
     waited: Duration,
-    /// Whether the line is gone: nothing more is tried on it.
+    /// Whether the line is gone: nothing more is tried on it but what only reads, over a new one.
     is_gone: bool,
+    /// How to open it again.
+    again: Option<(Robot, Access)>,
+    /// Whether nothing can come any more that answers what was asked before.
+    is_fenced: bool,
+    /// Letters of the axes, once they were asked for.
+    letters: Option<Letters>,
     /// Writes to the EEPROM.
     pub(super) wear: Wear,
 }
@@ -95,9 +103,9 @@ pub enum Moving {
     Program,
 }
 
-/// A controller's "no" (`@NG`): it has no code.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Refusal(pub Command);
+/// A controller's "no" (`@NG`) to a request: it has no code.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refusal(pub Request);
 
 /// Room for what arrives in one piece.
 const BUFFER: usize = 1024;
@@ -121,7 +129,9 @@ impl Family for Toyo {
             };
             Transport::Stream(Box::new(stream))
         };
-        Link::new(robot, &access, screen, transport, way.character())
+        let mut link = Link::new(robot, &access, screen, transport, way.character())?;
+        link.again = Some((robot.clone(), access));
+        Ok(link)
     }
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
@@ -195,6 +205,9 @@ impl Link {
             trace,
             waited: Duration::ZERO,
             is_gone: false,
+            again: None,
+            is_fenced: false,
+            letters: None,
             wear,
         })
     }
@@ -225,7 +238,7 @@ impl Link {
     pub async fn read(&mut self, request: &Request) -> Result<Record, Failure> {
         match self.try_read(request).await? {
             Ok(record) => Ok(record),
-            Err(Refusal(command)) => Err(refusal::explained(self, command).await),
+            Err(Refusal(request)) => Err(refusal::explained(self, &request).await),
         }
     }
 
@@ -237,7 +250,7 @@ impl Link {
         }
         match self.exchange(request).await? {
             Answer::Data(record) => Ok(Ok(record)),
-            Answer::Refused => Ok(Err(Refusal(request.command()))),
+            Answer::Refused => Ok(Err(Refusal(request.clone()))),
             Answer::Done => Err(self.malformed("@OK", "data is expected")),
         }
     }
@@ -256,7 +269,7 @@ impl Link {
     pub async fn read_content(&mut self, request: &Request) -> Result<Record, Failure> {
         match self.try_read_content(request).await? {
             Ok(content) => Ok(content),
-            Err(Refusal(command)) => Err(refusal::explained(self, command).await),
+            Err(Refusal(request)) => Err(refusal::explained(self, &request).await),
         }
     }
 
@@ -276,7 +289,7 @@ impl Link {
     pub async fn order(&mut self, request: &Request) -> Result<(), Failure> {
         match self.try_order(request).await? {
             Ok(()) => Ok(()),
-            Err(Refusal(command)) => Err(refusal::explained(self, command).await),
+            Err(Refusal(request)) => Err(refusal::explained(self, &request).await),
         }
     }
 
@@ -289,8 +302,9 @@ impl Link {
             self.note(request, None);
             return Ok(Ok(()));
         }
+        self.fence().await?;
         Ok(match self.exchange(request).await? {
-            Answer::Refused => Err(Refusal(request.command())),
+            Answer::Refused => Err(Refusal(request.clone())),
             Answer::Done | Answer::Data(_) => Ok(()),
         })
     }
@@ -300,6 +314,7 @@ impl Link {
         if wants_host(request) {
             self.take_host().await?;
         }
+        self.fence().await?;
         self.read(request).await
     }
 
@@ -354,16 +369,24 @@ impl Link {
                 .hint("this is a fault of armctl: the command passed the gate as less than it is; please report it"));
         }
         request.check().map_err(|error| misuse(&error))?;
+        self.revive(risk).await?;
         self.take_turn(risk).await?;
+        self.is_fenced = false;
         if risk == Risk::Motion {
             self.moving = Some(if request.command() == Command::Jgst { Moving::Jog } else { Moving::Program });
         }
         self.line.begin(request, is_repeatable);
         match self.drive(risk).await? {
             Ended::Answered(block) => {
-                request.answer(&block).map_err(|error| self.malformed(&block, &error.to_string()))
+                // An order's answer tells nothing of what was before it; that of a question came after all else.
+                self.is_fenced = risk == Risk::Read;
+                request.answer_kept(&block).map_err(|error| self.malformed(&block, &error.to_string()))
             }
-            ended => Err(self.unanswered(ended, risk, refusal::telltale(request.command()))),
+            ended => {
+                let failure = self.unanswered(ended, risk, refusal::telltale(request.command()));
+                let message = format!("{} ({})", failure.message, request.text());
+                Err(Failure { message, ..failure })
+            }
         }
     }
 
@@ -440,6 +463,16 @@ impl Link {
     fn set_policy(&mut self, policy: Policy) {
         self.policy = policy;
         self.line.set_policy(policy);
+    }
+
+    /// The letters of the axes, if they were asked for.
+    pub(super) fn known_letters(&self) -> Option<&Letters> {
+        self.letters.as_ref()
+    }
+
+    /// Keeps the letters of the axes.
+    pub(super) fn know_letters(&mut self, letters: Letters) {
+        self.letters = Some(letters);
     }
 
     /// Nothing that this link set in motion moves any more.

@@ -137,7 +137,7 @@ impl Command for Mode {
 }
 
 /// Accepted, and yet not so.
-fn not_so(what: &str) -> Failure {
+pub(super) fn not_so(what: &str) -> Failure {
     Failure::new(Kind::ConditionNotMet, format!("the order was accepted, but {what} has not changed within 1s"))
 }
 

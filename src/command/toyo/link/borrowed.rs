@@ -59,9 +59,9 @@ impl Link {
         self.borrowed.push(back);
         match self.try_order(change).await? {
             Ok(()) => Ok(()),
-            Err(Refusal(command)) => {
+            Err(Refusal(request)) => {
                 self.borrowed.pop();
-                Err(refusal::explained(self, command).await)
+                Err(refusal::explained(self, &request).await)
             }
         }
     }
@@ -83,6 +83,8 @@ impl Link {
                 self.note(&back, Some("to put back what was found"));
                 continue;
             }
+            // A line that is still out of order shows in what follows.
+            self.fence().await.unwrap_or_default();
             let failure = match self.converse(&back, true).await {
                 Ok(Answer::Refused) => kept("@NG".to_owned()),
                 Ok(_) => continue,
@@ -108,6 +110,7 @@ impl Link {
             Failure::new(Kind::Refused, format!("the host was switched ON and could not be switched OFF again: {why}"))
                 .hint("`toyo host off` gives the start input back")
         };
+        self.fence().await.unwrap_or_default();
         match self.converse(&Request::bare(Command::Hsof), false).await {
             Ok(Answer::Refused) => Err(kept("@NG".to_owned())),
             Ok(_) => Ok(()),

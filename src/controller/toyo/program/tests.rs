@@ -277,6 +277,18 @@ fn a_listing_reads_back() {
     }
 }
 
+#[test]
+fn what_is_not_in_the_manual_keeps_its_place_and_is_no_program() {
+    let steps: Vec<Record> = ["SPD V=05", "END"].map(|text| request::instruction(text).unwrap()).into();
+    let steps = [&steps[..1], &[Record::unlisted("FOO X=1 #2")], &steps[1..]].concat();
+    let text = listing(&steps, whole(false), &Rows::new()).text;
+    assert_eq!(text, "SPD V=05\nFOO X=1 #2  # not in the manual\nEND\n");
+    assert_eq!(findings(&text).len(), 1, "what is put is strict");
+    let program = check_kept(text.as_bytes(), 10).program.unwrap();
+    assert_eq!(program.steps.iter().map(|step| step.record.clone()).collect::<Vec<_>>(), steps);
+    assert!(program.steps[1].record.emit().is_err());
+}
+
 /// A value that a field may have.
 fn least(field: &crate::controller::toyo::field::Field) -> crate::controller::toyo::field::Value {
     use crate::controller::toyo::field::{Form, Mask, Value};
