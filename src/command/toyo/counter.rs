@@ -126,7 +126,8 @@ impl Report for Count {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{all_blocks, blocks, objection};
+    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, objection};
+    use crate::failure::Kind;
 
     #[test]
     fn counters_have_their_blocks() {
@@ -135,7 +136,37 @@ mod tests {
             ["@MCNT CN=01", "@MCNT CN=98", "@MCNT CN=99"]
         );
         assert_eq!(all_blocks(&["counter", "get"]).unwrap().len(), 99);
-        assert_eq!(blocks(&["counter", "set", "1", "1"]).unwrap(), ["@MCST CN01=0001"]);
+        assert_eq!(blocks(&["counter", "set", "1", "1"]).unwrap(), ["@MCST CN01=0001", "@MCNT CN=01"]);
+    }
+
+    #[test]
+    fn a_counter_that_was_set_is_read_back() {
+        let mut bench = Bench::new("sim:");
+        assert_eq!(bench.data(&["counter", "set", "5", "7"])["count"], 7);
+        let other =
+            |block: &str, _| if block == "@MCNT CN=05" { Fate::Answered("@MCNT CN05=0008") } else { Fate::Pass };
+        let failure = Bench::spoilt("", other).0.run(&["counter", "set", "5", "7"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::ConditionNotMet);
+        assert_eq!(failure.message, "the controller accepted @MCST CN05=0007, but it stands at 8");
+        let silent = |block: &str, _| if block == "@MCNT CN=05" { Fate::Lost } else { Fate::Pass };
+        let failure = Bench::spoilt("", silent).0.run(&["counter", "set", "5", "7"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::OutcomeUnknown);
+    }
+
+    #[test]
+    fn a_stale_ok_is_not_taken_for_that_of_an_order() {
+        // The order before was given up, and its @OK comes when nobody waits for it any more.
+        let late = |block: &str, _| match block {
+            "@MCST CN05=0007" => Fate::Late(std::time::Duration::from_millis(3100)),
+            "@MCST CN06=0001" => Fate::Lost,
+            _ => Fate::Pass,
+        };
+        let (mut bench, heard) = Bench::spoilt("host = true\n", late);
+        assert_eq!(bench.run(&["counter", "set", "5", "7"]).unwrap_err().kind, Kind::OutcomeUnknown);
+        heard.borrow_mut().clear();
+        // No `@OK` of its own came: whether it was done is open, not done.
+        assert_eq!(bench.run(&["counter", "set", "6", "1"]).unwrap_err().kind, Kind::OutcomeUnknown);
+        assert_eq!(heard.borrow()[..2], ["@STAS SNO=0", "@MCST CN06=0001"], "something harmless is asked first");
     }
 
     #[test]

@@ -20,18 +20,18 @@ use crate::output::view::{Cell, Table, Tone};
 pub enum Item<T> {
     /// It was answered.
     Answered {
-        /// True.
-        ok: bool,
         #[serde(flatten)]
         value: T,
+        /// True.
+        ok: bool,
     },
     /// The answer holds something that the manual does not list.
     Unlisted {
-        /// True.
-        ok: bool,
         /// Which it is: `counter`, `row`, `point`.
         #[serde(flatten)]
         key: Key,
+        /// True.
+        ok: bool,
         /// False.
         in_manual: bool,
         /// As the controller holds it.
@@ -39,11 +39,11 @@ pub enum Item<T> {
     },
     /// It was not answered.
     Failed {
-        /// False.
-        ok: bool,
         /// Which it is.
         #[serde(flatten)]
         key: Key,
+        /// False.
+        ok: bool,
         /// Why, with the block that was refused.
         error: Failure,
     },
@@ -197,4 +197,100 @@ fn of_one(failure: Failure) -> Result<Result<Record, Failure>, Failure> {
 fn not_asked(request: &Request, silence: &Failure) -> Failure {
     let message = format!("{} was not asked, as the line fell silent before: {}", request.text(), silence.message);
     Failure { message, ..silence.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{Bench, Fate};
+    use crate::failure::Kind;
+
+    fn spoilt(spoil: &'static str, fate: Fate) -> Bench {
+        Bench::spoilt("", move |block, _| if block == spoil { fate } else { Fate::Pass }).0
+    }
+
+    #[test]
+    fn one_refusal_hides_nothing_and_names_its_block() {
+        for (words, list, key, block) in [
+            (["counter", "get", "1-3"], "counters", "counter", "MCNT CN=02"),
+            (["timer", "get", "1-3"], "timers", "timer", "MTMR TN=2"),
+            (["speed-table", "get", "1-3"], "rows", "row", "RPAR T2 V02"),
+            (["accel-table", "get", "1-3"], "rows", "row", "RPAR T3 A02"),
+            (["torque-table", "get", "1-3"], "rows", "row", "RPAR T5 LIM02"),
+            (["easy", "get", "1-3"], "programs", "program", "RESY PNO=02 ST=000"),
+            (["mvm", "get", "1-3"], "groups", "group", "RPAR T4 S3 MVM02"),
+            (["point", "get", "1-3"], "points", "point", "RPAR T1 PT=002"),
+        ] {
+            let asked = Box::leak(format!("@{block}").into_boxed_str());
+            let (data, failure) = spoilt(asked, Fate::Answered("@NG")).run(&words).unwrap();
+            let items = data[list].as_array().unwrap();
+            assert_eq!(items.len(), 3, "{data}");
+            assert_eq!(
+                (&items[0]["ok"], &items[1]["ok"], &items[2]["ok"]),
+                (&true.into(), &false.into(), &true.into())
+            );
+            assert_eq!((&items[1][key], &items[2][key]), (&2.into(), &3.into()), "{data}");
+            let error = &items[1]["error"];
+            assert_eq!((&error["kind"], &error["code"]), (&"refused".into(), &"NG".into()));
+            let failure = failure.unwrap();
+            assert_eq!(failure.kind, Kind::Mixed);
+            let expected = format!("1 of 3 failed: the controller refused {block} (@NG): the status does not tell why");
+            assert_eq!(failure.message, expected);
+        }
+    }
+
+    #[test]
+    fn what_falls_silent_is_not_asked_for_ever() {
+        let (data, failure) = spoilt("@MCNT CN=02", Fate::Lost).run(&["counter", "get", "1-9"]).unwrap();
+        let kinds: Vec<_> =
+            data["counters"].as_array().unwrap().iter().map(|item| item["error"]["kind"].clone()).collect();
+        assert!(kinds[0].is_null() && kinds[1..].iter().all(|kind| kind == "no_answer"), "{data}");
+        assert!(data["counters"][2]["error"]["message"].as_str().unwrap().starts_with("@MCNT CN=03 was not asked"));
+        assert_eq!(failure.unwrap().kind, Kind::Mixed);
+        let failure = spoilt("@MCNT CN=01", Fate::Lost).run(&["counter", "get", "1-9"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::NoAnswer);
+        let failure = spoilt("@MCNT CN=01", Fate::Answered("@NG")).run(&["counter", "get", "1"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::Refused);
+    }
+
+    #[test]
+    fn what_the_manual_does_not_list_is_kept_as_it_came() {
+        for (block, answer, raw) in [
+            ("@RPAR M18", "@RPAR M18 STN=01 BRT=156K", "M18 STN=01 BRT=156K"),
+            ("@RPAR P06", "@RPAR P06 AX1=+000.50 AX2=+00.5 AX3=+1.234 AX4=+000.00", "+00.5"),
+            ("@RPAR E17", "@RPAR E17 E=I", "I"),
+            ("@RPAR E19", "@RPAR E19 1130", "1130"),
+        ] {
+            let mut bench = spoilt(block, Fate::Answered(answer));
+            let data = bench.data(&["param", "list"]);
+            let id = &block[6..];
+            let entry = data["parameters"].as_array().unwrap().iter().find(|entry| entry["id"] == id).unwrap();
+            assert_eq!((&entry["ok"], &entry["in_manual"]), (&true.into(), &false.into()), "{entry}");
+            let odd: Vec<_> =
+                entry["values"].as_array().unwrap().iter().filter(|one| one["in_manual"] == false).collect();
+            assert_eq!(odd[0]["raw"], raw, "{entry}");
+            let others = data["parameters"].as_array().unwrap().iter().filter(|entry| entry["in_manual"] == true);
+            assert!(others.count() > 70);
+            // Nothing of it is written back by leaving it as it is.
+            if id == "P06" {
+                let failure = bench.run(&["param", "set", "P06", "ax1=1"]).unwrap_err();
+                assert!(failure.message.contains("'ax2=+00.5', which is not in the manual"), "{failure}");
+                assert_eq!(failure.hint.unwrap(), "nothing was written; give all values");
+            }
+            let dumped = bench.data(&["param", "dump"]);
+            assert_eq!((&dumped["unfit"][0]["key"], &dumped["unfit"][0]["in_manual"]), (&id.into(), &false.into()));
+        }
+        let mut bench = spoilt("@RPAR T2 V02", Fate::Answered("@RPAR T2 V02=250"));
+        let rows = bench.data(&["speed-table", "get", "1-2"]);
+        assert_eq!(
+            rows["rows"][1],
+            serde_json::json!({ "ok": true, "row": 2, "in_manual": false, "raw": "T2 V02=250" })
+        );
+        let mut bench = Bench::spoilt("steps = { 1 = [\"SPD V=05\", \"NOP\", \"END\"] }", |block, _| {
+            if block == "@RSTX 0002" { Fate::Answered("@RSTX 0002 FOO X=1") } else { Fate::Pass }
+        })
+        .0;
+        let got = bench.data(&["program", "get", "--to", "4"]);
+        assert_eq!(got["text"], "SPD V=05\nFOO X=1   # not in the manual\nEND\nNOP\n");
+        assert_eq!(got["steps"][1], serde_json::json!({ "step": 2, "instruction": "FOO X=1", "in_manual": false }));
+    }
 }

@@ -2,6 +2,7 @@
 
 mod borrowed;
 mod fence;
+mod left;
 mod stop;
 
 use std::convert::Infallible;
@@ -12,6 +13,7 @@ use std::time::Duration;
 use serde_json::json;
 use tokio::time::Instant;
 
+use super::debts::{Debts, Left};
 use super::letters::Letters;
 use super::position::Place;
 use super::reach;
@@ -63,6 +65,9 @@ pub struct Link {
     waited: Duration,
     /// Whether the line is gone: nothing more is tried on it but what only reads, over a new one.
     is_gone: bool,
+    /// What is changed for a while, for others to find if this process is killed; and what others have left.
+    debts: Debts,
+    left: Vec<Left>,
     /// How to open it again.
     again: Option<(Robot, Access)>,
     /// Whether nothing can come any more that answers what was asked before.
@@ -158,8 +163,11 @@ impl Family for Toyo {
     }
 
     async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
+        link.tell_what_is_left().await;
         let put_back = link.put_back().await;
         let given_back = put_back.and(link.give_back().await);
+        // What goes on now was told.
+        link.debts.moving(None);
         let Counters { sent, received, noise, garbled, foreign, echoes } = link.line.counters();
         screen.detail(1, &format!("{sent} blocks sent, {received} received in {:.1?}", link.waited));
         let odd = [(noise, "stray characters"), (garbled, "garbled"), (foreign, "foreign or late"), (echoes, "echoes")];
@@ -190,6 +198,12 @@ impl Link {
         let trace = Trace::open(access, screen, transport.ends())?;
         let is_kept = !robot.target.value.is_simulated();
         let wear = if is_kept { Wear::of(&robot.target.value.to_string()) } else { Wear::without_diary() };
+        let debts = if is_kept && !access.dry_run {
+            Debts::of(&robot.target.value.to_string())
+        } else {
+            Debts::without_notes()
+        };
+        let left = debts.left();
         Ok(Self {
             transport,
             line: Line::new(policy),
@@ -205,6 +219,8 @@ impl Link {
             trace,
             waited: Duration::ZERO,
             is_gone: false,
+            debts,
+            left,
             again: None,
             is_fenced: false,
             letters: None,
@@ -370,10 +386,14 @@ impl Link {
         }
         request.check().map_err(|error| misuse(&error))?;
         self.revive(risk).await?;
+        if !self.left.is_empty() && !matches!(request.command(), Command::Stop | Command::Jgst) {
+            self.tell_what_is_left().await;
+        }
         self.take_turn(risk).await?;
         self.is_fenced = false;
         if risk == Risk::Motion {
             self.moving = Some(if request.command() == Command::Jgst { Moving::Jog } else { Moving::Program });
+            self.debts.moving(self.moving);
         }
         self.line.begin(request, is_repeatable);
         match self.drive(risk).await? {
@@ -478,6 +498,7 @@ impl Link {
     /// Nothing that this link set in motion moves any more.
     pub fn has_ended(&mut self) {
         self.moving = None;
+        self.debts.moving(None);
     }
 
     /// Whether a session holds the line, and others may use it at the same time.

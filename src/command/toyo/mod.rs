@@ -10,6 +10,7 @@ mod copies;
 mod counter;
 #[cfg(test)]
 mod coverage;
+mod debts;
 mod easy;
 mod error;
 mod files;

@@ -209,10 +209,7 @@ mod tests {
             "no; done: point 1 (1 written, 0 unchanged); written or not: point 2; not written: points 3 to 5 | \
              --resume=2 goes on there"
         );
-        assert_eq!(
-            told(Kind::NoAnswer, &[]),
-            "no; nothing was written; not written: points 1 to 5 | --resume=1 goes on there"
-        );
+        assert_eq!(told(Kind::NoAnswer, &[]), "no; nothing was written | --resume=1 goes on there");
     }
 
     #[test]

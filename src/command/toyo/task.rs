@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn tasks_have_their_blocks() {
         assert_eq!(all_blocks(&["task", "get"]).unwrap(), ["@MTSK"]);
-        assert_eq!(blocks(&["task", "set", "4"]).unwrap(), ["@CTSK TASK=04"]);
+        assert_eq!(blocks(&["task", "set", "4"]).unwrap(), ["@CTSK TASK=04", "@MTSK"]);
         assert!(objection(&["task", "set", "0"]).contains("1 to 4"));
     }
 }

@@ -111,7 +111,7 @@ pub enum FieldError {
         form: String,
     },
     /// A number with more decimals than can be sent.
-    #[error("{name}: {found} {}", decimals(*most))]
+    #[error("{name}: {found} {} ({form})", decimals(*most))]
     Decimals {
         /// Name of the field.
         name: &'static str,
@@ -119,6 +119,8 @@ pub enum FieldError {
         found: String,
         /// Decimals that can be.
         most: u8,
+        /// What may be.
+        form: String,
     },
     /// A number beyond what may be sent.
     #[error("{name}: {found} is out of range ({form})")]
@@ -136,8 +138,8 @@ pub enum FieldError {
 fn decimals(most: u8) -> String {
     match most {
         0 => "is not a whole number".to_owned(),
-        1 => "has too many decimals: at most 1 decimal can be stored".to_owned(),
-        most => format!("has too many decimals: at most {most} decimals can be stored"),
+        1 => "has too many decimals: at most 1 decimal".to_owned(),
+        most => format!("has too many decimals: at most {most} decimals"),
     }
 }
 
@@ -473,6 +475,7 @@ impl Field {
             name: self.name,
             found: text.to_owned(),
             most: number.decimals,
+            form: self.expected(),
         })
     }
 
@@ -539,10 +542,10 @@ mod tests {
         assert_eq!(X.read("0.100").unwrap(), Value::Number(10));
         assert_eq!(
             X.read("0.001").unwrap_err().to_string(),
-            "x: 0.001 has too many decimals: at most 2 decimals can be stored",
+            "x: 0.001 has too many decimals: at most 2 decimals (a number, -8000.00 to 8000.00 mm)",
             "nothing is rounded away"
         );
-        assert_eq!(STEP.read("1.5").unwrap_err().to_string(), "step: 1.5 is not a whole number");
+        assert_eq!(STEP.read("1.5").unwrap_err().to_string(), "step: 1.5 is not a whole number (a number, 1 to 5000)");
         assert_eq!(STEP.read("7.0").unwrap(), Value::Number(7));
         assert!(X.read("99999999999").is_err());
     }

@@ -314,12 +314,13 @@ impl Session for Line {
                 let quiet = self.stray.map_or(now, |stray| stray + QUIET);
                 let State::Settling(exchange) = &mut self.state else { return Step::Wait(Now::MAX) };
                 // Any block answers an order; what may be repeated, a stop among it, does not wait.
-                if !exchange.may_confirm {
-                    let until = *exchange.patience.get_or_insert(now + PATIENCE);
-                    exchange.not_before = exchange.not_before.max(quiet.min(until));
-                }
+                let quiet = if exchange.may_confirm {
+                    now
+                } else {
+                    quiet.min(*exchange.patience.get_or_insert(now + PATIENCE))
+                };
                 let settled = if self.owed > 0 { self.owed_until } else { now };
-                let at = settled.max(exchange.not_before).max(self.free);
+                let at = settled.max(exchange.not_before).max(quiet).max(self.free);
                 if at > now { Step::Wait(at) } else { self.send(now) }
             }
             State::Waiting(_, deadline) if now < *deadline => Step::Wait(*deadline),

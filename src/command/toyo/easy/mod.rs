@@ -98,7 +98,7 @@ mod tests {
         assert_eq!(blocks(&["easy", "get", "2"]).unwrap(), ["@RESY PNO=02 ST=000"]);
         assert_eq!(blocks(&["easy", "get"]).unwrap().len(), 8);
         assert_eq!(blocks(&["easy", "progress"]).unwrap(), ["@RESD"]);
-        assert_eq!(blocks(&["easy", "select", "3"]).unwrap(), ["@SESN PR=03"]);
+        assert_eq!(blocks(&["easy", "select", "3"]).unwrap(), ["@SESN PR=03", "@RESD"]);
         assert!(objection(&["easy", "get", "9"]).contains("9 is out of range"));
     }
 

@@ -38,8 +38,12 @@ impl Link {
         if status.pendant_on() {
             return Err(refusal::pendant());
         }
+        self.debts.host(true);
         match self.converse(&Request::bare(Command::Hson), false).await? {
-            Answer::Refused => Err(refusal::pendant()),
+            Answer::Refused => {
+                self.debts.host(false);
+                Err(refusal::pendant())
+            }
             Answer::Done | Answer::Data(_) => {
                 self.host = Host::Taken;
                 Ok(())
@@ -56,11 +60,14 @@ impl Link {
             return Ok(());
         }
         // Before it is sent: if the answer is lost, it may have been done.
+        self.debts.push(&back.text());
         self.borrowed.push(back);
         match self.try_order(change).await? {
             Ok(()) => Ok(()),
             Err(Refusal(request)) => {
-                self.borrowed.pop();
+                if let Some(back) = self.borrowed.pop() {
+                    self.debts.pop(&back.text());
+                }
                 Err(refusal::explained(self, &request).await)
             }
         }
@@ -87,7 +94,10 @@ impl Link {
             self.fence().await.unwrap_or_default();
             let failure = match self.converse(&back, true).await {
                 Ok(Answer::Refused) => kept("@NG".to_owned()),
-                Ok(_) => continue,
+                Ok(_) => {
+                    self.debts.pop(&back.text());
+                    continue;
+                }
                 Err(failure) => Failure { kind: failure.kind, ..kept(failure.message) },
             };
             outcome = outcome.and(Err(failure));
@@ -113,7 +123,10 @@ impl Link {
         self.fence().await.unwrap_or_default();
         match self.converse(&Request::bare(Command::Hsof), false).await {
             Ok(Answer::Refused) => Err(kept("@NG".to_owned())),
-            Ok(_) => Ok(()),
+            Ok(_) => {
+                self.debts.host(false);
+                Ok(())
+            }
             Err(failure) => Err(Failure { kind: failure.kind, ..kept(failure.message) }),
         }
     }

@@ -45,6 +45,9 @@ impl Link {
         self.line.renew();
         self.is_gone = false;
         self.host = Host::Unknown;
+        self.is_fenced = false;
+        // It may be another machine now.
+        self.letters = None;
         self.screen.detail(1, "the line is there again");
         Ok(())
     }

@@ -53,11 +53,14 @@ impl Link {
             return std::future::pending().await;
         }
         self.set_policy(Policy { timeout: SILENCE, retries: REPETITIONS, ..self.usual });
+        // What others have left behind is told when it stands.
+        let left = std::mem::take(&mut self.left);
         let stopped = self.stop_until_it_stands(moving).await;
+        self.left = left;
         self.set_policy(self.usual);
         self.trace.release();
         match &stopped {
-            Ok(_) => self.moving = None,
+            Ok(_) => self.has_ended(),
             // The next stop shall find the host as it is.
             Err(_) => self.keep_host(),
         }
@@ -143,7 +146,7 @@ impl Link {
         self.set_policy(self.usual);
         self.converse(&moving.stop(), true).await.map(|_| ()).unwrap_or_default();
         self.trace.release();
-        self.moving = None;
+        self.has_ended();
     }
 }
 

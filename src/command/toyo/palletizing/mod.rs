@@ -136,7 +136,7 @@ mod tests {
         assert_eq!(blocks(&["palletizing", "get", "3"]).len(), 16);
         assert_eq!(blocks(&["palletizing", "get", "3", "source-p1", "16"]), ["@RPLT 03 SNO=03", "@RPLT 03 SNO=16"]);
         assert_eq!(blocks(&["palletizing", "progress"]), ["@RPLD"]);
-        assert_eq!(blocks(&["palletizing", "select", "16"]), ["@SPLN PR=16"]);
+        assert_eq!(blocks(&["palletizing", "select", "16"]), ["@SPLN PR=16", "@RPLD"]);
         let copied = blocks(&["palletizing", "copy", "1", "2"]);
         assert_eq!((copied.len(), &copied[32][..]), (33, "@CPPL STA=01 TOP=02"));
         assert!(objection(&["palletizing", "get", "17"]).contains("17 is out of range (a number, 1 to 16)"));

@@ -375,3 +375,16 @@ fn a_part_knows_the_tags_around_it() {
     );
     assert!(told(part("0001 NOP", None))[0].ends_with("its first instruction is step 100 nevertheless"));
 }
+
+#[test]
+fn a_file_of_something_else_is_told_in_one_sentence() {
+    let points = format!("point,x_mm,y_mm,z_mm,r_mm\n{}", "1,2,3,4,5\n".repeat(50));
+    assert_eq!(
+        findings(points),
+        ["line 1, column 1: error: this is a CSV file of points, not a program (`toyo point set --from FILE` writes \
+             points)"]
+    );
+    assert_eq!(findings("\u{FEFF}\"Point\";\"x_mm\"\n").len(), 1);
+    assert_eq!(findings("[parameters]\nP01 = 1\nP02 = 2\n").len(), 1);
+    assert_eq!(findings("point: NOP\nEND\n").len(), 1, "a label may be called so");
+}
