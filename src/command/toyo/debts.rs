@@ -6,7 +6,7 @@
 use std::fs::{self, File, OpenOptions};
 use std::io::{Seek as _, Write as _};
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
@@ -54,6 +54,8 @@ pub struct Left {
 
 /// Notes are small; anything larger is none.
 const MOST: u64 = 16 * 1024;
+/// A robot that nobody has asked for so long is another one now, and its note goes.
+const OLD: Duration = Duration::from_secs(30 * 24 * 3600);
 
 impl Debts {
     /// Of a link to a robot.
@@ -163,6 +165,10 @@ fn abandoned(path: &Path) -> Option<Owed> {
     if !is_free(&file, &about) {
         return None;
     }
+    if about.modified().ok().and_then(|time| time.elapsed().ok()).is_some_and(|age| age > OLD) {
+        fs::remove_file(path).unwrap_or_default();
+        return None;
+    }
     serde_json::from_slice(&fs::read(path).ok()?).ok()
 }
 
@@ -187,7 +193,7 @@ fn lock(_: &File) {}
 #[cfg(not(unix))]
 fn is_free(_: &File, about: &fs::Metadata) -> bool {
     let age = about.modified().ok().and_then(|time| time.elapsed().ok());
-    age.is_some_and(|age| age > std::time::Duration::from_secs(3600))
+    age.is_some_and(|age| age > Duration::from_secs(3600))
 }
 
 #[cfg(test)]

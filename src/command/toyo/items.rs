@@ -217,7 +217,7 @@ mod tests {
             (["accel-table", "get", "1-3"], "rows", "row", "RPAR T3 A02"),
             (["torque-table", "get", "1-3"], "rows", "row", "RPAR T5 LIM02"),
             (["easy", "get", "1-3"], "programs", "program", "RESY PNO=02 ST=000"),
-            (["mvm", "get", "1-3"], "groups", "group", "RPAR T4 S3 MVM02"),
+            (["mvm", "get", "1-3"], "groups", "group", "RPAR T4 S3 GRP=02"),
             (["point", "get", "1-3"], "points", "point", "RPAR T1 PT=002"),
         ] {
             let asked = Box::leak(format!("@{block}").into_boxed_str());
@@ -256,7 +256,7 @@ mod tests {
     fn what_the_manual_does_not_list_is_kept_as_it_came() {
         for (block, answer, raw) in [
             ("@RPAR M18", "@RPAR M18 STN=01 BRT=156K", "M18 STN=01 BRT=156K"),
-            ("@RPAR P06", "@RPAR P06 AX1=+000.50 AX2=+00.5 AX3=+1.234 AX4=+000.00", "+00.5"),
+            ("@RPAR P06", "@RPAR P06 AX1=+0000.50 AX2=+0000.5 AX3=+0001.234 AX4=+0000.00", "+0000.5"),
             ("@RPAR E17", "@RPAR E17 E=I", "I"),
             ("@RPAR E19", "@RPAR E19 1130", "1130"),
         ] {
@@ -273,7 +273,7 @@ mod tests {
             // Nothing of it is written back by leaving it as it is.
             if id == "P06" {
                 let failure = bench.run(&["param", "set", "P06", "ax1=1"]).unwrap_err();
-                assert!(failure.message.contains("'ax2=+00.5', which is not in the manual"), "{failure}");
+                assert!(failure.message.contains("'ax2=+0000.5', which is not in the manual"), "{failure}");
                 assert_eq!(failure.hint.unwrap(), "nothing was written; give all values");
             }
             let dumped = bench.data(&["param", "dump"]);

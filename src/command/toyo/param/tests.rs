@@ -214,7 +214,7 @@ fn a_change_of_a_part_reads_once_before_it_writes() {
         (&["torque-table", "set", "2", "load=1"], "@RPAR T5 LIM02"),
         (&["easy", "set", "1", "loop=7"], "@RESY PNO=01 ST=000"),
         (&["palletizing", "set", "1", "source-p1", "x=5"], "@RPLT 01 SNO=03"),
-        (&["mvm", "set", "1", "origin=5"], "@RPAR T4 S1 MVM01"),
+        (&["mvm", "set", "1", "origin=5"], "@RPAR T4 S1 GRP=01"),
     ] {
         heard.borrow_mut().clear();
         bench.data(words);
