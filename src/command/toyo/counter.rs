@@ -157,7 +157,7 @@ mod tests {
     fn a_stale_ok_is_not_taken_for_that_of_an_order() {
         // The order before was given up, and its @OK comes when nobody waits for it any more.
         let late = |block: &str, _| match block {
-            "@MCST CN05=0007" => Fate::Late(std::time::Duration::from_millis(3045)),
+            "@MCST CN05=0007" => Fate::Late(std::time::Duration::from_millis(3010)),
             "@MCST CN06=0001" => Fate::Lost,
             _ => Fate::Pass,
         };

@@ -149,7 +149,7 @@ fn account(failure: Failure, work: Work, stores: &[Store], fates: &[Fate]) -> Fa
     }
     for (words, stores) in [("written or not", unknown), ("not written", rest)] {
         // One sentence says it of all of them.
-        if !stores.is_empty() && !(done.is_empty() && is_known) {
+        if !(stores.is_empty() || is_known && done.is_empty()) {
             parts.push(format!("{words}: {}", span(work, stores)));
         }
     }

@@ -170,12 +170,12 @@ async fn parameters_text(link: &mut Link, screen: &Screen) -> Result<Text, Failu
     Ok(Text { text, left_out: refused.chain(unfit).chain(failed).collect() })
 }
 
+/// A record by its key.
+type Keyed = (String, Record);
+
 /// What was answered, each by its key, as far as it can be written again; and what is left out. That the line fell silent
 /// is a failure of the whole part.
-fn sorted(
-    keys: impl IntoIterator<Item = String>,
-    answers: Answers,
-) -> Result<(Vec<(String, Record)>, Vec<LeftOut>), Failure> {
+fn sorted(keys: impl IntoIterator<Item = String>, answers: Answers) -> Result<(Vec<Keyed>, Vec<LeftOut>), Failure> {
     let (mut kept, mut left_out) = (Vec::with_capacity(answers.len()), Vec::new());
     for (key, answer) in keys.into_iter().zip(answers) {
         match answer {

@@ -48,7 +48,7 @@ impl Command for Get {
         let answers = read_each(link, screen, "reading records", &reads(self.program, &wanted)?).await?;
         let records = wanted.iter().copied().zip(&answers).map(|(pallet, answer)| Entry::answered(pallet, answer));
         let records = records.collect();
-        let kept = wanted.into_iter().zip(answers.into_iter());
+        let kept = wanted.into_iter().zip(answers);
         let kept = kept.filter_map(|(pallet, answer)| Some((pallet, answer.ok().filter(Record::is_listed)?)));
         let kept: Vec<_> = kept.collect();
         let file = target.map(|target| files::write(&target, &pallets::write(&kept))).transpose()?;

@@ -101,7 +101,7 @@ impl Insert {
         }
         let mut cells = Cells::default();
         link.store(screen, &steps::cell(step, instruction)?, &mut cells).await?;
-        Ok(Inserted { task, inserted: Step::of(step.into(), &instruction) })
+        Ok(Inserted { task, inserted: Step::of(step.into(), instruction) })
     }
 
     async fn rehearse(&self, link: &mut Link, screen: &Screen, instruction: &Record) -> Result<Inserted, Failure> {

@@ -63,9 +63,6 @@ fn expected(axes: usize) -> String {
     format!("the first line is {}", COLUMNS[..=axes.clamp(1, 4)].join(","))
 }
 
-/// A column that `-o csv` prints beside the coordinates: whether the point was read. It has no field.
-const OK: (&str, usize) = ("ok", usize::MAX);
-
 /// Which field each column is.
 fn header(line: &str, number: usize, axes: usize, findings: &mut Findings) -> Option<Vec<usize>> {
     let before = findings.errors();
@@ -77,8 +74,7 @@ fn header(line: &str, number: usize, axes: usize, findings: &mut Findings) -> Op
     }
     let mut columns = Vec::new();
     for (at, name) in told(cells(line), line, number, findings)? {
-        let column = COLUMNS.iter().position(|column| column.eq_ignore_ascii_case(&name));
-        match column.or_else(|| name.eq_ignore_ascii_case(OK.0).then_some(OK.1)) {
+        match COLUMNS.iter().position(|column| column.eq_ignore_ascii_case(&name)) {
             Some(index) if columns.contains(&index) => {
                 findings.error(place(at), format!("column {name} is there twice"), None);
             }
@@ -118,13 +114,6 @@ fn rows<'l>(lines: impl Iterator<Item = (usize, &'l str)>, header: &[usize], fin
         let mut values = vec![Value::Number(0); COLUMNS.len()];
         let before = findings.errors();
         for (index, (at, cell)) in header.iter().zip(&cells) {
-            if *index == OK.1 {
-                if !cell.eq_ignore_ascii_case("true") {
-                    let hint = "leave the line out, or read the points again".to_owned();
-                    findings.error(place(line, number, *at), "this point was not read", Some(hint));
-                }
-                continue;
-            }
             match coordinate(&table().layout.fields[*index], COLUMNS[*index], cell) {
                 Ok(value) => values[*index] = value,
                 Err((message, hint)) => findings.error(place(line, number, *at), message, hint),
@@ -229,15 +218,6 @@ mod tests {
 
     fn errors(text: &str) -> Vec<String> {
         read(text.as_bytes(), 4).unwrap_err().iter().map(ToString::to_string).collect()
-    }
-
-    #[test]
-    fn what_is_printed_as_csv_reads_back_as_far_as_it_was_read() {
-        let read = |text: &str| super::read(text.as_bytes(), 4);
-        let points = read("point,x_mm,y_mm,z_mm,r_mm,ok\n1,1,2,3,4,true\n").unwrap();
-        assert_eq!(points[0].0.values[4], Value::Number(400));
-        let errors = read("point,x_mm,y_mm,z_mm,r_mm,ok\n1,1,2,3,4,true\n2,0,0,0,0,false\n").unwrap_err();
-        assert_eq!((errors.len(), &*errors[0].message), (1, "this point was not read"));
     }
 
     #[test]
