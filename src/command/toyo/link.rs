@@ -20,7 +20,7 @@ use super::reach;
 use super::refusal;
 use super::trace::Trace;
 use super::wear::Wear;
-use crate::command::attach::{attach, hindered};
+use crate::command::attach::hindered;
 use crate::command::{Access, Family};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::{Misfit, Record};
@@ -128,11 +128,7 @@ impl Family for Toyo {
         let transport = if access.dry_run {
             Transport::Notes(Vec::new())
         } else {
-            let stream = match Box::pin(attach(robot, &access, screen)).await? {
-                Some(attached) => Stream::Session(attached),
-                None => way.open(robot).await?,
-            };
-            Transport::Stream(Box::new(stream))
+            Transport::Stream(Box::new(Box::pin(reach::open(robot, &access, screen)).await?))
         };
         let mut link = Link::new(robot, &access, screen, transport, way.character())?;
         link.again = Some((robot.clone(), access));

@@ -5,11 +5,9 @@
 //! which no `@OK` can be taken for, nothing older can come any more: then an order goes out.
 
 use super::{Link, Transport, status_page};
-use crate::command::attach::attach;
 use crate::command::toyo::reach;
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
-use crate::transport::stream::Stream;
 
 use super::borrowed::Host;
 
@@ -33,12 +31,7 @@ impl Link {
             return Ok(());
         }
         let Some((robot, access)) = self.again.clone() else { return Ok(()) };
-        let way = reach::way(&robot)?;
-        let opened = match Box::pin(attach(&robot, &access, &self.screen)).await {
-            Ok(Some(attached)) => Ok(Stream::Session(attached)),
-            Ok(None) => way.open(&robot).await,
-            Err(failure) => Err(failure),
-        };
+        let opened = Box::pin(reach::open(&robot, &access, &self.screen)).await;
         // Whatever is in the way, such as rights that a port gets a moment after it is there: it may pass.
         let stream = opened.map_err(|failure| Failure { kind: Kind::NoAnswer, ..failure })?;
         self.transport = Transport::Stream(Box::new(stream));
