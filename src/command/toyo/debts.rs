@@ -117,7 +117,7 @@ impl Debts {
         if self.file.is_none() {
             self.owed.since = now();
             fs::create_dir_all(folder)?;
-            let path = folder.join(format!("{}-{:08x}.json", std::process::id(), fastrand::u32(..)));
+            let path = folder.join(format!("{:016x}.json", fastrand::u64(..)));
             let file = OpenOptions::new().create_new(true).write(true).open(&path)?;
             lock(&file);
             self.file = Some((file, path));
