@@ -289,3 +289,84 @@ fn no_order_leaves_twice() {
         assert_eq!(count(&heard, order), 1, "{words}: {heard:?}");
     }
 }
+
+/// A controller behind a device server that takes one connection after the other, and hangs up at the blocks that are
+/// `peculiar`; it ends with the test.
+fn lasting(mut peculiar: impl FnMut(&str) -> Peculiar + Send + 'static) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let url = format!("tcp://{}", listener.local_addr().unwrap());
+    std::thread::spawn(move || {
+        let mut machine = Machine::default();
+        for stream in listener.incoming().map_while(Result::ok) {
+            let mut writer = stream.try_clone().unwrap();
+            for block in BufReader::new(stream).lines().map_while(Result::ok) {
+                if peculiar(&block) == Peculiar::HangUp {
+                    writer.shutdown(Shutdown::Both).unwrap_or_default();
+                    break;
+                }
+                let answer = machine.answer(&block);
+                if writer.write_all(format!("{answer}\r\n").as_bytes()).is_err() {
+                    break;
+                }
+            }
+        }
+    });
+    url
+}
+
+fn toyo(url: &str, state: &std::path::Path, words: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+    command.env("XDG_STATE_HOME", state).args(["-t", url, "--yes", "toyo"]).args(words.split_ascii_whitespace());
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+#[test]
+fn what_a_killed_command_has_left_is_told_until_it_is_undone() {
+    let state = tempfile::tempdir().unwrap();
+    let (tell, moves) = channel();
+    let url = lasting(move |block| {
+        if block == GO {
+            tell.send(()).unwrap_or_default();
+        }
+        Peculiar::No
+    });
+    let mut jog = toyo(&url, state.path(), JOG).spawn().unwrap();
+    moves.recv_timeout(Duration::from_secs(30)).unwrap();
+    signal(&jog, "KILL");
+    jog.wait().unwrap();
+    let said = errors(&toyo(&url, state.path(), "position").output().unwrap());
+    assert!(said.contains("something is still executed; `toyo stop` stops it, a jog too"), "{said}");
+    assert!(said.contains("the host is still ON, which was OFF; `toyo host off`"), "{said}");
+    assert!(toyo(&url, state.path(), "stop").status().unwrap().success());
+    let said = errors(&toyo(&url, state.path(), "position").output().unwrap());
+    assert!(!said.contains("executed") && said.contains("the host is still ON"), "{said}");
+    assert!(toyo(&url, state.path(), "host off").status().unwrap().success());
+    toyo(&url, state.path(), "position").status().unwrap();
+    let said = errors(&toyo(&url, state.path(), "position").output().unwrap());
+    assert_eq!(said, "");
+}
+
+#[test]
+fn a_watch_goes_on_when_the_line_is_back() {
+    let state = tempfile::tempdir().unwrap();
+    let mut places = 0;
+    let url = lasting(move |block| {
+        places += u32::from(block == "@MPST");
+        if block == "@MPST" && places == 3 { Peculiar::HangUp } else { Peculiar::No }
+    });
+    let watch = toyo(&url, state.path(), "position --watch=50ms --count 6 -o jsonl").output().unwrap();
+    assert!(watch.status.success(), "{}", errors(&watch));
+    let lines = String::from_utf8_lossy(&watch.stdout).into_owned();
+    let ok: Vec<bool> = lines.lines().map(|line| line.contains(r#""ok":true"#)).collect();
+    assert_eq!(ok, [true, true, false, true, true, true], "{lines}");
+    // `--until` lives through it, too.
+    let mut places = 0;
+    let url = lasting(move |block| {
+        places += u32::from(block == "@STAS SNO=0");
+        if block == "@STAS SNO=0" && places == 2 { Peculiar::HangUp } else { Peculiar::No }
+    });
+    let mut until = toyo(&url, state.path(), "status --watch=50ms");
+    let until = until.args(["--until", ".data.servo_on and false", "--count", "4"]).output().unwrap();
+    assert_eq!(until.status.code(), Some(8), "{}", errors(&until));
+}

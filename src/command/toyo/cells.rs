@@ -67,6 +67,27 @@ impl Link {
         self.overwrite(screen, cell, cells).await
     }
 
+    /// Stores one cell of which it is known what it holds, unless that is the same. A dry run is [`Link::store`]'s.
+    ///
+    /// # Errors
+    /// As those of [`Link::store`].
+    pub async fn store_over(
+        &mut self,
+        screen: &Screen,
+        cell: &Cell,
+        found: Option<&Record>,
+        cells: &mut Cells,
+    ) -> Result<(), Failure> {
+        match found.filter(|_| !self.is_dry()) {
+            None => self.store(screen, cell, cells).await,
+            Some(found) if cell.is(found) => {
+                cells.cells_unchanged += 1;
+                Ok(())
+            }
+            Some(_) => self.overwrite(screen, cell, cells).await,
+        }
+    }
+
     /// Stores one cell that is known to hold something else, and reads it back.
     ///
     /// # Errors
@@ -93,12 +114,15 @@ impl Link {
 
     /// Whether a cell holds what it should.
     async fn holds(&mut self, cell: &Cell) -> Result<bool, Failure> {
-        let answer = self.read(&cell.read).await?;
-        let content =
-            cell.read.answered(&answer).map_err(|error| self.malformed(&answer.written(), &error.to_string()))?;
-        let found = content.unwrap_or(answer);
+        Ok(cell.is(&self.read_content(&cell.read).await?))
+    }
+}
+
+impl Cell {
+    /// Whether what was read is what it should hold.
+    fn is(&self, found: &Record) -> bool {
         // A step holds an instruction, and others have fields of the same names.
-        let is_other = cell.read.command() == Command::Rstx && found.layout() != cell.wanted.layout();
-        Ok(!is_other && cell.wanted.pairs().all(|(field, wanted)| found.value(field.name) == Some(wanted)))
+        let is_other = self.read.command() == Command::Rstx && found.layout() != self.wanted.layout();
+        !is_other && self.wanted.pairs().all(|(field, wanted)| found.value(field.name) == Some(wanted))
     }
 }

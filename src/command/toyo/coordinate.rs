@@ -103,7 +103,7 @@ mod tests {
         );
         assert!(objection(&["coordinate", "set", "1", "2", "3"]).contains("<R>"));
         assert!(objection(&["coordinate", "set", "8000.01", "0", "0", "0"]).contains("-8000.00 to 8000.00 mm"));
-        assert!(objection(&["coordinate", "set", "0.001", "0", "0", "0"]).contains("is not a number"));
+        assert!(objection(&["coordinate", "set", "0.001", "0", "0", "0"]).contains("has too many decimals"));
         assert!(objection(&["coordinate", "set", "0", "0", "0", "0", "--speed", "11"]).contains("0 to 10"));
     }
 

@@ -5,10 +5,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use super::numbers::{Numbers, ask_all, number, small};
+use super::items::{self, Item, read_each};
+use super::numbers::{Numbers, not_held, number, read_back, small};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
+use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
@@ -57,10 +59,10 @@ impl Command for Get {
         let numbers = Numbers::of(&self.counters, &fields()[0]);
         let requests = numbers.iter().map(|number| Request::of(table::Command::Mcnt, [Value::Number(*number)]));
         let requests: Vec<Request> = requests.collect();
-        let answers = ask_all(context.link, context.screen, "reading counters", &requests).await?;
-        let counters = answers
-            .iter()
-            .map(|answer| Count { counter: small(answer, "counter"), count: answer.number("count").unwrap_or(0) });
+        let answers = read_each(context.link, context.screen, "reading counters", &requests).await?;
+        let count =
+            |answer: &Record| Count { counter: small(answer, "counter"), count: answer.number("count").unwrap_or(0) };
+        let counters = numbers.iter().zip(&answers).map(|(number, answer)| Item::of("counter", *number, answer, count));
         Ok(Counters { counters: counters.collect() })
     }
 }
@@ -77,7 +79,14 @@ impl Command for Set {
     async fn run(&self, context: Context<'_, Family>) -> Result<Count, Failure> {
         let Self { counter, value } = *self;
         let values = [Value::Number(counter), Value::Number(value)];
-        context.link.order(&Request::of(table::Command::Mcst, values)).await?;
+        let (link, order) = (context.link, Request::of(table::Command::Mcst, values));
+        link.order(&order).await?;
+        let read = Request::of(table::Command::Mcnt, [Value::Number(counter)]);
+        let found = read_back(link, &order, &read).await?.number("count");
+        if found.is_some_and(|found| found != value) {
+            return Err(not_held(&order, &format!("it stands at {}", found.unwrap_or_default()))
+                .hint("a program that runs may count on it meanwhile"));
+        }
         Ok(Count { counter: u8::try_from(counter).unwrap_or(u8::MAX), count: value })
     }
 }
@@ -85,7 +94,7 @@ impl Command for Set {
 /// Counters in the order they were asked for.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Counters {
-    counters: Vec<Count>,
+    counters: Vec<Item<Count>>,
 }
 
 /// A counter and what it stands at.
@@ -98,10 +107,14 @@ pub struct Count {
 impl Report for Counters {
     fn view(&self) -> View {
         let mut table = Table::new(&["counter", "count"], "no counters");
-        for Count { counter, count } in &self.counters {
-            table.row([(*counter).into(), (*count).into()]);
+        for counter in &self.counters {
+            counter.show(&mut table, |Count { counter, count }| vec![(*counter).into(), (*count).into()]);
         }
         View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::failure_of(&self.counters)
     }
 }
 
@@ -113,7 +126,8 @@ impl Report for Count {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{all_blocks, blocks, objection};
+    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, objection};
+    use crate::failure::Kind;
 
     #[test]
     fn counters_have_their_blocks() {
@@ -122,7 +136,37 @@ mod tests {
             ["@MCNT CN=01", "@MCNT CN=98", "@MCNT CN=99"]
         );
         assert_eq!(all_blocks(&["counter", "get"]).unwrap().len(), 99);
-        assert_eq!(blocks(&["counter", "set", "1", "1"]).unwrap(), ["@MCST CN01=0001"]);
+        assert_eq!(blocks(&["counter", "set", "1", "1"]).unwrap(), ["@MCST CN01=0001", "@MCNT CN=01"]);
+    }
+
+    #[test]
+    fn a_counter_that_was_set_is_read_back() {
+        let mut bench = Bench::new("sim:");
+        assert_eq!(bench.data(&["counter", "set", "5", "7"])["count"], 7);
+        let other =
+            |block: &str, _| if block == "@MCNT CN=05" { Fate::Answered("@MCNT CN05=0008") } else { Fate::Pass };
+        let failure = Bench::spoilt("", other).0.run(&["counter", "set", "5", "7"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::ConditionNotMet);
+        assert_eq!(failure.message, "the controller accepted @MCST CN05=0007, but it stands at 8");
+        let silent = |block: &str, _| if block == "@MCNT CN=05" { Fate::Lost } else { Fate::Pass };
+        let failure = Bench::spoilt("", silent).0.run(&["counter", "set", "5", "7"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::OutcomeUnknown);
+    }
+
+    #[test]
+    fn a_stale_ok_is_not_taken_for_that_of_an_order() {
+        // The order before was given up, and its @OK comes when nobody waits for it any more.
+        let late = |block: &str, _| match block {
+            "@MCST CN05=0007" => Fate::Late(std::time::Duration::from_millis(3010)),
+            "@MCST CN06=0001" => Fate::Lost,
+            _ => Fate::Pass,
+        };
+        let (mut bench, heard) = Bench::spoilt("host = true\n", late);
+        assert_eq!(bench.run(&["counter", "set", "5", "7"]).unwrap_err().kind, Kind::OutcomeUnknown);
+        heard.borrow_mut().clear();
+        // No `@OK` of its own came: whether it was done is open, not done.
+        assert_eq!(bench.run(&["counter", "set", "6", "1"]).unwrap_err().kind, Kind::OutcomeUnknown);
+        assert_eq!(heard.borrow()[..2], ["@STAS SNO=0", "@MCST CN06=0001"], "something harmless is asked first");
     }
 
     #[test]

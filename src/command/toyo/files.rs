@@ -59,5 +59,5 @@ pub fn faulty(name: &str, errors: &[Finding]) -> Failure {
             format!("{name}:{line}:{column}: {message}{hint}")
         })
         .collect();
-    Failure::usage(lines.join("\n")).hint("nothing was sent; correct the file")
+    Failure::usage(lines.join("\n")).hint("nothing was written; correct the file")
 }

@@ -3,6 +3,8 @@
 use clap::Args;
 
 use super::Family;
+use super::orders::not_so;
+use super::waiting::becomes;
 use crate::command::orders::{Done, Switch};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -30,12 +32,15 @@ impl Command for Host {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
-        let (command, done) = match self.to {
-            Switch::On => (table::Command::Hson, "the host commands; the start input does not"),
-            Switch::Off => (table::Command::Hsof, "the start input commands again; the host does not"),
+        let (command, is_on, done) = match self.to {
+            Switch::On => (table::Command::Hson, true, "the host commands; the start input does not"),
+            Switch::Off => (table::Command::Hsof, false, "the start input commands again; the host does not"),
         };
         context.link.order(&Request::bare(command)).await?;
-        Ok(Done::new(done))
+        if becomes(context.link, (2, "whether it is"), |status| status.host_on() == is_on).await? {
+            return Ok(Done::new(done));
+        }
+        Err(not_so("the host").hint("`toyo status` tells who commands"))
     }
 }
 
@@ -45,8 +50,8 @@ mod tests {
 
     #[test]
     fn the_order_goes_out_alone() {
-        assert_eq!(all_blocks(&["host", "on"]).unwrap(), ["@HSON"]);
-        assert_eq!(blocks(&["position"]).unwrap(), ["@MPST"]);
+        assert_eq!(all_blocks(&["host", "on"]).unwrap(), ["@HSON", "@STAS SNO=2"]);
+        assert_eq!(blocks(&["position"]).unwrap(), ["@SYSP", "@MPST"]);
         assert!(objection(&["host", "maybe"]).contains("maybe"));
         assert_eq!(intent(&["host", "off"]), "");
     }

@@ -1,6 +1,7 @@
 //! `toyo jog`: one axis, for a time or by small steps. Whatever happens, the stop goes out in the end.
 
 use std::convert::Infallible;
+use std::fmt;
 use std::sync::mpsc::{self, Sender};
 use std::time::Duration;
 
@@ -10,15 +11,15 @@ use serde::Serialize;
 use tokio::time::{Instant, sleep, sleep_until, timeout_at};
 
 use super::Family;
+use super::letters::Letters;
 use super::link::{Link, Moving, jog};
-use super::position::Place;
+use super::position::{Place, titled};
 use super::refusal;
 use super::waiting::{LOOK_EVERY, position, present_error, status_page};
 use crate::command::interrupt::abandoned;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
-use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::{Cell, View};
@@ -31,8 +32,8 @@ use crate::settings::duration;
 /// sleeps, or when the cable is pulled: keep the emergency stop at hand. After such an end: `toyo stop --jog`.
 #[derive(Debug, Args)]
 pub struct Jog {
-    /// The axis, by letter or number
-    #[arg(ignore_case = true)]
+    /// The axis, by its letter on the teach pendant, or by its number
+    #[arg(value_name = "X|Y|Z|R|1-4", value_parser = axis)]
     axis: Axis,
     /// Which way
     direction: Direction,
@@ -46,34 +47,62 @@ pub struct Jog {
     steps: Option<u8>,
 }
 
-/// An axis by its place, whatever letter the pendant shows for it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+/// An axis as it was typed.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Axis {
-    /// Axis 1
-    #[value(name = "X", alias = "1")]
-    X,
-    /// Axis 2
-    #[value(name = "Y", alias = "2")]
-    Y,
-    /// Axis 3
-    #[value(name = "Z", alias = "3")]
-    Z,
-    /// Axis 4
-    #[value(name = "R", alias = "4")]
-    R,
+    /// By its place, 0 to 3, whatever letter the pendant shows for it.
+    Place(usize),
+    /// By the letter that the pendant shows for it, which is the machine's (E01).
+    Letter(String),
+}
+
+/// The letters there can be (TO 2-4, E01).
+const LETTERS: [&str; 4] = ["X", "Y", "Z", "R"];
+
+fn axis(text: &str) -> Result<Axis, String> {
+    if let Some(place) = ["1", "2", "3", "4"].iter().position(|number| *number == text) {
+        return Ok(Axis::Place(place));
+    }
+    let letter = LETTERS.iter().find(|letter| letter.eq_ignore_ascii_case(text));
+    letter.map(|letter| Axis::Letter((*letter).to_owned())).ok_or_else(|| "axes are X, Y, Z, R or 1 to 4".to_owned())
 }
 
 impl Axis {
-    const fn index(self) -> usize {
-        self as usize
+    /// Its place, 0 to 3, on a machine with these letters.
+    fn place(&self, letters: &Letters) -> Result<usize, Failure> {
+        match self {
+            Self::Place(place) => Ok(*place),
+            Self::Letter(letter) => letters.axis(letter).ok_or_else(|| {
+                Failure::usage(format!(
+                    "which axis {letter} is, is open: the letters of axes 1 to 4 are {}",
+                    letters.all().join(", ")
+                ))
+                .hint("name the axis by its number, 1 to 4; `toyo param get axis-letters` shows the letters")
+            }),
+        }
     }
+}
 
-    const fn letter(self) -> &'static str {
-        ["X", "Y", "Z", "R"][self.index()]
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Place(place) => write!(f, "{}", place + 1),
+            Self::Letter(letter) => f.write_str(letter),
+        }
     }
+}
 
-    fn of(self, place: &Place) -> f64 {
-        [place.x_mm, place.y_mm, place.z_mm, place.r_mm][self.index()]
+/// An axis of this machine.
+#[derive(Debug, Clone)]
+struct Known {
+    /// 0 to 3.
+    index: usize,
+    letter: String,
+}
+
+impl Known {
+    fn of(&self, place: &Place) -> f64 {
+        [place.x_mm, place.y_mm, place.z_mm, place.r_mm][self.index]
     }
 }
 
@@ -148,29 +177,29 @@ impl Jog {
         }
     }
 
-    fn order(&self) -> Request {
-        jog(self.word(), Some(self.axis.index()))
+    fn order(&self, axis: &Known) -> Request {
+        jog(self.word(), Some(axis.index))
     }
 
-    fn foresee(&self, link: &mut Link) {
+    fn foresee(&self, link: &mut Link, axis: &Known) {
         link.foresee(&position(), "where it stands");
         let steps = self.steps.unwrap_or(1);
         match self.within {
-            Some(time) => link.foresee(&self.order(), &format!("then {} pass", duration::display(time))),
-            None if steps > 1 => link.foresee(&self.order(), &format!("{steps} times, when the axis stands again")),
-            None => link.foresee(&self.order(), "once"),
+            Some(time) => link.foresee(&self.order(axis), &format!("then {} pass", duration::display(time))),
+            None if steps > 1 => link.foresee(&self.order(axis), &format!("{steps} times, when the axis stands again")),
+            None => link.foresee(&self.order(axis), "once"),
         }
         link.foresee(&status_page(0), "while it moves: whether there is an error");
         link.foresee(&position(), "while it moves: where it is");
     }
 
     /// Moves until the time is over, or by all steps. Returns how many steps were done.
-    async fn go(&self, link: &mut Link, live: &Live, start: Place) -> Result<u8, Cut> {
-        let Some(time) = self.within else { return self.inch(link, live, start).await };
+    async fn go(&self, link: &mut Link, live: &Live, axis: &Known, start: Place) -> Result<u8, Cut> {
+        let Some(time) = self.within else { return self.inch(link, live, axis, start).await };
         link.watch_closely();
         let until = Instant::now() + time;
         let mut is_accepted = false;
-        match timeout_at(until, self.hold(link, live, until, &mut is_accepted)).await {
+        match timeout_at(until, self.hold(link, live, axis, until, &mut is_accepted)).await {
             Ok(Err(cut)) => Err(cut),
             Err(_) if is_accepted => Ok(0),
             Err(_) => Err(Cut::Failed(Failure::new(Kind::OutcomeUnknown, "the order was not answered in its time"))),
@@ -182,11 +211,12 @@ impl Jog {
         &self,
         link: &mut Link,
         live: &Live,
+        axis: &Known,
         until: Instant,
         is_accepted: &mut bool,
     ) -> Result<Infallible, Cut> {
         let began = Instant::now();
-        link.try_order(&self.order()).await?.map_err(|_| Cut::Refused)?;
+        link.try_order(&self.order(axis)).await?.map_err(|_| Cut::Refused)?;
         *is_accepted = true;
         // A look is two questions.
         let mut longest = 2 * began.elapsed();
@@ -204,11 +234,11 @@ impl Jog {
     }
 
     /// Moves by small steps, each when the axis stands again.
-    async fn inch(&self, link: &mut Link, live: &Live, start: Place) -> Result<u8, Cut> {
+    async fn inch(&self, link: &mut Link, live: &Live, axis: &Known, start: Place) -> Result<u8, Cut> {
         let steps = self.steps.unwrap_or(1);
         let mut last = start;
         for step in 1..=steps {
-            last = self.step(link, last).await.map_err(|cut| match cut {
+            last = self.step(link, axis, last).await.map_err(|cut| match cut {
                 Cut::Failed(failure) => {
                     Cut::Failed(Failure { message: format!("step {step} of {steps}: {}", failure.message), ..failure })
                 }
@@ -220,8 +250,8 @@ impl Jog {
     }
 
     /// Moves by one small step; where the axis then stands.
-    async fn step(&self, link: &mut Link, start: Place) -> Result<Place, Cut> {
-        link.try_order(&self.order()).await?.map_err(|_| Cut::Refused)?;
+    async fn step(&self, link: &mut Link, axis: &Known, start: Place) -> Result<Place, Cut> {
+        link.try_order(&self.order(axis)).await?.map_err(|_| Cut::Refused)?;
         let (mut last, began) = (start, Instant::now());
         loop {
             let (is_busy, here) = look(link).await?;
@@ -271,7 +301,7 @@ impl Command for Jog {
     }
 
     fn intent(&self) -> String {
-        let axis = self.axis.letter();
+        let axis = &self.axis;
         let way = if self.direction == Direction::Plus { "plus" } else { "minus" };
         match (self.speed, self.within) {
             (Speed::High, Some(time)) => {
@@ -293,9 +323,12 @@ impl Command for Jog {
             return Err(Failure::usage("only inching goes by steps").hint("give the time with --for"));
         }
         let link = context.link;
+        let letters = link.letters().await?;
+        let index = self.axis.place(&letters)?;
+        let axis = Known { index, letter: letters.of(index).to_owned() };
         link.order(&jog("RS", None)).await?;
         if link.is_dry() {
-            self.foresee(link);
+            self.foresee(link, &axis);
             link.stop(Moving::Jog).await?;
         }
         let start = Place::of(&link.read(&position()).await?);
@@ -304,15 +337,21 @@ impl Command for Jog {
         let gone = tokio::select! {
             biased;
             key = abandoned() => Err(Cut::Failed(Failure::new(Kind::Interrupted, key))),
-            gone = self.go(link, &live, start) => gone,
+            gone = self.go(link, &live, &axis, start) => gone,
         };
+        if let Err(Cut::Refused) = gone {
+            // Nothing moves by this order: what is executed is somebody else's, and no reason to wait for a stop.
+            link.give_up(Moving::Jog).await;
+            live.end();
+            return Err(refusal::explained(link, &self.order(&axis)).await);
+        }
         // Whatever has happened.
         let elapsed = began.elapsed();
         let end =
             Place::of(&link.stop(Moving::Jog).await.map_err(|failure| still_moving(gone.as_ref().err(), failure))?);
         live.end();
         match gone {
-            Ok(steps) => Ok(Jogged::of(self, start, end, elapsed, steps)),
+            Ok(steps) => Ok(Jogged::of(self, axis, (start, end), elapsed, steps)),
             Err(cut) => Err(cut_short(link, cut, &end).await),
         }
     }
@@ -322,7 +361,7 @@ impl Command for Jog {
 async fn cut_short(link: &mut Link, cut: Cut, place: &Place) -> Failure {
     let stopped = format!("the axis was stopped and stands at {}", place.in_a_line());
     match cut {
-        Cut::Refused => refusal::explained(link, table::Command::Jgst).await,
+        Cut::Refused => refusal::explained(link, &jog("RS", None)).await,
         Cut::Error => {
             let tell = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{what}; {stopped}"));
             present_error(link, &tell).await
@@ -375,8 +414,10 @@ impl Live {
 /// What became of a jog.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Jogged {
-    /// `X`, `Y`, `Z` or `R`.
-    axis: &'static str,
+    /// Its letter: `X`, `Y`, `Z` or `R`.
+    axis: String,
+    /// Its number, 1 to 4.
+    axis_number: usize,
     /// As on the line: `+L`.
     word: &'static str,
     /// Inching steps that were done; null for low and high.
@@ -392,10 +433,11 @@ pub struct Jogged {
 }
 
 impl Jogged {
-    fn of(jog: &Jog, start: Place, end: Place, elapsed: Duration, steps: u8) -> Self {
-        let moved = jog.axis.of(&end) - jog.axis.of(&start);
+    fn of(jog: &Jog, axis: Known, (start, end): (Place, Place), elapsed: Duration, steps: u8) -> Self {
+        let moved = axis.of(&end) - axis.of(&start);
         Self {
-            axis: jog.axis.letter(),
+            axis_number: axis.index + 1,
+            axis: axis.letter,
             word: jog.word(),
             steps: (jog.speed == Speed::Inch).then_some(steps),
             elapsed_ms: u64::try_from(elapsed.as_millis()).unwrap_or(u64::MAX),
@@ -410,7 +452,7 @@ impl Report for Jogged {
     fn view(&self) -> View {
         let steps = self.steps.map_or_else(|| "-".into(), Cell::from);
         View::fields([
-            ("axis", self.axis.into()),
+            ("axis", titled(self.axis_number - 1, &self.axis).into()),
             ("moved (mm)", Cell::number(format!("{:.2}", self.moved_mm))),
             ("steps", steps),
             ("elapsed (ms)", self.elapsed_ms.into()),

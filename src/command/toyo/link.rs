@@ -1,6 +1,8 @@
 //! The connection to a controller: the one driver that moves characters between the session and a line.
 
 mod borrowed;
+mod fence;
+mod left;
 mod stop;
 
 use std::io;
@@ -10,12 +12,14 @@ use std::time::Duration;
 use serde_json::json;
 use tokio::time::Instant;
 
+use super::debts::{Debts, Left};
+use super::letters::Letters;
 use super::position::Place;
 use super::reach;
 use super::refusal;
 use super::trace::Trace;
 use super::wear::Wear;
-use crate::command::attach::{attach, hindered};
+use crate::command::attach::hindered;
 use crate::command::dry_run::{Plan, Reason, unknown};
 use crate::command::{Access, Family};
 use crate::controller::toyo::field::Value;
@@ -60,8 +64,17 @@ pub struct Link {
     started: Instant,
     trace: Trace,
     waited: Duration,
-    /// Whether the line is gone: nothing more is tried on it.
+    /// Whether the line is gone: nothing more is tried on it but what only reads, over a new one.
     is_gone: bool,
+    /// What is changed for a while, for others to find if this process is killed; and what others have left.
+    debts: Debts,
+    left: Vec<Left>,
+    /// How to open it again.
+    again: Option<(Robot, Access)>,
+    /// Whether nothing can come any more that answers what was asked before.
+    is_fenced: bool,
+    /// Letters of the axes, once they were asked for.
+    letters: Option<Letters>,
     /// Writes to the EEPROM.
     pub(super) wear: Wear,
 }
@@ -96,9 +109,9 @@ pub enum Moving {
     Program,
 }
 
-/// A controller's "no" (`@NG`): it has no code.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Refusal(pub Command);
+/// A controller's "no" (`@NG`) to a request: it has no code.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refusal(pub Request);
 
 /// Room for what arrives in one piece.
 const BUFFER: usize = 1024;
@@ -116,13 +129,11 @@ impl Family for Toyo {
         let transport = if access.dry_run {
             Transport::Notes(Plan::default())
         } else {
-            let stream = match Box::pin(attach(robot, &access, screen)).await? {
-                Some(attached) => Stream::Session(attached),
-                None => way.open(robot).await?,
-            };
-            Transport::Stream(Box::new(stream))
+            Transport::Stream(Box::new(Box::pin(reach::open(robot, &access, screen)).await?))
         };
-        Link::new(robot, &access, screen, transport, way.character())
+        let mut link = Link::new(robot, &access, screen, transport, way.character())?;
+        link.again = Some((robot.clone(), access));
+        Ok(link)
     }
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
@@ -149,8 +160,11 @@ impl Family for Toyo {
     }
 
     async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
+        link.tell_what_is_left().await;
         let put_back = link.put_back().await;
         let given_back = put_back.and(link.give_back().await);
+        // What goes on now was told.
+        link.debts.moving(None);
         let Counters { sent, received, noise, garbled, foreign, echoes } = link.line.counters();
         screen.detail(1, &format!("{sent} blocks sent, {received} received in {:.1?}", link.waited));
         let odd = [(noise, "stray characters"), (garbled, "garbled"), (foreign, "foreign or late"), (echoes, "echoes")];
@@ -181,6 +195,12 @@ impl Link {
         let trace = Trace::open(access, screen, transport.ends())?;
         let is_kept = !robot.target.value.is_simulated();
         let wear = if is_kept { Wear::of(&robot.target.value.to_string()) } else { Wear::without_diary() };
+        let debts = if is_kept && !access.dry_run {
+            Debts::of(&robot.target.value.to_string())
+        } else {
+            Debts::without_notes()
+        };
+        let left = debts.left();
         Ok(Self {
             transport,
             line: Line::new(policy),
@@ -196,6 +216,11 @@ impl Link {
             trace,
             waited: Duration::ZERO,
             is_gone: false,
+            debts,
+            left,
+            again: None,
+            is_fenced: false,
+            letters: None,
             wear,
         })
     }
@@ -226,7 +251,7 @@ impl Link {
     pub async fn read(&mut self, request: &Request) -> Result<Record, Failure> {
         match self.try_read(request).await? {
             Ok(record) => Ok(record),
-            Err(Refusal(command)) => Err(refusal::explained(self, command).await),
+            Err(Refusal(request)) => Err(refusal::explained(self, &request).await),
         }
     }
 
@@ -239,7 +264,7 @@ impl Link {
         }
         match self.exchange(request).await? {
             Answer::Data(record) => Ok(Ok(record)),
-            Answer::Refused => Ok(Err(Refusal(request.command()))),
+            Answer::Refused => Ok(Err(Refusal(request.clone()))),
             Answer::Done => Err(self.malformed("@OK", "data is expected")),
         }
     }
@@ -259,7 +284,7 @@ impl Link {
     pub async fn read_content(&mut self, request: &Request) -> Result<Record, Failure> {
         match self.try_read_content(request).await? {
             Ok(content) => Ok(content),
-            Err(Refusal(command)) => Err(refusal::explained(self, command).await),
+            Err(Refusal(request)) => Err(refusal::explained(self, &request).await),
         }
     }
 
@@ -279,7 +304,7 @@ impl Link {
     pub async fn order(&mut self, request: &Request) -> Result<(), Failure> {
         match self.try_order(request).await? {
             Ok(()) => Ok(()),
-            Err(Refusal(command)) => Err(refusal::explained(self, command).await),
+            Err(Refusal(request)) => Err(refusal::explained(self, &request).await),
         }
     }
 
@@ -293,8 +318,9 @@ impl Link {
             self.note(request, Reason::default());
             return Ok(Ok(()));
         }
+        self.fence().await?;
         Ok(match self.exchange(request).await? {
-            Answer::Refused => Err(Refusal(request.command())),
+            Answer::Refused => Err(Refusal(request.clone())),
             Answer::Done | Answer::Data(_) => Ok(()),
         })
     }
@@ -304,6 +330,7 @@ impl Link {
         if wants_host(request) {
             self.take_host().await?;
         }
+        self.fence().await?;
         self.read(request).await
     }
 
@@ -355,16 +382,28 @@ impl Link {
         let risk = request.risk();
         self.granted.check(risk, &request.text())?;
         request.check().map_err(|error| misuse(&error))?;
+        self.revive(risk).await?;
+        if !self.left.is_empty() && !matches!(request.command(), Command::Stop | Command::Jgst) {
+            self.tell_what_is_left().await;
+        }
         self.take_turn(risk).await?;
+        self.is_fenced = false;
         if risk == Risk::Motion {
             self.moving = Some(if request.command() == Command::Jgst { Moving::Jog } else { Moving::Program });
+            self.debts.moving(self.moving);
         }
         self.line.begin(request, is_repeatable);
         match self.drive(risk).await? {
             Ended::Answered(block) => {
-                request.answer(&block).map_err(|error| self.malformed(&block, &error.to_string()))
+                // An order's answer tells nothing of what was before it; that of a question came after all else.
+                self.is_fenced = risk == Risk::Read;
+                request.answer_kept(&block).map_err(|error| self.malformed(&block, &error.to_string()))
             }
-            ended => Err(self.unanswered(ended, risk, refusal::telltale(request.command()))),
+            ended => {
+                let failure = self.unanswered(ended, risk, refusal::telltale(request.command()));
+                let message = format!("{} ({})", failure.message, request.text());
+                Err(Failure { message, ..failure })
+            }
         }
     }
 
@@ -443,9 +482,20 @@ impl Link {
         self.line.set_policy(policy);
     }
 
+    /// The letters of the axes, if they were asked for.
+    pub(super) fn known_letters(&self) -> Option<&Letters> {
+        self.letters.as_ref()
+    }
+
+    /// Keeps the letters of the axes.
+    pub(super) fn know_letters(&mut self, letters: Letters) {
+        self.letters = Some(letters);
+    }
+
     /// Nothing that this link set in motion moves any more.
     pub fn has_ended(&mut self) {
         self.moving = None;
+        self.debts.moving(None);
     }
 
     /// Whether a session holds the line, and others may use it at the same time.

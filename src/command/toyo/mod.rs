@@ -10,6 +10,7 @@ mod copies;
 mod counter;
 #[cfg(test)]
 mod coverage;
+mod debts;
 mod easy;
 mod error;
 mod files;
@@ -18,7 +19,9 @@ mod host;
 mod info;
 mod init;
 mod io;
+mod items;
 mod jog;
+mod letters;
 pub mod link;
 mod mvm;
 mod numbers;

@@ -3,10 +3,11 @@
 use std::collections::HashSet;
 
 use super::link::Link;
+use super::refusal;
 use crate::controller::toyo::field::{Field, Form, Value};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
 /// A number, or a range of them: `5`, `1-5`, `1..5`.
@@ -82,6 +83,19 @@ pub async fn ask_all(
         }
     }
     Ok(answers)
+}
+
+/// Reads back what was ordered. In a dry run the question is noted.
+pub async fn read_back(link: &mut Link, order: &Request, read: &Request) -> Result<Record, Failure> {
+    link.read(read).await.map_err(|failure| {
+        let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
+        Failure::new(Kind::OutcomeUnknown, message).hint(refusal::telltale(order.command()))
+    })
+}
+
+/// What was read back is something else.
+pub fn not_held(order: &Request, found: &str) -> Failure {
+    Failure::new(Kind::ConditionNotMet, format!("the controller accepted {}, but {found}", order.text()))
 }
 
 /// Asks for what is stored, one after the other, as [`ask_all`] does; returns what is in the answers.

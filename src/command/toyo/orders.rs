@@ -137,7 +137,7 @@ impl Command for Mode {
 }
 
 /// Accepted, and yet not so.
-fn not_so(what: &str) -> Failure {
+pub(super) fn not_so(what: &str) -> Failure {
     Failure::new(Kind::ConditionNotMet, format!("the order was accepted, but {what} has not changed within 1s"))
 }
 
@@ -279,7 +279,10 @@ mod tests {
         bench.wait(std::time::Duration::from_secs(2));
         assert!(bench.data(&["stop"])["position"]["x_mm"].as_f64().unwrap() < -10.0);
         assert_eq!(bench.data(&["status"])["executing"], false);
-        assert!(!heard.borrow().iter().any(|block| block.starts_with("@JGST")));
+        // Something is executed, so a jog is stopped in the same round.
+        let heard = heard.borrow();
+        let stop = heard.iter().position(|block| block == "@STOP").unwrap();
+        assert_eq!(heard[stop + 1..stop + 3], ["@STAS SNO=0", "@JGST X=SP Y=SP Z=SP R=SP"]);
     }
 
     #[test]
@@ -305,5 +308,28 @@ mod tests {
         bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
         bench.data(&["stop"]);
         assert_eq!(bench.data(&["status"])["executing"], false);
+    }
+
+    #[test]
+    fn a_jog_that_was_left_is_stopped_in_the_first_round_also_with_the_host_off() {
+        let jog = "@JGST X=SP Y=SP Z=SP R=SP";
+        for refuses in [false, true] {
+            // STOP does not stop it; with the host OFF, the first stop of the JOG is refused.
+            let (mut bench, heard) = Bench::spoilt("host = true\n", move |block, count| match block {
+                "@STOP" => Fate::Answered("@OK"),
+                "@STAS SNO=2" if refuses && count == 1 => Fate::Answered("@STAS SNO=2 ST1=00 ST2=00"),
+                _ if block == jog && refuses && count == 1 => Fate::Answered("@NG"),
+                _ => Fate::Pass,
+            });
+            bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
+            heard.borrow_mut().clear();
+            bench.data(&["stop"]);
+            assert_eq!(bench.data(&["status"])["executing"], false);
+            let heard = heard.borrow();
+            let of = |block: &str| heard.iter().position(|other| other == block).unwrap();
+            assert!(of("@STOP") < of(jog) && of(jog) < of("@MPST"), "{heard:#?}");
+            let last = heard.iter().rposition(|block| block == jog).unwrap();
+            assert!(last < of("@MPST"), "all of it before the first look at the place: {heard:#?}");
+        }
     }
 }

@@ -10,7 +10,7 @@ use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
-use crate::output::view::{Cell, View};
+use crate::output::view::{Cell, Section, View};
 
 /// Asks for the present position.
 #[derive(Debug, Args)]
@@ -18,25 +18,67 @@ pub struct Position {}
 
 impl Command for Position {
     type Family = Family;
-    type Report = Place;
+    type Report = Stands;
     const ID: &'static str = "toyo.position";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Place, Failure> {
-        let record = context.link.read(&Request::bare(table::Command::Mpst)).await?;
-        Ok(Place::of(&record))
+    async fn run(&self, context: Context<'_, Family>) -> Result<Stands, Failure> {
+        let link = context.link;
+        let letters = link.letters().await?;
+        let record = link.read(&Request::bare(table::Command::Mpst)).await?;
+        Ok(Stands { place: Place::of(&record), axes: letters.all() })
     }
 }
 
-/// Coordinates of the four axes (the manual gives no unit; ambiguity R13).
+/// Where the axes are, with their letters.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Stands {
+    #[serde(flatten)]
+    place: Place,
+    /// The letters that the teach pendant shows for axes 1 to 4, of which `x_mm`, `y_mm`, `z_mm` and `r_mm` are the
+    /// coordinates in this order.
+    axes: [String; 4],
+}
+
+impl Report for Stands {
+    fn view(&self) -> View {
+        let Place { x_mm, y_mm, z_mm, r_mm } = self.place;
+        let axes = self.axes.iter().zip([x_mm, y_mm, z_mm, r_mm]).enumerate();
+        let fields = axes.map(|(index, (letter, mm))| (heading(index, letter), Cell::number(format!("{mm:.2}"))));
+        View { sections: vec![Section::Fields(fields.collect())] }
+    }
+}
+
+/// What stands before or above the coordinates of an axis, 0 to 3.
+pub fn heading(index: usize, letter: &str) -> &'static str {
+    const HEADINGS: [[&str; 5]; 4] = [
+        ["X (mm)", "axis 1: Y (mm)", "axis 1: Z (mm)", "axis 1: R (mm)", "axis 1 (mm)"],
+        ["axis 2: X (mm)", "Y (mm)", "axis 2: Z (mm)", "axis 2: R (mm)", "axis 2 (mm)"],
+        ["axis 3: X (mm)", "axis 3: Y (mm)", "Z (mm)", "axis 3: R (mm)", "axis 3 (mm)"],
+        ["axis 4: X (mm)", "axis 4: Y (mm)", "axis 4: Z (mm)", "R (mm)", "axis 4 (mm)"],
+    ];
+    let column = ["X", "Y", "Z", "R"].iter().position(|usual| *usual == letter).unwrap_or(4);
+    HEADINGS[index.min(3)][column]
+}
+
+/// How an axis (0 to 3) is called: by its letter, and by its number where others have it in another place.
+pub fn titled(index: usize, letter: &str) -> String {
+    if ["X", "Y", "Z", "R"].get(index) == Some(&letter) {
+        letter.to_owned()
+    } else {
+        format!("axis {} ({letter})", index + 1)
+    }
+}
+
+/// Coordinates of the four axes, which are X, Y, Z and R on the line whatever their letters are (the manual gives no unit; ambiguity R13).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Place {
-    /// Axis X.
+    /// Axis 1.
     pub x_mm: f64,
-    /// Axis Y.
+    /// Axis 2.
     pub y_mm: f64,
-    /// Axis Z.
+    /// Axis 3.
     pub z_mm: f64,
-    /// Axis R, in the same unit as the others.
+    /// Axis 4, in the same unit as the others.
     pub r_mm: f64,
 }
 

@@ -7,6 +7,7 @@ use tokio::time::Instant;
 use super::link::Toyo;
 use super::overview::overview;
 use super::simulated::{self, Simulated};
+use crate::command::attach::attach;
 use crate::command::{Access, Family as _};
 use crate::failure::{Failure, Kind, plain};
 use crate::output::Screen;
@@ -87,6 +88,14 @@ impl Way<'_> {
                 Ok(Stream::InProcess(Box::new(line)))
             }
         }
+    }
+}
+
+/// Opens it, or joins the session that holds it.
+pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Stream<Box<dyn Peer>>, Failure> {
+    match Box::pin(attach(robot, access, screen)).await? {
+        Some(attached) => Ok(Stream::Session(attached)),
+        None => way(robot)?.open(robot).await,
     }
 }
 

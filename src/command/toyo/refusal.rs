@@ -3,21 +3,30 @@
 use super::link::Link;
 use crate::controller::Risk;
 use crate::controller::toyo::errors;
+use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::{ProgramKind, RunMode, Status};
 use crate::controller::toyo::table::commands::{Command, Row};
 use crate::failure::{Failure, Kind};
 
 /// What may be behind a refusal, as far as the status tells.
-pub async fn explained(link: &mut Link, command: Command) -> Failure {
-    let row = command.row();
+pub async fn explained(link: &mut Link, request: &Request) -> Failure {
+    let row = request.row();
+    if row.risk == Risk::Read {
+        return of_question(request);
+    }
     // That it was refused is known, whatever becomes of the question why.
     let Ok(status) = link.status().await else {
-        return refused(row, "the status, which may tell why, could not be read", "`toyo status` may tell why");
+        return refused(request, "the status, which may tell why, could not be read", "`toyo status` may tell why");
     };
     match reason(status, row) {
-        Some((why, hint)) => refused(row, &why, &hint),
-        None => refused(row, "the status does not tell why", &unexplained(row)),
+        Some((why, hint)) => refused(request, &why, &hint),
+        None => refused(request, "the status does not tell why", &unexplained(row)),
     }
+}
+
+/// A question was refused, of which nothing in the status tells why.
+pub fn of_question(request: &Request) -> Failure {
+    refused(request, "the status does not tell why", &unexplained(request.row()))
 }
 
 /// The teach pendant has the controller.
@@ -34,18 +43,17 @@ pub fn mute() -> Failure {
         .code("NG")
 }
 
-fn refused(row: &Row, why: &str, hint: &str) -> Failure {
-    Failure::new(Kind::Refused, format!("the controller refused {} (@NG): {why}", row.word)).hint(hint).code("NG")
+/// Names the whole block: which point, counter or step it was about.
+fn refused(request: &Request, why: &str, hint: &str) -> Failure {
+    let text = request.text();
+    let block = text.trim_start_matches('@');
+    Failure::new(Kind::Refused, format!("the controller refused {block} (@NG): {why}")).hint(hint).code("NG")
 }
 
 /// The weightiest thing in the status that keeps a command from being done, with what to do.
 fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     let told = |why: &str, hint: &str| Some((why.to_owned(), hint.to_owned()));
     let moves = row.risk == Risk::Motion;
-    // Nothing in the status keeps a question from being answered.
-    if row.risk == Risk::Read {
-        return None;
-    }
     if status.pendant_on() {
         return told("the teach pendant is ON", "switch the teach pendant OFF");
     }
@@ -157,6 +165,7 @@ pub fn telltale(command: Command) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::controller::toyo::field::Value;
 
     #[test]
     fn the_status_tells_why() {
@@ -169,7 +178,8 @@ mod tests {
         assert_eq!(why(fine.with(3, 0x10), Command::Spst).unwrap(), "servo power is off");
         assert_eq!(why(fine.with(0, 0x20), Command::Spst).unwrap(), "the axes have not returned to the origin");
         assert!(why(fine.with(0, 0x31).with(1, 0x28), Command::Spst).unwrap().starts_with("error 28: axis 1"));
-        assert_eq!(why(fine.with(2, 0x40), Command::Mbus), None, "that is no matter to a question");
+        let question = of_question(&Request::of(Command::Mcnt, [Value::Number(5)]));
+        assert_eq!(question.message, "the controller refused MCNT CN=05 (@NG): the status does not tell why");
         assert!(why(fine.with(0, 0xB0), Command::Cerr).unwrap().starts_with("parameter 2 was changed"));
         assert_eq!(why(fine.with(2, 0x83), Command::Spst).unwrap(), "the controller is in easy mode");
         assert_eq!(why(fine.with(2, 0x80), Command::Extp).unwrap(), "the controller is in sequential mode");

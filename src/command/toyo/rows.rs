@@ -9,8 +9,9 @@ use serde::Serialize;
 
 use super::Family;
 use super::cells::Cells;
+use super::items::{self, Item, read_each};
 use super::link;
-use super::numbers::{Numbers, number, read_contents};
+use super::numbers::{Numbers, number};
 use super::stores::parameter_cell;
 use super::values::{Changes, in_a_line, shown};
 use crate::command::{Command, Context, Report, commands};
@@ -177,8 +178,9 @@ impl<K: Kind> Command for Get<K> {
         let requests: Result<Vec<Request>, _> =
             rows.iter().map(|row| Request::read_parameter(table, Some(*row))).collect();
         let requests = requests.map_err(|error| link::wrong(&error))?;
-        let records = read_contents(context.link, context.screen, "reading rows", &requests).await?;
-        Ok(Rows { rows: records.iter().map(Row::of).collect() })
+        let answers = read_each(context.link, context.screen, "reading rows", &requests).await?;
+        let items = rows.iter().zip(&answers).map(|(row, answer)| Item::of("row", *row, answer, Row::of));
+        Ok(Rows { rows: items.collect() })
     }
 }
 
@@ -200,12 +202,12 @@ impl<K: Kind> Command for Set<K> {
         let table = table::<K>();
         let changes = Changes::read(&format!("row {}", self.row), &table.body(), &self.values)?;
         let read = Request::read_parameter(table, Some(self.row)).map_err(|error| link::wrong(&error))?;
-        let values = changes.completed(link, &read).await?;
+        let (values, found) = changes.completed(link, &read).await?;
         let body = table.body().record(values.clone()).map_err(|error| link::wrong(&error))?;
         let values = std::iter::once(Value::Number(self.row)).chain(values).collect();
         let cell = parameter_cell(table, values).map_err(|error| link::wrong(&error))?;
         let mut cells = Cells::default();
-        link.store(screen, &cell, &mut cells).await?;
+        link.store_over(screen, &cell, found.as_ref(), &mut cells).await?;
         Ok(Stored { row: Row::of(&cell.wanted), cells, text: in_a_line(&shown(&body)) })
     }
 }
@@ -215,7 +217,7 @@ impl<K: Kind> Command for Set<K> {
 #[serde(bound = "")]
 #[schemars(bound = "")]
 pub struct Rows<K: Kind> {
-    rows: Vec<Row<K>>,
+    rows: Vec<Item<Row<K>>>,
 }
 
 /// A row of a table.
@@ -259,8 +261,14 @@ impl<K: Kind> Row<K> {
 impl<K: Kind> Report for Rows<K> {
     fn view(&self) -> View {
         let mut table = Table::new(K::COLUMNS, "no rows");
-        table.rows = self.rows.iter().map(|row| row.cells.clone()).collect();
+        for row in &self.rows {
+            row.show(&mut table, |row| row.cells.clone());
+        }
         View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::failure_of(&self.rows)
     }
 }
 
@@ -320,6 +328,6 @@ mod tests {
             (&1.5.into(), &1.0.into(), &1.into())
         );
         let read = bench.data(&["torque-table", "get", "2"]);
-        assert_eq!(read, serde_json::json!({ "rows": [{ "row": 2, "limit": 1.5, "load": 1.0 }] }));
+        assert_eq!(read, serde_json::json!({ "rows": [{ "ok": true, "row": 2, "limit": 1.5, "load": 1.0 }] }));
     }
 }

@@ -440,7 +440,7 @@ mod tests {
     fn only_a_jog_is_stopped_although_it_was_to_be_left() {
         let must_halt = |words: &[&str]| {
             let (mut bench, _) = Bench::spoilt(PROGRAM, |_, _| Fate::Pass);
-            bench.left(words, Duration::from_millis(300))
+            bench.left(words, Duration::from_millis(450))
         };
         assert!(!must_halt(&["run", "sequential", "1"]));
         assert!(must_halt(&["jog", "X", "+", "low", "--for", "5s"]));

@@ -30,6 +30,8 @@ pub struct Store {
     pub cell: Cell,
     /// Only some controllers have it: that another one refuses it stops nothing.
     pub is_optional: bool,
+    /// What it holds, where that was read a moment ago.
+    pub found: Option<Record>,
 }
 
 /// What became of one cell.
@@ -126,7 +128,7 @@ async fn one(link: &mut Link, screen: &Screen, store: &Store) -> Result<Fate, Fa
         return Ok(Fate::NotThere);
     }
     let mut cells = Cells::default();
-    link.store(screen, &store.cell, &mut cells).await?;
+    link.store_over(screen, &store.cell, store.found.as_ref(), &mut cells).await?;
     Ok(if cells.cells_written > 0 { Fate::Written } else { Fate::Unchanged })
 }
 
@@ -146,7 +148,8 @@ fn account(failure: Failure, work: Work, stores: &[Store], fates: &[Fate]) -> Fa
         parts.push("nothing was written".to_owned());
     }
     for (words, stores) in [("written or not", unknown), ("not written", rest)] {
-        if !stores.is_empty() {
+        // One sentence says it of all of them.
+        if !(stores.is_empty() || is_known && done.is_empty()) {
             parts.push(format!("{words}: {}", span(work, stores)));
         }
     }
@@ -181,7 +184,12 @@ mod tests {
         let parameter = Parameter::named("T1").unwrap();
         let store = |row: i32| {
             let values = [row, 0, 0, 0, 0].map(Value::Number).into();
-            Store { key: row.to_string(), cell: parameter_cell(parameter, values).unwrap(), is_optional: false }
+            Store {
+                key: row.to_string(),
+                cell: parameter_cell(parameter, values).unwrap(),
+                is_optional: false,
+                found: None,
+            }
         };
         (1..=5).map(store).collect()
     }
@@ -201,10 +209,7 @@ mod tests {
             "no; done: point 1 (1 written, 0 unchanged); written or not: point 2; not written: points 3 to 5 | \
              --resume=2 goes on there"
         );
-        assert_eq!(
-            told(Kind::NoAnswer, &[]),
-            "no; nothing was written; not written: points 1 to 5 | --resume=1 goes on there"
-        );
+        assert_eq!(told(Kind::NoAnswer, &[]), "no; nothing was written | --resume=1 goes on there");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Family;
 use super::link::Link;
-use super::numbers::{number, small};
+use super::numbers::{not_held, number, read_back, small};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
@@ -68,7 +68,14 @@ impl Command for Set {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Current, Failure> {
-        context.link.order(&Request::of(table::Command::Ctsk, [Value::Number(self.task)])).await?;
+        let (link, order) = (context.link, Request::of(table::Command::Ctsk, [Value::Number(self.task)]));
+        link.order(&order).await?;
+        let found = read_back(link, &order, &Request::bare(table::Command::Mtsk)).await?.number(field().name);
+        if found != Some(self.task) {
+            let found = found.unwrap_or_default();
+            return Err(not_held(&order, &format!("task {found} is the current one"))
+                .hint("somebody else may choose tasks at the same time; `toyo task get` tells"));
+        }
         Ok(Current { task: u8::try_from(self.task).unwrap_or(u8::MAX) })
     }
 }
@@ -93,7 +100,7 @@ mod tests {
     #[test]
     fn tasks_have_their_blocks() {
         assert_eq!(all_blocks(&["task", "get"]).unwrap(), ["@MTSK"]);
-        assert_eq!(blocks(&["task", "set", "4"]).unwrap(), ["@CTSK TASK=04"]);
+        assert_eq!(blocks(&["task", "set", "4"]).unwrap(), ["@CTSK TASK=04", "@MTSK"]);
         assert!(objection(&["task", "set", "0"]).contains("1 to 4"));
     }
 }

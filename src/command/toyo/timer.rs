@@ -5,9 +5,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use super::numbers::{Numbers, ask_all, small};
+use super::items::{self, Item, read_each};
+use super::numbers::{Numbers, small};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::toyo::field::{Field, Value};
+use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
@@ -40,14 +42,15 @@ impl Command for Get {
     const ID: &'static str = "toyo.timer.get";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Timers, Failure> {
-        let numbers = Numbers::of(&self.timers, field()).into_iter();
-        let requests = numbers.map(|number| Request::of(table::Command::Mtmr, [Value::Number(number)]));
+        let numbers = Numbers::of(&self.timers, field());
+        let requests = numbers.iter().map(|number| Request::of(table::Command::Mtmr, [Value::Number(*number)]));
         let requests: Vec<Request> = requests.collect();
-        let answers = ask_all(context.link, context.screen, "reading timers", &requests).await?;
-        let timers = answers.iter().map(|answer| Time {
+        let answers = read_each(context.link, context.screen, "reading timers", &requests).await?;
+        let time = |answer: &Record| Time {
             timer: small(answer, "timer"),
             time_s: f64::from(answer.number("time").unwrap_or(0)) / 10.0,
-        });
+        };
+        let timers = numbers.iter().zip(&answers).map(|(number, answer)| Item::of("timer", *number, answer, time));
         Ok(Timers { timers: timers.collect() })
     }
 }
@@ -55,7 +58,7 @@ impl Command for Get {
 /// Timers in the order they were asked for.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Timers {
-    timers: Vec<Time>,
+    timers: Vec<Item<Time>>,
 }
 
 /// A timer and what it stands at.
@@ -68,10 +71,15 @@ struct Time {
 impl Report for Timers {
     fn view(&self) -> View {
         let mut table = Table::new(&["timer", "time (s)"], "no timers");
-        for Time { timer, time_s } in &self.timers {
-            table.row([(*timer).into(), Cell::number(format!("{time_s:.1}"))]);
+        for timer in &self.timers {
+            timer
+                .show(&mut table, |Time { timer, time_s }| vec![(*timer).into(), Cell::number(format!("{time_s:.1}"))]);
         }
         View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::failure_of(&self.timers)
     }
 }
 

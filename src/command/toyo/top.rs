@@ -25,11 +25,8 @@ pub struct Eye {
     limits: Option<Limits>,
 }
 
-/// The soft limits of X, Y, Z and R, where the controller tells them.
+/// The soft limits of axes 1 to 4, where the controller tells them.
 type Limits = [Option<(f64, f64)>; 4];
-
-/// Letters of the axes, in the order of a position.
-const LETTERS: [&str; 4] = ["X", "Y", "Z", "R"];
 
 impl Eye {
     /// Opens it; nothing but reads can leave.
@@ -66,7 +63,8 @@ impl Eye {
             None => *self.limits.insert(limits(&mut self.link).await?),
         };
         let banks = vec![self.bank("inputs", INPUTS).await?, self.bank("outputs", OUTPUTS).await?];
-        let axes = place.map_or_else(Vec::new, |place| axes(place, limits));
+        let letters = self.link.letters().await?.all();
+        let axes = place.map_or_else(Vec::new, |place| axes(place, letters, limits));
         Ok(Whole { lamps: lamps(status), axes, torque_unit: None, banks, not_asked: None })
     }
 
@@ -80,17 +78,13 @@ impl Eye {
     }
 }
 
-/// Asks for the soft limits. They belong to axes 1 to 4, and which letter an axis has is the machine's.
+/// Asks for the soft limits.
 async fn limits(link: &mut Link) -> Result<Limits, Failure> {
-    let Ok(system) = link.try_read(&Request::bare(Command::Sysp)).await? else { return Ok(Limits::default()) };
     let (least, most) = (parameter(link, "P02").await?, parameter(link, "P01").await?);
     let (Some(least), Some(most)) = (least, most) else { return Ok(Limits::default()) };
     let limit =
         |record: &Record, axis: usize| record.number(&format!("ax{axis}")).map(|steps| f64::from(steps) / 100.0);
-    Ok(LETTERS.map(|letter| {
-        let axis = (1..=4).find(|axis| system.word(&format!("arm{axis}")) == Some(letter))?;
-        Some((limit(&least, axis)?, limit(&most, axis)?)).filter(|(least, most)| least < most)
-    }))
+    Ok([1, 2, 3, 4].map(|axis| Some((limit(&least, axis)?, limit(&most, axis)?)).filter(|(least, most)| least < most)))
 }
 
 async fn parameter(link: &mut Link, id: &str) -> Result<Option<Record>, Failure> {
@@ -127,11 +121,11 @@ fn lamps(status: Status) -> Vec<Lamp> {
     ]
 }
 
-fn axes(place: Place, limits: Limits) -> Vec<Axis> {
+fn axes(place: Place, letters: [String; 4], limits: Limits) -> Vec<Axis> {
     let positions = [place.x_mm, place.y_mm, place.z_mm, place.r_mm];
-    let axes = LETTERS.iter().zip(positions).zip(limits);
-    let axes = axes.map(|((letter, position), limits)| Axis {
-        name: (*letter).to_owned(),
+    let axes = letters.into_iter().zip(positions).zip(limits);
+    let axes = axes.map(|((name, position), limits)| Axis {
+        name,
         position,
         unit: "mm",
         decimals: 2,

@@ -11,7 +11,7 @@ use serde_json::Value as Json;
 use super::link::Link;
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::{Field, Form, Number, Value};
-use crate::controller::toyo::layout::{Layout, Record};
+use crate::controller::toyo::layout::{Layout, Record, UNLISTED};
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
 
@@ -37,6 +37,8 @@ pub struct Shown {
     pub meaning: Option<&'static str>,
     /// As on the line.
     pub raw: String,
+    /// Whether the manual lists it; what it does not is shown as it came, and cannot be written.
+    pub in_manual: bool,
     /// As typed.
     #[serde(skip)]
     pub text: String,
@@ -45,6 +47,9 @@ pub struct Shown {
 /// What shall become of fields: a value, or what is there already.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Changes(Vec<Option<Value>>);
+
+/// In place of a meaning.
+pub use crate::controller::toyo::program::NOT_IN_MANUAL;
 
 /// The places of a layout.
 pub fn places(layout: &Layout) -> Vec<Place> {
@@ -73,6 +78,12 @@ pub fn places(layout: &Layout) -> Vec<Place> {
 /// The values of a record, place by place.
 pub fn shown(record: &Record) -> Vec<Shown> {
     let layout = record.layout();
+    if layout == UNLISTED {
+        let text = record.written();
+        let (name, meaning) = ("unlisted".to_owned(), Some(NOT_IN_MANUAL));
+        let value = Json::from(text.as_str());
+        return vec![Shown { name, value, unit: None, meaning, raw: text.clone(), in_manual: false, text }];
+    }
     places(&layout).into_iter().map(|place| place.shown(&layout, record.values())).collect()
 }
 
@@ -106,8 +117,10 @@ impl Place {
             }
             _ => (Json::from(raw.as_str()), raw.clone(), "", None),
         };
+        let in_manual = pairs.iter().all(|(field, value)| field.is_listed(value));
+        let meaning = if in_manual { meaning } else { Some(NOT_IN_MANUAL) };
         let unit = Some(unit).filter(|unit| !unit.is_empty());
-        Shown { name: self.name.clone(), value, unit, meaning, raw, text }
+        Shown { name: self.name.clone(), value, unit, meaning, raw, in_manual, text }
     }
 
     /// What somebody typed here.
@@ -178,14 +191,31 @@ impl Changes {
         self.0.iter().cloned().collect()
     }
 
-    /// All values, with those that are left from what the controller answers to `read`, if any are.
-    pub async fn completed(&self, link: &mut Link, read: &Request) -> Result<Vec<Value>, Failure> {
+    /// All values, with those that are left from what the controller answers to `read`, if any are; and that answer, so
+    /// that it is not read twice.
+    pub async fn completed(&self, link: &mut Link, read: &Request) -> Result<(Vec<Value>, Option<Record>), Failure> {
         if let Some(values) = self.whole() {
-            return Ok(values);
+            return Ok((values, None));
         }
         let found = link.read_content(read).await?;
+        Ok((self.over(&found)?, Some(found)))
+    }
+
+    /// All values, with those that are left from what was read.
+    ///
+    /// # Errors
+    /// If that is nothing that could be written again.
+    pub fn over(&self, found: &Record) -> Result<Vec<Value>, Failure> {
         // Numbers of rows and programs come first.
         let keys = found.values().len().saturating_sub(self.0.len());
+        let kept = found.pairs().skip(keys).zip(&self.0).filter(|(_, change)| change.is_none());
+        let foreign = kept.map(|((field, value), _)| (field, value)).find(|(field, value)| !field.is_listed(value));
+        if found.layout() == UNLISTED {
+            return Err(kept_unlisted(&found.written()));
+        }
+        if let Some((field, value)) = foreign {
+            return Err(kept_unlisted(&format!("{}={}", field.name, field.written(value))));
+        }
         Ok(self.applied(&found.values()[keys..]))
     }
 
@@ -193,6 +223,12 @@ impl Changes {
     pub fn applied(&self, found: &[Value]) -> Vec<Value> {
         self.0.iter().zip(found).map(|(change, found)| change.as_ref().unwrap_or(found).clone()).collect()
     }
+}
+
+/// What would be kept may not be written.
+fn kept_unlisted(found: &str) -> Failure {
+    Failure::usage(format!("the controller holds '{found}', which is not in the manual and cannot be written back"))
+        .hint("nothing was written; give all values")
 }
 
 /// A number in its unit; a float only where there are decimals.

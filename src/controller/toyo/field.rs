@@ -110,6 +110,18 @@ pub enum FieldError {
         /// What should.
         form: String,
     },
+    /// A number with more decimals than can be sent.
+    #[error("{name}: {found} {} ({form})", decimals(*most))]
+    Decimals {
+        /// Name of the field.
+        name: &'static str,
+        /// What stood there.
+        found: String,
+        /// Decimals that can be.
+        most: u8,
+        /// What may be.
+        form: String,
+    },
     /// A number beyond what may be sent.
     #[error("{name}: {found} is out of range ({form})")]
     Range {
@@ -120,6 +132,15 @@ pub enum FieldError {
         /// What may be.
         form: String,
     },
+}
+
+/// What is wrong with a number of more decimals.
+fn decimals(most: u8) -> String {
+    match most {
+        0 => "is not a whole number".to_owned(),
+        1 => "has too many decimals: at most 1 decimal".to_owned(),
+        most => format!("has too many decimals: at most {most} decimals"),
+    }
 }
 
 impl Number {
@@ -371,7 +392,12 @@ impl Field {
 
     /// A value that somebody wrote, alone: in form, and in the range that may be sent.
     pub fn read(&self, text: &str) -> Result<Value, FieldError> {
-        let value = self.value(text).ok_or_else(|| self.misfit(text))?;
+        let value = self.value(text).ok_or_else(|| self.too_fine(text).unwrap_or_else(|| self.misfit(text)))?;
+        if let (Form::Number(number), Value::Number(units)) = (self.form, &value)
+            && units % number.step() != 0
+        {
+            return Err(self.too_fine(text).unwrap_or_else(|| self.misfit(text)));
+        }
         self.check(&value)?;
         Ok(value)
     }
@@ -379,6 +405,11 @@ impl Field {
     /// Whether a value may be sent.
     pub fn check(&self, value: &Value) -> Result<(), FieldError> {
         self.emit(value).map(|_| ())
+    }
+
+    /// Whether a value is in the field's form; one that is not was kept as it came.
+    pub fn is_listed(&self, value: &Value) -> bool {
+        !matches!(value, Value::Text(_)) || matches!(self.form, Form::Token | Form::Text)
     }
 
     /// What may stand here, in words: `a number 0000 to 9999`, `J or E`.
@@ -434,6 +465,18 @@ impl Field {
             Form::Token if text.is_empty() || text.contains(' ') => None,
             Form::Token | Form::Text => Some(Value::Text(text.trim().to_owned())),
         }
+    }
+
+    /// The mistake of a number with too many decimals; `None` if the text is none.
+    fn too_fine(&self, text: &str) -> Option<FieldError> {
+        let Form::Number(number) = self.form else { return None };
+        let is_number = text.parse::<f64>().is_ok_and(f64::is_finite) && !text.contains(['e', 'E']);
+        (is_number && text.contains('.')).then(|| FieldError::Decimals {
+            name: self.name,
+            found: text.to_owned(),
+            most: number.decimals,
+            form: self.expected(),
+        })
     }
 
     fn misfit(&self, found: &str) -> FieldError {
@@ -497,7 +540,13 @@ mod tests {
         assert_eq!(X.read("-1.5").unwrap(), Value::Number(-150));
         assert_eq!(X.read("100").unwrap(), Value::Number(10_000));
         assert_eq!(X.read("0.100").unwrap(), Value::Number(10));
-        assert!(X.read("0.001").is_err(), "nothing is rounded away");
+        assert_eq!(
+            X.read("0.001").unwrap_err().to_string(),
+            "x: 0.001 has too many decimals: at most 2 decimals (a number, -8000.00 to 8000.00 mm)",
+            "nothing is rounded away"
+        );
+        assert_eq!(STEP.read("1.5").unwrap_err().to_string(), "step: 1.5 is not a whole number (a number, 1 to 5000)");
+        assert_eq!(STEP.read("7.0").unwrap(), Value::Number(7));
         assert!(X.read("99999999999").is_err());
     }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use thiserror::Error;
 
-use super::field::{Field, FieldError, Mask, Value};
+use super::field::{Field, FieldError, Form, Mask, Value};
 
 /// Text with fields in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,6 +50,12 @@ pub enum Misfit {
         /// What is left.
         found: String,
     },
+    /// What came from a controller and is kept as it came; it is never sent.
+    #[error("'{}' is not in the manual, and is not written", found.escape_debug())]
+    Unlisted {
+        /// As it came.
+        found: String,
+    },
     /// Not as many values as fields.
     #[error("{found} values for {expected} fields")]
     Count {
@@ -59,6 +65,10 @@ pub enum Misfit {
         found: usize,
     },
 }
+
+/// What a controller holds and the manual does not list, such as the instruction of a newer version: kept as it came.
+pub const UNLISTED: Layout =
+    Layout::new("{}", &[Field::new("unlisted", Form::Text, "what the manual does not list, as it came")]);
 
 impl Layout {
     /// Only words.
@@ -76,6 +86,9 @@ impl Layout {
         if values.len() != self.fields.len() {
             return Err(Misfit::Count { expected: self.fields.len(), found: values.len() });
         }
+        if let (true, [Value::Text(found)]) = (*self == UNLISTED, values) {
+            return Err(Misfit::Unlisted { found: found.clone() });
+        }
         self.join(|index, field| Ok(field.emit(&values[index])?))
     }
 
@@ -86,10 +99,23 @@ impl Layout {
         Ok(Record { layout: *self, values })
     }
 
+    /// As [`Layout::parse`], but a value that is not in its form is kept as it came, as [`Value::Text`], which is never
+    /// sent. Words and the places of the values must be right.
+    pub fn parse_kept(&self, text: &str) -> Result<Record, LayoutError> {
+        let mut values = Vec::with_capacity(self.fields.len());
+        self.walk(text, true, |_, value, _| values.push(value))?;
+        Ok(Record { layout: *self, values })
+    }
+
     /// Hands over every value in a text with its field and the bytes it takes, up to the first that does not fit.
-    pub fn scan(
+    pub fn scan(&self, text: &str, found: impl FnMut(&'static Field, Value, Range<usize>)) -> Result<(), LayoutError> {
+        self.walk(text, false, found)
+    }
+
+    fn walk(
         &self,
         text: &str,
+        keeps: bool,
         mut found: impl FnMut(&'static Field, Value, Range<usize>),
     ) -> Result<(), LayoutError> {
         let mut rest = text.trim_start_matches(' ');
@@ -101,7 +127,14 @@ impl Layout {
             rest =
                 pass(expected, rest).map_err(|rest| LayoutError { at: at(rest), what: Misfit::Words { expected } })?;
             let Some(field) = fields.next() else { break };
-            let taken = field.take(rest);
+            let mut taken = field.take(rest);
+            if keeps {
+                let (next, is_last) = (words.clone().next().unwrap_or_default(), fields.len() == 0);
+                let fits = |left| pass(next, left).is_ok_and(|left| !is_last || left.trim_end_matches(' ').is_empty());
+                if !taken.as_ref().is_ok_and(|(_, left)| fits(left)) {
+                    taken = kept(rest, next, is_last).map_or(taken, Ok);
+                }
+            }
             let (value, left) = taken.map_err(|error| LayoutError { at: at(rest), what: error.into() })?;
             found(field, value, at(rest)..at(left));
             rest = left;
@@ -134,6 +167,18 @@ impl Layout {
     }
 }
 
+/// A value that is not in its form: all up to the words that follow it.
+fn kept<'t>(text: &'t str, next: &str, is_last: bool) -> Option<(Value, &'t str)> {
+    let end = match next {
+        "" if is_last => text.len(),
+        "" => return None,
+        next => text.find(next)?,
+    };
+    let (own, rest) = text.split_at(end);
+    let own = own.trim_matches(' ');
+    (!own.is_empty()).then(|| (Value::Text(own.to_owned()), rest))
+}
+
 /// What follows the expected words; a blank stands for one or more. On failure, the place where they differ.
 fn pass<'t>(words: &str, mut text: &'t str) -> Result<&'t str, &'t str> {
     for expected in words.chars() {
@@ -164,6 +209,11 @@ impl Record {
         self.pairs().find(|(field, _)| field.name == name).map(|(_, value)| value)
     }
 
+    /// A text that is kept as it came.
+    pub fn unlisted(text: &str) -> Self {
+        Self { layout: UNLISTED, values: vec![Value::Text(text.trim_matches(' ').to_owned())] }
+    }
+
     /// The same with another value in a field; without such a field, the same.
     #[must_use]
     pub fn with(mut self, name: &str, value: Value) -> Self {
@@ -171,6 +221,11 @@ impl Record {
             self.values[index] = value;
         }
         self
+    }
+
+    /// Whether all of it is in the manual's form.
+    pub fn is_listed(&self) -> bool {
+        self.layout != UNLISTED && self.pairs().all(|(field, value)| field.is_listed(value))
     }
 
     /// A number, in units of its last decimal; `None` if there is no such number.
@@ -239,6 +294,19 @@ mod tests {
     #[test]
     fn blanks_do_not_matter() {
         assert_eq!(TWO.parse("  MCNT   CN01=0012  ").unwrap().written(), "MCNT CN01=0012");
+    }
+
+    #[test]
+    fn a_value_that_is_not_in_its_form_is_kept_and_never_sent() {
+        let kept = |text: &str| TWO.parse_kept(text).map(|record| (record.written(), record.is_listed()));
+        assert_eq!(kept("MCNT CN01=0000"), Ok(("MCNT CN01=0000".into(), true)));
+        assert_eq!(kept("MCNT CN1=00012"), Ok(("MCNT CN1=00012".into(), false)));
+        assert_eq!(kept("MCNT CN01=1 2"), Ok(("MCNT CN01=1 2".into(), false)));
+        assert!(kept("MCNT CM01=0000").is_err() && kept("MCNT CN01").is_err() && kept("MCNT CN01=").is_err());
+        assert!(TWO.parse_kept("MCNT CN01=00012").unwrap().emit().is_err());
+        let foreign = Record::unlisted("FOO X=1 ");
+        assert_eq!((foreign.written().as_str(), foreign.is_listed()), ("FOO X=1", false));
+        assert_eq!(foreign.emit().unwrap_err().to_string(), "'FOO X=1' is not in the manual, and is not written");
     }
 
     #[test]

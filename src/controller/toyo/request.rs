@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::field::Value;
-use super::layout::{Layout, LayoutError, Misfit, Record};
+use super::layout::{Layout, LayoutError, Misfit, Record, UNLISTED};
 use super::table::commands::{Command, Row};
 use super::table::{Instruction, Op, Pallet, Parameter};
 use crate::controller::Risk;
@@ -206,8 +206,26 @@ impl Request {
         Parameter::of(self.record.text("body").or(self.record.text("key"))?)
     }
 
-    /// What a block of the controller says to it.
+    /// What a block of the controller says to it, all in the manual's form but what is in a step or a record.
     pub fn answer(&self, block: &str) -> Result<Answer, BlockError> {
+        self.answer_as(block, Reading::Strict)
+    }
+
+    /// What a block of the controller says to it; what is stored may hold what the manual does not list.
+    pub fn answer_kept(&self, block: &str) -> Result<Answer, BlockError> {
+        self.answer_as(block, Reading::Kept)
+    }
+
+    /// Whether a block answers it, all in the manual's form. On a line without a checksum that is what tells a damaged
+    /// answer.
+    pub fn check_answer(&self, block: &str) -> Result<(), BlockError> {
+        if let Answer::Data(record) = self.answer(block)? {
+            self.content_of(&record, Reading::Strict)?;
+        }
+        Ok(())
+    }
+
+    fn answer_as(&self, block: &str, reading: Reading) -> Result<Answer, BlockError> {
         let text = unwrapped(block)?;
         match text {
             "NG" => return Ok(Answer::Refused),
@@ -219,29 +237,59 @@ impl Request {
             let (found, asked) = (word.to_owned(), self.row.word.to_owned());
             return Err(BlockError::Other { field: "the command", found, asked });
         }
-        let record = fitting(self.row.answers, text)?;
-        self.same(&record)?;
+        let reading = if self.may_hold_more() { reading } else { Reading::Strict };
+        let record = match (fitting(self.row.answers, text), reading, self.row.answers) {
+            (Err(error), Reading::Kept, [form]) => form.parse_kept(text).map_err(|_| error)?,
+            (record, ..) => record?,
+        };
+        self.same(&record, reading)?;
         Ok(Answer::Data(record))
     }
 
-    /// The parameter, instruction or palletizing record in an answer to this.
+    /// Whether what it reads may be more than the manual lists: what is stored, and what the controller is.
+    fn may_hold_more(&self) -> bool {
+        matches!(self.command(), Command::Rpar | Command::Rstx | Command::Rplt | Command::Resy | Command::Sysp)
+    }
+
+    /// The parameter, instruction or palletizing record in an answer to this; what is not in the manual's form is kept as
+    /// it came.
     pub fn answered(&self, answer: &Record) -> Result<Option<Record>, BlockError> {
+        self.content_of(answer, Reading::Kept)
+    }
+
+    fn content_of(&self, answer: &Record, reading: Reading) -> Result<Option<Record>, BlockError> {
         let text = |name| answer.text(name).unwrap_or_default();
-        Ok(match self.command() {
-            Command::Rpar => Some(parameter(text("body"))?.layout.parse(text("body"))?),
-            Command::Rstx => Some(instruction(text("text"))?),
-            Command::Rplt => Some(self.pallet()?.layout.parse(text("body"))?),
-            _ => None,
-        })
+        let (read, text) = match self.command() {
+            Command::Rpar => {
+                let (parameter, text) = (parameter(text("body"))?, text("body"));
+                (parsed(&parameter.layout, text, reading), text)
+            }
+            Command::Rstx => {
+                let text = text("text");
+                (instruction_as(text, reading), text)
+            }
+            Command::Rplt => {
+                let text = text("body");
+                (parsed(&self.pallet()?.layout, text, reading), text)
+            }
+            _ => return Ok(None),
+        };
+        match (read, reading) {
+            (Err(_), Reading::Kept) if !text.trim().is_empty() => Ok(Some(Record::unlisted(text))),
+            (read, _) => read.map(Some),
+        }
     }
 
     /// Whether an answer is about what was asked: fields of the same name have the same value. RSTX 0000 is answered
     /// with the number of the current step (ambiguity C4).
-    fn same(&self, answer: &Record) -> Result<(), BlockError> {
+    fn same(&self, answer: &Record, reading: Reading) -> Result<(), BlockError> {
         if self.command() == Command::Rpar {
-            let (key, body) = (self.content()?, self.answered(answer)?);
+            let (key, body) = (self.content()?, self.content_of(answer, reading)?);
             return match (key, body) {
-                (Some(key), Some(body)) if self.parameter() != Parameter::of(&body.written()) => {
+                (Some(key), Some(body))
+                    if self.parameter() != Parameter::of(&body.written())
+                        || body.layout() == UNLISTED && !body.written().starts_with(&key.written()) =>
+                {
                     let (found, asked) = (body.written(), key.written());
                     Err(BlockError::Other { field: "the parameter", found, asked })
                 }
@@ -276,12 +324,32 @@ impl Answer {
     }
 }
 
+/// How strictly an answer is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Reading {
+    /// All is in the manual's form.
+    Strict,
+    /// What is not is kept as it came.
+    Kept,
+}
+
+fn parsed(layout: &Layout, text: &str, reading: Reading) -> Result<Record, BlockError> {
+    Ok(match reading {
+        Reading::Strict => layout.parse(text)?,
+        Reading::Kept => layout.parse_kept(text)?,
+    })
+}
+
 /// An instruction as it stands in a step: `MOVP a PT=001 CN=00 S V=00 POST`.
 pub fn instruction(text: &str) -> Result<Record, BlockError> {
+    instruction_as(text, Reading::Strict)
+}
+
+fn instruction_as(text: &str, reading: Reading) -> Result<Record, BlockError> {
     let word = text.split(' ').find(|word| !word.is_empty()).unwrap_or_default();
     let row = Instruction::named(word);
     let row = row.ok_or_else(|| BlockError::Unknown { what: "instruction", name: word.to_owned() })?;
-    let record = row.layout.parse(text)?;
+    let record = parsed(&row.layout, text, reading)?;
     // It always passes by; the manual's template says POST, its legend PASS (ambiguity R4).
     Ok(if row.op == Op::Rsmv { record.with("arrival", Value::Word("PASS")) } else { record })
 }
@@ -370,6 +438,35 @@ mod tests {
     fn the_current_step_has_a_number_of_its_own() {
         assert!(answer("@RSTX 0000", "@RSTX 0017 NOP").is_ok());
         assert!(answer("@RSTX 0001", "@RSTX 0017 NOP").is_err());
+    }
+
+    #[test]
+    fn what_the_manual_does_not_list_is_kept_where_it_is_stored() {
+        let kept = |request: &str, block: &str| {
+            let request = Request::parse(request).unwrap();
+            assert!(request.check_answer(block).is_err(), "{block}");
+            let Answer::Data(answer) = request.answer_kept(block).unwrap() else { panic!("{block}") };
+            let content = request.answered(&answer).unwrap().unwrap_or(answer);
+            assert!(!content.is_listed(), "{block}");
+            assert_eq!(format!("@{}", request.record().emit().unwrap()), request.text());
+            content.written()
+        };
+        let m18 = "M18 STN=01 BRT=156K OPT=00";
+        assert!(kept("@RPAR M18", &format!("@RPAR {m18}")).starts_with("M18 STN=01 BRT=156K"));
+        assert_eq!(kept("@RPAR M18", "@RPAR M18 STN=01 BRT=156K"), "M18 STN=01 BRT=156K");
+        let p06 = "P06 AX1=+000.50 AX2=+00.5 AX3=+1.234 AX4=+000.00";
+        assert_eq!(kept("@RPAR P06", &format!("@RPAR {p06}")), p06);
+        assert_eq!(kept("@RPAR E17", "@RPAR E17 E=I"), "E17 E=I");
+        assert_eq!(kept("@RPAR E19", "@RPAR E19 1130"), "E19 1130");
+        assert_eq!(kept("@RSTX 0007", "@RSTX 0007 FOO X=1"), "FOO X=1");
+        assert_eq!(kept("@RSTX 0007", "@RSTX 0007 SPD V=99X"), "SPD V=99X");
+        assert!(kept("@RPAR T2 V05", "@RPAR T2 V05=250").contains("=250"));
+        // That something else is answered is no matter of words.
+        for (request, block) in
+            [("@RPAR E17", "@RPAR E18 E=I"), ("@RPAR T2 V05", "@RPAR T2 V06=250"), ("@STAS SNO=0", "@STAS SNO=0 ST1=2")]
+        {
+            assert!(Request::parse(request).unwrap().answer_kept(block).is_err(), "{block}");
+        }
     }
 
     #[test]

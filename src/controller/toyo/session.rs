@@ -69,6 +69,8 @@ pub struct Line {
     echoes: bool,
     /// When the last line end of the controller is over, and the host may send (TO 1-3: half duplex).
     free: Now,
+    /// When something came last that nobody asked for.
+    stray: Option<Now>,
 }
 
 #[derive(Debug)]
@@ -89,14 +91,20 @@ struct Exchange {
     request: Option<Request>,
     repetitions: u32,
     unfitting: Option<(String, String)>,
+    /// Whether an answer with what the manual does not list may be asked for once more, which tells it from a damaged one.
+    may_confirm: bool,
     /// The request itself, as it came back.
     copy: Option<String>,
     /// Not before this moment: a line that was noisy gets quiet first.
     not_before: Now,
+    /// Until when an order waits for a line on which something comes that nobody asked for; set at the first look.
+    patience: Option<Now>,
 }
 
-/// Silence after a garbled block, before the request is sent again.
+/// Silence after a garbled block, before the request is sent again; and after what nobody asked for, before an order.
 const QUIET: Duration = Duration::from_millis(50);
+/// How long an order waits for that silence. On a line that is never quiet it then goes out.
+const PATIENCE: Duration = Duration::from_millis(500);
 
 impl Line {
     /// A line in peace.
@@ -110,6 +118,7 @@ impl Line {
             owed_until: Now::ZERO,
             echoes: false,
             free: Now::ZERO,
+            stray: None,
         }
     }
 
@@ -131,7 +140,16 @@ impl Line {
         }
         let repetitions = if is_repeatable { self.policy.retries } else { 0 };
         let not_before = Now::ZERO;
-        self.state = State::Settling(Exchange { text, request, repetitions, unfitting: None, copy: None, not_before });
+        self.state = State::Settling(Exchange {
+            text,
+            request,
+            repetitions,
+            unfitting: None,
+            may_confirm: is_repeatable,
+            copy: None,
+            not_before,
+            patience: None,
+        });
     }
 
     /// A block that cannot wait until the line has settled, such as a stop: the bytes to send at once, if anything is
@@ -147,6 +165,11 @@ impl Line {
         self.owed_until = self.deadline(now, &bytes);
         self.counters.sent += 1;
         Some(bytes)
+    }
+
+    /// The same line, opened anew: nothing is owed any more.
+    pub fn renew(&mut self) {
+        *self = Self { counters: self.counters, ..Self::new(self.policy) };
     }
 
     /// What the line was like so far.
@@ -229,10 +252,21 @@ impl Line {
             }
             Err(error @ (BlockError::Other { .. } | BlockError::Command { .. })) => {
                 self.counters.foreign += 1;
+                self.stray = Some(now);
                 exchange.unfitting = Some((block, error.to_string()));
                 State::Waiting(exchange, deadline)
             }
-            Err(error) => self.again(now, exchange, deadline, (block, error.to_string())),
+            // Damage does not come twice in the same way: this is what the controller holds.
+            Err(_) if exchange.is_confirmed(&block) => {
+                self.owed_until = deadline;
+                State::Ended(Some(Ended::Answered(block)))
+            }
+            Err(error) => {
+                if exchange.keeps(&block) && std::mem::take(&mut exchange.may_confirm) {
+                    exchange.repetitions = exchange.repetitions.max(1);
+                }
+                self.again(now, exchange, deadline, (block, error.to_string()))
+            }
         }
     }
 
@@ -252,7 +286,17 @@ impl Line {
 
 impl Exchange {
     fn accepts(&self, block: &str) -> Result<(), BlockError> {
-        self.request.as_ref().map_or(Ok(()), |request| request.answer(block).map(|_| ()))
+        self.request.as_ref().map_or(Ok(()), |request| request.check_answer(block))
+    }
+
+    /// Whether a block answers it with something that the manual does not list.
+    fn keeps(&self, block: &str) -> bool {
+        self.request.as_ref().is_some_and(|request| request.answer_kept(block).is_ok())
+    }
+
+    /// Whether the same came before.
+    fn is_confirmed(&self, block: &str) -> bool {
+        self.unfitting.as_ref().is_some_and(|(before, _)| before == block) && self.keeps(block)
     }
 }
 
@@ -263,12 +307,20 @@ impl Session for Line {
         match &self.state {
             State::Ended(Some(ended)) => Step::Done(ended.clone()),
             State::Ended(None) => Step::Wait(Now::MAX),
-            State::Settling(exchange) => {
+            State::Settling(_) => {
                 if now >= self.owed_until {
                     self.owed = 0;
                 }
+                let quiet = self.stray.map_or(now, |stray| stray + QUIET);
+                let State::Settling(exchange) = &mut self.state else { return Step::Wait(Now::MAX) };
+                // Any block answers an order; what may be repeated, a stop among it, does not wait.
+                let quiet = if exchange.may_confirm {
+                    now
+                } else {
+                    quiet.min(*exchange.patience.get_or_insert(now + PATIENCE))
+                };
                 let settled = if self.owed > 0 { self.owed_until } else { now };
-                let at = settled.max(exchange.not_before).max(self.free);
+                let at = settled.max(exchange.not_before).max(quiet).max(self.free);
                 if at > now { Step::Wait(at) } else { self.send(now) }
             }
             State::Waiting(_, deadline) if now < *deadline => Step::Wait(*deadline),
@@ -284,11 +336,15 @@ impl Session for Line {
             self.free = if *byte == b'\r' { now + self.policy.character } else { now };
             let (framed, noise) = self.framer.push(*byte);
             self.counters.noise += noise;
+            if noise > 0 {
+                self.stray = Some(now);
+            }
             let Some(framed) = framed else { continue };
             self.state = match std::mem::replace(&mut self.state, State::Ended(None)) {
                 State::Waiting(exchange, deadline) => self.take(now, exchange, deadline, framed),
                 state => {
                     self.counters.foreign += 1;
+                    self.stray = Some(now);
                     self.owed = self.owed.saturating_sub(1);
                     state
                 }

@@ -6,19 +6,22 @@ use super::manifest::Controller;
 use super::parts::Part;
 use crate::command::manifest::LeftOut;
 use crate::command::toyo::cells::Cell;
+use crate::command::toyo::items::{Answers, read_each};
+use crate::command::toyo::letters::letters_request;
 use crate::command::toyo::link::{Link, wrong};
 use crate::command::toyo::program::{steps, text};
 use crate::command::toyo::stores::{Store, Work};
+use crate::command::toyo::values::NOT_IN_MANUAL;
 use crate::command::toyo::{easy, files, numbers, palletizing, param, point, tasks};
 use crate::controller::toyo::bulk::{Setting, easy as easy_text, pallets, parameters, points};
 use crate::controller::toyo::field::{Field, Value};
 use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::program::{MOST_STEPS, Program, Rows, Style, check, listing, used};
+use crate::controller::toyo::program::{MOST_STEPS, Program, Rows, Style, check_kept, listing, used};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::palletizing::RECORDS;
 use crate::controller::toyo::table::{Command, Group, Parameter};
-use crate::failure::Failure;
-use crate::output::Screen;
+use crate::failure::{Failure, Kind};
+use crate::output::{Screen, escape};
 
 /// A part as text.
 pub struct Text {
@@ -48,11 +51,14 @@ pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
             .unwrap_or_default()
     };
     let axes = link.read_content(&task_axes()).await?;
+    let letters = link.try_read_content(&letters_request()).await?.ok();
     let speed = link.try_read(&Request::bare(Command::Rovr)).await?.ok();
     Ok(Controller {
         robot_type: shown("robot_type", Field::written),
         version: shown("version", |field, value| field.meaning(value).into_owned()),
-        task_axes: axes.word("axes").unwrap_or_default().to_owned(),
+        // What the manual does not list is kept as it came.
+        task_axes: axes.word("axes").or(axes.text("axes")).unwrap_or_default().to_owned(),
+        axis_letters: letters.map(|record| written(&record)),
         task_steps: steps::rooms(link).await?,
         override_percent: speed.map(|record| numbers::small(&record, "override")),
     })
@@ -62,8 +68,14 @@ pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
 pub fn foresee_controller(link: &mut Link) {
     link.foresee(&Request::bare(Command::Sysp), "what kind of controller it is");
     link.foresee(&task_axes(), "which tasks have axes");
+    link.foresee(&letters_request(), "the letters of the axes");
     link.foresee(&Request::bare(Command::Rovr), "the override");
     link.foresee(&steps::rooms_request(), "how many steps the tasks have");
+}
+
+/// The values of a record in a line.
+fn written(record: &Record) -> String {
+    record.pairs().map(|(field, value)| field.written(value)).collect::<Vec<_>>().join(" ")
 }
 
 fn task_axes() -> Request {
@@ -100,44 +112,85 @@ pub fn first_read(part: Part) -> Result<Request, Failure> {
 
 /// Reads a part.
 pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Controller) -> Result<Text, Failure> {
-    let text = match part {
-        Part::Parameters => return parameters_text(link, screen).await,
+    match part {
+        Part::Parameters => parameters_text(link, screen).await,
         Part::Easy => {
             let requests = (1..=8).map(easy::read).collect::<Result<Vec<_>, _>>()?;
-            let records = numbers::ask_all(link, screen, "reading easy programs", &requests).await?;
-            let values = |record: &Record| record.values().get(2..).unwrap_or_default().to_vec();
-            easy_text::write(&(1..).zip(records.iter().map(values)).collect::<Vec<_>>())
+            let answers = read_each(link, screen, "reading easy programs", &requests).await?;
+            let (records, left_out) = sorted((1..).map(|program: i32| program.to_string()), answers)?;
+            let values = |(key, record): (String, Record)| {
+                (key.parse().unwrap_or_default(), record.values().get(2..).unwrap_or_default().to_vec())
+            };
+            let text = easy_text::write(&records.into_iter().map(values).collect::<Vec<_>>());
+            Ok(Text { text: text + &remarks(&left_out), left_out })
         }
         Part::Palletizing(number) => {
             let all: Vec<_> = RECORDS.iter().collect();
             let requests = palletizing::reads(number.into(), &all)?;
-            let records = numbers::read_contents(link, screen, "reading records", &requests).await?;
-            pallets::write(&all.into_iter().zip(records).collect::<Vec<_>>())
+            let answers = read_each(link, screen, "reading records", &requests).await?;
+            let (records, left_out) = sorted(all.iter().map(|record| record.name.to_owned()), answers)?;
+            let named = |name: &str| all.iter().find(|record| record.name == name).copied();
+            let filled: Vec<_> = records.into_iter().filter_map(|(key, record)| Some((named(&key)?, record))).collect();
+            Ok(Text { text: pallets::write(&filled) + &remarks(&left_out), left_out })
         }
         Part::Points(task) => {
-            let (_, records) = point::read_all(link, screen, Some(task), &(1..=999).collect::<Vec<_>>()).await?;
-            let setting = |record: &Record| Setting { parameter: points::table(), values: record.values().to_vec() };
-            points::write(&records.iter().map(setting).collect::<Vec<_>>(), point::AXES)
+            let (_, answers) = point::read_all(link, screen, Some(task), &(1..=999).collect::<Vec<_>>()).await?;
+            let (records, left_out) = sorted((1..=999).map(|point: i32| point.to_string()), answers)?;
+            let setting = |(_, record): &(String, Record)| Setting {
+                parameter: points::table(),
+                values: record.values().to_vec(),
+            };
+            let text = points::write(&records.iter().map(setting).collect::<Vec<_>>(), point::AXES);
+            Ok(Text { text, left_out })
         }
         Part::Program(task) => {
             tasks::choose(link, Some(task)).await?;
             let room = controller.task_steps[usize::from(task) - 1];
             let read = steps::read_all(link, screen, 1..=room).await?;
-            listing(&read, Style { first: 1, is_whole: true, is_numbered: false }, &Rows::new()).text
+            let text = listing(&read, Style { first: 1, is_whole: true, is_numbered: false }, &Rows::new()).text;
+            let foreign = (1..).zip(&read).filter(|(_, record)| !record.is_listed());
+            let left_out = foreign.map(|(step, record): (i32, _)| LeftOut {
+                key: step.to_string(),
+                why: format!("'{}' is {NOT_IN_MANUAL}: it is kept as text, and cannot be written", record.written()),
+            });
+            Ok(Text { text, left_out: left_out.collect() })
         }
-    };
-    Ok(Text { text, left_out: Vec::new() })
+    }
 }
 
 async fn parameters_text(link: &mut Link, screen: &Screen) -> Result<Text, Failure> {
     let kept = param::Kept::read(link, screen).await?;
     let text = kept.text();
     let refused = kept.refused.into_iter().map(|key| LeftOut { key, why: "the controller refuses it".to_owned() });
-    let unfit = kept.unfit.into_iter().map(|param::Unfit { key, value, why }| LeftOut {
+    let unfit = kept.unfit.into_iter().map(|param::Unfit { key, value, why, .. }| LeftOut {
         key,
         why: format!("it holds {value}, which may not be written: {why}"),
     });
-    Ok(Text { text, left_out: refused.chain(unfit).collect() })
+    let failed = kept.failed.into_iter().map(|param::Failed { key, error }| LeftOut { key, why: error.message });
+    Ok(Text { text, left_out: refused.chain(unfit).chain(failed).collect() })
+}
+
+/// A record by its key.
+type Keyed = (String, Record);
+
+/// What was answered, each by its key, as far as it can be written again; and what is left out. That the line fell silent
+/// is a failure of the whole part.
+fn sorted(keys: impl IntoIterator<Item = String>, answers: Answers) -> Result<(Vec<Keyed>, Vec<LeftOut>), Failure> {
+    let (mut kept, mut left_out) = (Vec::with_capacity(answers.len()), Vec::new());
+    for (key, answer) in keys.into_iter().zip(answers) {
+        match answer {
+            Ok(record) if record.is_listed() => kept.push((key, record)),
+            Ok(record) => left_out.push(LeftOut { key, why: format!("'{}' is {NOT_IN_MANUAL}", record.written()) }),
+            Err(failure) if failure.kind == Kind::NoAnswer => return Err(failure),
+            Err(failure) => left_out.push(LeftOut { key, why: failure.message }),
+        }
+    }
+    Ok((kept, left_out))
+}
+
+/// What is not in a TOML file, as comments of it.
+fn remarks(left_out: &[LeftOut]) -> String {
+    left_out.iter().map(|LeftOut { key, why }| format!("\n# {key} is left out: {}\n", escape::line(why))).collect()
 }
 
 impl Content {
@@ -152,7 +205,7 @@ impl Content {
             Part::Points(_) => Self::Points(points::read(&bytes, point::AXES).map(settings).map_err(faulty)?),
             Part::Program(_) => {
                 // What a backup has was on a controller: warnings are nothing new.
-                Self::Program(text::program(&name, check(&bytes, MOST_STEPS), &screen.silenced())?)
+                Self::Program(text::program(&name, check_kept(&bytes, MOST_STEPS), &screen.silenced())?)
             }
             Part::Palletizing(number) => Self::Palletizing(number.into(), pallets::read(&bytes).map_err(faulty)?),
             Part::Easy => Self::Easy(easy_text::read(&bytes).map_err(faulty)?),
@@ -177,6 +230,7 @@ impl Content {
                 let wanted = wanted.chain(std::iter::repeat_with(steps::nop));
                 (1..=room)
                     .zip(wanted)
+                    .filter(|(_, record)| record.is_listed())
                     .map(|(step, record)| stored(step.to_string(), steps::cell(step, &record)))
                     .collect()
             }
@@ -199,6 +253,13 @@ impl Content {
         let mut settings: Vec<&Setting> = settings.iter().filter(|setting| is_machine(setting)).collect();
         settings.sort_by_key(|setting| setting.parameter.group() == Group::Machine);
         settings.into_iter().map(param::store).collect()
+    }
+
+    /// Steps that the manual does not list, which are never written: number and text.
+    pub fn unlisted_steps(&self) -> Vec<(u16, String)> {
+        let Self::Program(program) = self else { return Vec::new() };
+        let steps = (1..).zip(&program.steps).filter(|(_, step)| !step.record.is_listed());
+        steps.map(|(number, step)| (number, step.record.written())).collect()
     }
 
     /// The work in words.
@@ -227,5 +288,5 @@ fn is_machine(setting: &Setting) -> bool {
 }
 
 fn stored(key: String, cell: Result<Cell, Failure>) -> Result<Store, Failure> {
-    Ok(Store { key, cell: cell?, is_optional: false })
+    Ok(Store { key, cell: cell?, is_optional: false, found: None })
 }

@@ -19,6 +19,10 @@ pub struct Controller {
     pub version: String,
     /// A digit for the axes of each task (E19): `2000`.
     pub task_axes: String,
+    /// The letters of the axes (E01): `X Y Z R`; null if the controller refused to tell, or the backup is of an older
+    /// armctl.
+    #[serde(default)]
+    pub axis_letters: Option<String>,
     /// Steps of each task (E22).
     pub task_steps: [u16; 4],
     /// Null if the controller refused to tell.
@@ -78,6 +82,7 @@ mod tests {
             robot_type: "000000".into(),
             version: "4.00".into(),
             task_axes: "5000".into(),
+            axis_letters: None,
             task_steps: [2000, 0, 0, 0],
             override_percent: Some(percent),
         };

@@ -17,6 +17,7 @@ use crate::command::toyo::cells::{Cell, Cells};
 use crate::command::toyo::link::{Link, wrong};
 use crate::command::toyo::program::steps;
 use crate::command::toyo::stores::{self, Fate, Store, Work};
+use crate::command::toyo::values::NOT_IN_MANUAL;
 use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -50,7 +51,7 @@ pub struct Restore {
     /// Go on with a restore that was cut off; with a part, those before it are not even compared
     #[arg(long, value_name = "PART", num_args = 0..=1, require_equals = true, default_missing_value = "parameters")]
     resume: Option<Part>,
-    /// Write the backup of one robot type to another
+    /// Write the backup of one robot or machine to another
     #[arg(long)]
     force: bool,
     /// Parts whose names fit
@@ -84,6 +85,8 @@ impl Command for Restore {
         let Context { link, screen, robot, several, .. } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
         let manifest: Manifest = manifest::existing(&folder)?;
+        // Whether robot and address are those of the backup; the machine itself is asked later.
+        manifest::admit(&manifest::existing::<serde_json::Value>(&folder)?, robot, self.force)?;
         let parts = self.chosen(&manifest)?;
         if self.machine && !parts.contains(&Part::Parameters) {
             return Err(Failure::usage("--machine is about the parameters, which are not among the parts")
@@ -153,11 +156,8 @@ impl Restore {
         jobs: &[Job],
     ) -> Result<Restored, Failure> {
         let found = content::controller(link).await?;
-        if found.robot_type != backup.robot_type && !self.force {
-            let message =
-                format!("the backup is of robot type {}, the controller's is {}", backup.robot_type, found.robot_type);
-            return Err(Failure::new(Kind::RefusedHere, message)
-                .hint("take the backup of this robot; --force writes it all the same"));
+        if !self.force {
+            identify(backup, &found, self.machine)?;
         }
         let mut results: Vec<PartResult> = jobs.iter().map(|job| pending(job.part)).collect();
         if !self.machine {
@@ -243,7 +243,32 @@ fn speed(backup: &Controller) -> Result<Option<Store>, Failure> {
         write: Request::new(table::Command::Wovr, values).map_err(|error| wrong(&error))?,
         wanted: wanted.map_err(|error| wrong(&error))?,
     };
-    Ok(Some(Store { key: "override".to_owned(), cell, is_optional: true }))
+    Ok(Some(Store { key: "override".to_owned(), cell, is_optional: true, found: None }))
+}
+
+/// Whether the controller is the machine that the backup is of: its robot type (SYSP), which task has which axes (E19), and
+/// what the axes are called (E01). With `machine`, E19 and E01 are among what is restored.
+fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<(), Failure> {
+    let none = String::new();
+    let letters = [backup, found].map(|one| one.axis_letters.as_ref());
+    let marks = [
+        ("robot type", &backup.robot_type, &found.robot_type, true),
+        ("E19 (task-axes)", &backup.task_axes, &found.task_axes, !machine),
+        (
+            "E01 (axis-letters)",
+            letters[0].unwrap_or(&none),
+            letters[1].unwrap_or(&none),
+            !machine && letters.iter().all(Option::is_some),
+        ),
+    ];
+    let other = marks.iter().filter(|(_, saved, found, counts)| *counts && saved != found);
+    let other: Vec<String> =
+        other.map(|(what, saved, found, _)| format!("{what} is {saved} in the backup and {found} here")).collect();
+    if other.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::new(Kind::RefusedHere, format!("the backup is of another machine: {}", other.join(", ")))
+        .hint("nothing was written; take the backup of this robot; --force writes it all the same"))
 }
 
 /// Whether all programs fit the tasks; before anything is written.
@@ -295,7 +320,24 @@ async fn store(
         tasks::choose(link, Some(*task)).await?;
         room = found.task_steps[usize::from(*task) - 1];
     }
+    for (step, text) in content.unlisted_steps() {
+        must_be_there(link, step, &text).await?;
+    }
     store_all(link, screen, content.work(), &content.stores(room)?).await
+}
+
+/// A step that the manual does not list is not written. Where something else is in its place, the program would be another
+/// one, and none of it is written.
+async fn must_be_there(link: &mut Link, step: u16, text: &str) -> Result<(), Failure> {
+    let found = link.read_content(&steps::read_request(step)).await?.written();
+    if found == text {
+        return Ok(());
+    }
+    let message = format!(
+        "step {step} is '{text}' in the backup, which is {NOT_IN_MANUAL} and is not written; here it is '{found}'"
+    );
+    Err(Failure::new(Kind::RefusedHere, message)
+        .hint("nothing of this program was written; write the step with the teach pendant, then restore again"))
 }
 
 /// Stores cells: how many were written, and which the controller does not have.

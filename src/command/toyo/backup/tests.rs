@@ -187,7 +187,7 @@ fn another_robot_is_refused() {
     let mut other = controller(&format!("robot_types = [7]\n{EMPTY}"));
     let failed = failure(&mut other, &["restore", &folder]);
     assert_eq!(failed.kind, Kind::RefusedHere);
-    assert_eq!(failed.message, "the backup is of robot type 000000, the controller's is 000007");
+    assert_eq!(failed.message, "the backup is of another machine: robot type is 000000 in the backup and 000007 here");
     other.data(&["restore", &folder, "--force", "--only", "program"]);
 }
 
@@ -247,7 +247,7 @@ fn a_restore_that_fails_says_how_far_it_got() {
 fn a_dry_run_shows_what_would_be_written() {
     let desk = Desk::new();
     let folder = desk.saved();
-    let blocks = blocks(&["restore", &folder, "--only", "program-2,easy"]).unwrap();
+    let blocks = blocks(&["restore", &folder, "--force", "--only", "program-2,easy"]).unwrap();
     assert!(blocks.contains(&"@WSTX 0001 OUT STN=0 PN01=.......1".to_owned()));
     assert!(blocks.contains(&"@WESY PNO=02 ST=000 START=010 LOOP=0005 END=020".to_owned()));
     assert!(!blocks.iter().any(|block| block.starts_with("@WPAR")));
@@ -262,4 +262,70 @@ fn a_folder_with_other_files_is_left_alone() {
         assert_eq!(blocks(&words).unwrap_err().kind, Kind::Local);
     }
     assert_eq!(blocks(&["restore", "/nowhere"]).unwrap_err().kind, Kind::Local);
+}
+
+#[test]
+fn one_word_that_the_manual_does_not_list_spoils_no_backup() {
+    let desk = Desk::new();
+    let folder = desk.path("odd");
+    let folder = folder.to_str().unwrap();
+    let odd = |block: &str, _| match block {
+        "@RPAR M18" => Fate::Answered("@RPAR M18 STN=01 BRT=156K"),
+        "@RSTX 0004" => Fate::Answered("@RSTX 0004 FOO X=1"),
+        "@RPAR T1 PT=005" => Fate::Answered("@RPAR T1 PT=005 X=+1.5 Y=+0000.00 Z=+0000.00 R=+0000.00"),
+        "@RPLT 03 SNO=01" => Fate::Answered("@RPLT 03 SNO=01 TAG=007 MOD=X-Y"),
+        "@RESY PNO=02 ST=000" => Fate::Answered("@NG"),
+        _ => Fate::Pass,
+    };
+    let (mut bench, _) = Bench::spoilt(FULL, odd);
+    let data = bench.data(&["backup", folder]);
+    assert_eq!(data["complete"], true);
+    let keys = |name: &str| {
+        let left = part(&data, name)["left_out"].as_array().unwrap().iter();
+        left.map(|left| left["key"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    for (name, key) in
+        [("parameters", "M18"), ("program-1", "4"), ("points-1", "5"), ("palletizing-03", "start"), ("easy", "2")]
+    {
+        assert!(keys(name).contains(&key.to_owned()), "{name}: {:?}", keys(name));
+    }
+    let files = files(folder);
+    assert!(files["program-1.txt"].contains("\nFOO X=1      # not in the manual\n"), "{}", files["program-1.txt"]);
+    assert!(!files["points-1.csv"].contains("\n5,"));
+    // The machine that holds it gets the rest back; another one nothing of that program.
+    assert_eq!(part(&bench.data(&["restore", folder]), "program-1")["state"], "done");
+    let (mut bench, heard) = Bench::spoilt(EMPTY, |_, _| Fate::Pass);
+    let failed = failure(&mut bench, &["restore", folder]);
+    assert_eq!(failed.kind, Kind::RefusedHere);
+    assert!(
+        failed.message.contains("step 4 is 'FOO X=1' in the backup, which is not in the manual and is not written"),
+        "{failed}"
+    );
+    assert!(!heard.borrow().iter().any(|block| block.starts_with("@WSTX 0001") && !block.contains("OUT")));
+}
+
+#[test]
+fn axes_of_another_machine_are_refused_before_anything_is_written() {
+    let desk = Desk::new();
+    let folder = desk.saved();
+    for (other, told) in [
+        ("write = [\"WPAR E19 1100\"]\n", "E19 (task-axes) is 2000 in the backup and 1100 here"),
+        (
+            "axes = 2\nwrite = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\n",
+            "E01 (axis-letters) is X Y Z R in the backup and X Z Y R here",
+        ),
+    ] {
+        let (mut bench, heard) = Bench::spoilt(other, |_, _| Fate::Pass);
+        let failed = failure(&mut bench, &["restore", &folder, "--only", "parameters"]);
+        assert_eq!(
+            (failed.kind, &*failed.message),
+            (Kind::RefusedHere, &*format!("the backup is of another machine: {told}"))
+        );
+        assert!(!heard.borrow().iter().any(|block| block.starts_with("@W")));
+        bench.data(&["restore", &folder, "--only", "parameters", "--force"]);
+    }
+    // Name and address are those of the list, as with `armctl restore`.
+    let failed = blocks(&["restore", &folder]).unwrap_err();
+    assert_eq!(failed.kind, Kind::RefusedHere);
+    assert!(failed.message.contains("the backup is of sim (sim:), not of tcp://127.0.0.1:1"), "{failed}");
 }

@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::{Program, field, read};
 use crate::command::toyo::Family;
-use crate::command::toyo::numbers::{Numbers, read_contents};
+use crate::command::toyo::items::{self, Item, read_each};
+use crate::command::toyo::numbers::Numbers;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
@@ -27,20 +28,26 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Programs, Failure> {
         let programs = Numbers::of(&self.programs, field());
-        let requests = programs.into_iter().map(read).collect::<Result<Vec<Request>, Failure>>()?;
-        let records = read_contents(context.link, context.screen, "reading programs", &requests).await?;
-        Ok(Programs { programs: records.iter().map(Program::of).collect() })
+        let requests = programs.iter().copied().map(read).collect::<Result<Vec<Request>, Failure>>()?;
+        let answers = read_each(context.link, context.screen, "reading programs", &requests).await?;
+        let items = programs.iter().zip(&answers);
+        let items = items.map(|(program, answer)| Item::of("program", *program, answer, Program::of));
+        Ok(Programs { programs: items.collect() })
     }
 }
 
 /// Easy programs.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Programs {
-    programs: Vec<Program>,
+    programs: Vec<Item<Program>>,
 }
 
 impl Report for Programs {
     fn view(&self) -> View {
         View::table(Program::table(&self.programs))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::failure_of(&self.programs)
     }
 }

@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use super::Family;
 use super::cells::Cell;
+use super::items::Item;
 use super::link::wrong;
 use crate::command::commands;
 use crate::controller::toyo::field::{Field, Value};
@@ -77,10 +78,12 @@ impl Program {
         Self { program: number("program"), start_tag: number("start"), loops: number("loop"), end_tag: number("end") }
     }
 
-    fn table(programs: &[Self]) -> Table {
+    fn table(programs: &[Item<Self>]) -> Table {
         let mut table = Table::new(&["program", "start tag", "loops", "end tag"], "no programs");
-        for Self { program, start_tag, loops, end_tag } in programs {
-            table.row([(*program).into(), (*start_tag).into(), (*loops).into(), (*end_tag).into()]);
+        for program in programs {
+            program.show(&mut table, |Self { program, start_tag, loops, end_tag }| {
+                vec![(*program).into(), (*start_tag).into(), (*loops).into(), (*end_tag).into()]
+            });
         }
         table
     }
@@ -95,7 +98,7 @@ mod tests {
         assert_eq!(blocks(&["easy", "get", "2"]).unwrap(), ["@RESY PNO=02 ST=000"]);
         assert_eq!(blocks(&["easy", "get"]).unwrap().len(), 8);
         assert_eq!(blocks(&["easy", "progress"]).unwrap(), ["@RESD"]);
-        assert_eq!(blocks(&["easy", "select", "3"]).unwrap(), ["@SESN PR=03"]);
+        assert_eq!(blocks(&["easy", "select", "3"]).unwrap(), ["@SESN PR=03", "@RESD"]);
         assert!(objection(&["easy", "get", "9"]).contains("9 is out of range"));
     }
 
@@ -123,7 +126,7 @@ mod tests {
         let read = bench.data(&["easy", "get", "8"]);
         assert_eq!(
             read["programs"][0],
-            serde_json::json!({ "program": 8, "start_tag": 10, "loops": 6, "end_tag": 20 })
+            serde_json::json!({ "ok": true, "program": 8, "start_tag": 10, "loops": 6, "end_tag": 20 })
         );
         assert_eq!(bench.run(&["easy", "copy", "1", "1"]).unwrap_err().kind.exit(), 2);
         bench.data(&["easy", "select", "8"]);

@@ -6,6 +6,7 @@ use super::{field, read};
 use crate::command::orders::Done;
 use crate::command::toyo::copies::{self, Copied};
 use crate::command::toyo::numbers::number;
+use crate::command::toyo::numbers::{not_held, read_back};
 use crate::command::toyo::{Family, link};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -66,7 +67,14 @@ impl Command for Select {
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
-        context.link.order(&Request::of(table::Command::Sesn, [Value::Number(self.program)])).await?;
+        let (link, order) = (context.link, Request::of(table::Command::Sesn, [Value::Number(self.program)]));
+        link.order(&order).await?;
+        let found = read_back(link, &order, &Request::bare(table::Command::Resd)).await?.number("program");
+        if let Some(found) = found.filter(|found| *found != self.program) {
+            return Err(
+                not_held(&order, &format!("program {found} is chosen")).hint("a program that runs stays chosen")
+            );
+        }
         Ok(Done::new(format!("easy program {} is chosen; `toyo run easy` starts it", self.program)))
     }
 }

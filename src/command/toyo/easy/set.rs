@@ -42,10 +42,10 @@ impl Command for Set {
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
         let Context { link, screen, .. } = context;
         let changes = Changes::read(&format!("easy program {}", self.program), &values(), &self.values)?;
-        let values = changes.completed(link, &read(self.program)?).await?;
+        let (values, found) = changes.completed(link, &read(self.program)?).await?;
         let cell = cell(self.program, values)?;
         let mut cells = Cells::default();
-        link.store(screen, &cell, &mut cells).await?;
+        link.store_over(screen, &cell, found.as_ref(), &mut cells).await?;
         Ok(Stored { program: Program::of(&cell.wanted), cells })
     }
 }

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::Family;
+use super::super::items;
 use super::super::link::Link;
 use super::super::numbers::small;
 use super::{Port, listed, name};
@@ -13,7 +14,7 @@ use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, Table, View};
 
 /// Which ports.
@@ -107,20 +108,28 @@ impl Bank {
         };
         let request = |screen: u8| self.request(station, screen);
         link.rehearse(&screens.clone().map(request).collect::<Vec<_>>())?;
-        let (mut ports, mut refused) = (Vec::new(), Vec::new());
+        let (mut ports, mut refused, mut failed) = (Vec::new(), Vec::new(), Vec::new());
         for screen in screens {
             // That there is nothing at all is a refusal like others; a controller with fewer ports is none.
             if ports.is_empty() {
                 ports.extend(ports_of(&link.read(&request(screen)).await?));
             } else {
-                match link.try_read(&request(screen)).await? {
-                    Ok(record) => ports.extend(ports_of(&record)),
-                    Err(_) => refused.extend(self.ports(station, screen).map(name)),
+                match link.try_read(&request(screen)).await {
+                    Ok(Ok(record)) => ports.extend(ports_of(&record)),
+                    Ok(Err(_)) => refused.extend(self.ports(station, screen).map(name)),
+                    Err(error) if matches!(error.kind, Kind::NoAnswer | Kind::Malformed) => {
+                        let is_silent = error.kind == Kind::NoAnswer;
+                        failed.push(Unread { ports: self.ports(station, screen).map(name).collect(), error });
+                        if is_silent {
+                            break;
+                        }
+                    }
+                    Err(failure) => return Err(failure),
                 }
             }
         }
         ports.retain(|found| port.is_none() || found.port == port);
-        Ok(Ports { station, ports, refused })
+        Ok(Ports { station, ports, refused, failed })
     }
 }
 
@@ -178,6 +187,17 @@ pub struct Ports {
     ports: Vec<Port>,
     /// Names of the ports that the controller refused to tell (`@NG`) after it had told others.
     refused: Vec<String>,
+    /// Ports that could not be read for another reason.
+    failed: Vec<Unread>,
+}
+
+/// Ports that could not be read.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Unread {
+    /// Their names.
+    ports: Vec<String>,
+    /// Why.
+    error: Failure,
 }
 
 impl Report for Ports {
@@ -191,6 +211,10 @@ impl Report for Ports {
             return view;
         }
         view.and(Section::Text(format!("refused by the controller (@NG): {}", self.refused.join(", "))))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::failure(self.ports.len() + self.failed.len(), self.failed.iter().map(|unread| Some(&unread.error)))
     }
 }
 

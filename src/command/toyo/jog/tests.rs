@@ -27,6 +27,7 @@ fn a_dry_run_shows_the_whole_sequence() {
     assert_eq!(
         all_blocks(&LOW).unwrap(),
         [
+            "@SYSP",
             "@STAS SNO=2",
             "@HSON",
             "@JGST X=RS Y=RS Z=RS R=RS",
@@ -45,7 +46,7 @@ fn a_dry_run_shows_the_whole_sequence() {
         (["jog", "z", "minus", "inch", "--steps", "3"], "@JGST X=SP Y=SP Z=-C R=SP"),
         (["jog", "R", "plus", "low", "--for", "60"], "@JGST X=SP Y=SP Z=SP R=+L"),
     ] {
-        assert_eq!(blocks(&words).unwrap()[2], block);
+        assert_eq!(blocks(&words).unwrap()[3], block);
     }
 }
 
@@ -183,7 +184,7 @@ fn a_controller_that_does_not_stop_is_told() {
 fn a_refusal_is_explained_and_stopped_all_the_same() {
     let (mut bench, heard) = Bench::spoilt("servo = false\n", |_, _| Fate::Pass);
     let failure = bench.run(&LOW).unwrap_err();
-    assert_eq!(failure.message, "the controller refused JGST (@NG): servo power is off");
+    assert_eq!(failure.message, "the controller refused JGST X=+L Y=SP Z=SP R=SP (@NG): servo power is off");
     ends_with_a_stop(&heard);
 }
 
@@ -238,4 +239,45 @@ fn the_shortest_jog_is_one_too() {
     // 50 mm/s, reached after 0.1 s.
     assert!((2.0..8.0).contains(&data["moved_mm"].as_f64().unwrap()), "{data}");
     ends_with_a_stop(&heard);
+}
+
+#[test]
+fn a_refused_jog_is_a_refusal_although_something_else_is_executed() {
+    let program = "origin = true\nsteps = { 1 = [\"SPD V=01\", \"MOV a X=+0500.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=01 \
+                   POST\", \"END\"] }\n";
+    let (mut bench, heard) =
+        Bench::spoilt(
+            program,
+            |block, _| {
+                if block.contains("=+L") || block == STOP { Fate::Answered("@NG") } else { Fate::Pass }
+            },
+        );
+    bench.data(&["run", "sequential", "1", "--no-wait"]);
+    let failure = bench.run(&LOW).unwrap_err();
+    assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Refused, Some("NG")), "{failure}");
+    assert!(failure.message.contains("a program or command is being executed"), "{failure}");
+    assert_eq!(count(&heard, STOP), 1, "the stop goes out nevertheless");
+    assert_eq!(bench.data(&["status"])["executing"], true, "what somebody else runs goes on");
+    bench.close().unwrap();
+    assert_eq!(heard.borrow().last().unwrap(), "@HSOF");
+}
+
+#[test]
+fn a_letter_is_the_axis_that_the_machine_calls_so() {
+    let lettered = "origin = true\nwrite = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\n";
+    let (mut bench, heard) = Bench::spoilt(lettered, |_, _| Fate::Pass);
+    let data = bench.data(&["jog", "z", "+", "low", "--for", "300ms"]);
+    assert_eq!((&data["axis"], &data["axis_number"]), (&"Z".into(), &2.into()));
+    assert_eq!(count(&heard, "@JGST X=SP Y=+L Z=SP R=SP"), 1);
+    assert!(data["end"]["y_mm"].as_f64().unwrap() > 1.0, "{data}");
+    assert_eq!(bench.data(&["position"])["axes"], serde_json::json!(["X", "Z", "Y", "R"]));
+    assert_eq!(bench.data(&["point", "get", "1"])["axes"][1], "Z");
+
+    // Two axes of one letter: only the number tells them apart.
+    let twice = "origin = true\nwrite = [\"WPAR E01 AX1=X AX2=X AX3=Z AX4=R\"]\n";
+    let (mut bench, heard) = Bench::spoilt(twice, |_, _| Fate::Pass);
+    let failure = bench.run(&["jog", "x", "+", "low", "--for", "300ms"]).unwrap_err();
+    assert_eq!(failure.message, "which axis X is, is open: the letters of axes 1 to 4 are X, X, Z, R");
+    assert!(!heard.borrow().iter().any(|block| block.starts_with("@JGST")));
+    assert_eq!(bench.data(&["jog", "2", "+", "low", "--for", "300ms"])["axis"], "X");
 }

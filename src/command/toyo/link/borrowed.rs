@@ -39,8 +39,12 @@ impl Link {
         if status.pendant_on() {
             return Err(refusal::pendant());
         }
+        self.debts.host(true);
         match self.converse(&Request::bare(Command::Hson), false).await? {
-            Answer::Refused => Err(refusal::pendant()),
+            Answer::Refused => {
+                self.debts.host(false);
+                Err(refusal::pendant())
+            }
             Answer::Done | Answer::Data(_) => {
                 self.host = Host::Taken;
                 Ok(())
@@ -57,12 +61,15 @@ impl Link {
             return Ok(());
         }
         // Before it is sent: if the answer is lost, it may have been done.
+        self.debts.push(&back.text());
         self.borrowed.push(back);
         match self.try_order(change).await? {
             Ok(()) => Ok(()),
-            Err(Refusal(command)) => {
-                self.borrowed.pop();
-                Err(refusal::explained(self, command).await)
+            Err(Refusal(request)) => {
+                if let Some(back) = self.borrowed.pop() {
+                    self.debts.pop(&back.text());
+                }
+                Err(refusal::explained(self, &request).await)
             }
         }
     }
@@ -84,9 +91,14 @@ impl Link {
                 self.note(&back, Reason::about("to put back what was found"));
                 continue;
             }
+            // A line that is still out of order shows in what follows.
+            self.fence().await.unwrap_or_default();
             let failure = match self.converse(&back, true).await {
                 Ok(Answer::Refused) => kept("@NG".to_owned()),
-                Ok(_) => continue,
+                Ok(_) => {
+                    self.debts.pop(&back.text());
+                    continue;
+                }
                 Err(failure) => Failure { kind: failure.kind, ..kept(failure.message) },
             };
             outcome = outcome.and(Err(failure));
@@ -109,9 +121,13 @@ impl Link {
             Failure::new(Kind::Refused, format!("the host was switched ON and could not be switched OFF again: {why}"))
                 .hint("`toyo host off` gives the start input back")
         };
+        self.fence().await.unwrap_or_default();
         match self.converse(&Request::bare(Command::Hsof), false).await {
             Ok(Answer::Refused) => Err(kept("@NG".to_owned())),
-            Ok(_) => Ok(()),
+            Ok(_) => {
+                self.debts.host(false);
+                Ok(())
+            }
             Err(failure) => Err(Failure { kind: failure.kind, ..kept(failure.message) }),
         }
     }

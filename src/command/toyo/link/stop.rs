@@ -54,11 +54,14 @@ impl Link {
             return Err(unknown());
         }
         self.set_policy(Policy { timeout: SILENCE, retries: REPETITIONS, ..self.usual });
+        // What others have left behind is told when it stands.
+        let left = std::mem::take(&mut self.left);
         let stopped = self.stop_until_it_stands(moving).await;
+        self.left = left;
         self.set_policy(self.usual);
         self.trace.release();
         match &stopped {
-            Ok(_) => self.moving = None,
+            Ok(_) => self.has_ended(),
             // The next stop shall find the host as it is.
             Err(_) => self.keep_host(),
         }
@@ -84,7 +87,7 @@ impl Link {
         // Where it was at the last look, if nothing was executed then.
         let mut last = None;
         loop {
-            let attempt = self.try_stop(&stop).await;
+            let attempt = self.try_stop(moving, &stop).await;
             let (is_slow, is_late) = (began.elapsed() >= SLOW, began.elapsed() >= WITHIN);
             last = match attempt {
                 Ok(Attempt { is_busy: false, place, .. }) if last.as_ref() == Some(&place) => return Ok(place),
@@ -101,9 +104,10 @@ impl Link {
                     if is_refused && moving == Moving::Jog {
                         // To stop a JOG takes the host, too.
                         self.take_host().await.unwrap_or_default();
+                        self.converse(&stop, true).await.map(|_| ()).unwrap_or_default();
                     } else if moving == Moving::Program && (is_slow || (!is_busy && last.is_some())) {
                         // It moves on, maybe although nothing is executed: somebody left an axis jogging.
-                        self.converse(&Moving::Jog.stop(), true).await.map(|_| ()).unwrap_or_default();
+                        self.stop_a_jog().await;
                     }
                     (!is_busy).then_some(place)
                 }
@@ -114,12 +118,36 @@ impl Link {
     }
 
     /// Orders the stop, then looks. That it was answered says little: only the robot itself tells that it stands.
-    async fn try_stop(&mut self, stop: &Request) -> Result<Attempt, Failure> {
+    async fn try_stop(&mut self, moving: Moving, stop: &Request) -> Result<Attempt, Failure> {
         self.rush(stop).await;
         let answer = self.converse(stop, true).await?;
-        let state = self.status_of(&[0]).await?;
+        let mut state = self.status_of(&[0]).await?;
+        if moving == Moving::Program && (state.executing() || state.homing()) {
+            // What is executed on may be an axis that somebody left jogging, which STOP does not stop.
+            self.stop_a_jog().await;
+            state = self.status_of(&[0]).await?;
+        }
         let place = self.place().await?;
         Ok(Attempt { is_refused: answer == Answer::Refused, is_busy: state.executing() || state.homing(), place })
+    }
+}
+
+impl Link {
+    /// Tells all axes to stop jogging; takes the host for it where that is needed. What goes wrong shows in the next look.
+    async fn stop_a_jog(&mut self) {
+        let stop = Moving::Jog.stop();
+        if matches!(self.converse(&stop, true).await, Ok(Answer::Refused)) && self.take_host().await.is_ok() {
+            self.converse(&stop, true).await.map(|_| ()).unwrap_or_default();
+        }
+    }
+
+    /// What moves was refused before it moved. The stop goes out nevertheless, once; whatever else moves is not this
+    /// link's.
+    pub async fn give_up(&mut self, moving: Moving) {
+        self.set_policy(self.usual);
+        self.converse(&moving.stop(), true).await.map(|_| ()).unwrap_or_default();
+        self.trace.release();
+        self.has_ended();
     }
 }
 

@@ -6,6 +6,7 @@ mod set;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::items::Item;
 use super::{Family, link};
 use crate::command::commands;
 use crate::controller::toyo::field::{Field, Value};
@@ -113,22 +114,24 @@ impl Group {
     }
 
     /// A line a group.
-    fn table(groups: &[Self]) -> View {
+    fn table(groups: &[Item<Self>]) -> View {
         let mut table = Table::new(
             &["group", "P0 P1 P2 P3", "pieces", "counters", "approach", "z (mm)", "r (mm)", "dest r (mm)"],
             "no groups",
         );
         for group in groups {
-            table.row([
-                group.group.into(),
-                group.corners().into(),
-                joined(group.pieces).into(),
-                joined(group.counters).into(),
-                group.approach.as_str().into(),
-                mm(group.approach_z_mm),
-                mm(group.approach_r_mm),
-                mm(group.destination_r_mm),
-            ]);
+            group.show(&mut table, |group| {
+                vec![
+                    group.group.into(),
+                    group.corners().into(),
+                    joined(group.pieces).into(),
+                    joined(group.counters).into(),
+                    group.approach.as_str().into(),
+                    mm(group.approach_z_mm),
+                    mm(group.approach_r_mm),
+                    mm(group.destination_r_mm),
+                ]
+            });
         }
         View::table(table)
     }

@@ -73,9 +73,9 @@ impl Command for Set {
         let mut sheets = read_contents(link, screen, "reading sheets", &reads).await?;
         let mut stores = Vec::new();
         for (index, changes) in changes.iter().enumerate().filter(|(_, changes)| changes.iter().any(Option::is_some)) {
-            let found = &sheets[index].values()[1..];
+            let found = sheets[index].values().get(1..).unwrap_or_default();
             let values = changes.iter().zip(found).map(|(change, found)| change.as_ref().unwrap_or(found).clone());
-            let store = self.store(index, values.collect())?;
+            let store = Store { found: Some(sheets[index].clone()), ..self.store(index, values.collect())? };
             sheets[index] = store.cell.wanted.clone();
             stores.push(store);
         }
@@ -89,7 +89,7 @@ impl Set {
     fn store(&self, index: usize, values: Vec<Value>) -> Result<Store, Failure> {
         let values = std::iter::once(Value::Number(self.group)).chain(values).collect();
         let cell = parameter_cell(sheet(index), values).map_err(|error| link::wrong(&error))?;
-        Ok(Store { key: sheet(index).name.to_owned(), cell, is_optional: false })
+        Ok(Store { key: sheet(index).name.to_owned(), cell, is_optional: false, found: None })
     }
 
     /// What was typed, sheet by sheet.

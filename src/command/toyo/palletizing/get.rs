@@ -8,10 +8,11 @@ use serde::Serialize;
 
 use super::{Entry, parse_program, parse_record, reads};
 use crate::command::ValueKind;
-use crate::command::toyo::numbers::read_contents;
+use crate::command::toyo::items::{self, read_each};
 use crate::command::toyo::{Family, files};
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::bulk::pallets;
+use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::table::Pallet;
 use crate::controller::toyo::table::palletizing::RECORDS;
 use crate::failure::Failure;
@@ -44,14 +45,14 @@ impl Command for Get {
         let Context { link, screen, several, .. } = context;
         let target = files::target(self.toml.as_deref(), self.force, several)?;
         let wanted = if self.records.is_empty() { RECORDS.iter().collect() } else { self.records.clone() };
-        let contents = read_contents(link, screen, "reading records", &reads(self.program, &wanted)?).await?;
-        let records: Vec<_> = wanted.into_iter().zip(contents).collect();
-        let file = target.map(|target| files::write(&target, &pallets::write(&records))).transpose()?;
-        Ok(Program {
-            program: self.program,
-            records: records.iter().map(|(pallet, record)| Entry::of(pallet, record)).collect(),
-            file,
-        })
+        let answers = read_each(link, screen, "reading records", &reads(self.program, &wanted)?).await?;
+        let records = wanted.iter().copied().zip(&answers).map(|(pallet, answer)| Entry::answered(pallet, answer));
+        let records = records.collect();
+        let kept = wanted.into_iter().zip(answers);
+        let kept = kept.filter_map(|(pallet, answer)| Some((pallet, answer.ok().filter(Record::is_listed)?)));
+        let kept: Vec<_> = kept.collect();
+        let file = target.map(|target| files::write(&target, &pallets::write(&kept))).transpose()?;
+        Ok(Program { program: self.program, records, file })
     }
 }
 
@@ -75,5 +76,9 @@ impl Report for Program {
             ]),
             None => View::table(Entry::table(&self.records)),
         }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::failure(self.records.len(), self.records.iter().map(|entry| entry.error.as_ref()))
     }
 }

@@ -9,6 +9,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::cells::Cell;
+use super::items::in_a_word;
 use super::link::wrong;
 use super::stores::Store;
 use super::values::{self, Shown};
@@ -21,7 +22,7 @@ use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::palletizing::RECORDS;
 use crate::controller::toyo::table::{Command, Pallet};
 use crate::failure::Failure;
-use crate::output::view::Table;
+use crate::output::view::{self, Table, Tone};
 
 commands! {
     /// What can be done with palletizing programs.
@@ -71,7 +72,7 @@ pub fn store(program: i32, record: &'static Pallet, values: Vec<Value>) -> Resul
         write: Request::write_pallet(program, record, &values).map_err(|error| wrong(&error))?,
         wanted: record.layout.record(values).map_err(|error| wrong(&error))?,
     };
-    Ok(Store { key: record.name.to_owned(), cell, is_optional: false })
+    Ok(Store { key: record.name.to_owned(), cell, is_optional: false, found: None })
 }
 
 /// A record of a program.
@@ -84,17 +85,42 @@ pub struct Entry {
     /// What it holds.
     about: &'static str,
     values: Vec<Shown>,
+    /// Whether it was answered, or stored.
+    ok: bool,
+    /// Why it was not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<Failure>,
 }
 
 impl Entry {
     fn of(pallet: &'static Pallet, record: &Record) -> Self {
-        Self { record: pallet.number, name: pallet.name, about: pallet.about, values: values::shown(record) }
+        let (record, values, name, about) = (pallet.number, values::shown(record), pallet.name, pallet.about);
+        Self { record, name, about, values, ok: true, error: None }
+    }
+
+    /// What was answered.
+    fn answered(pallet: &'static Pallet, answer: &Result<Record, Failure>) -> Self {
+        match answer {
+            Ok(record) => Self::of(pallet, record),
+            Err(failure) => Self {
+                record: pallet.number,
+                name: pallet.name,
+                about: pallet.about,
+                values: Vec::new(),
+                ok: false,
+                error: Some(failure.clone()),
+            },
+        }
     }
 
     fn table(entries: &[Self]) -> Table {
         let mut table = Table::new(&["record", "name", "value"], "no records");
-        for Self { record, name, values, .. } in entries {
-            table.row([(*record).into(), (*name).into(), values::in_a_line(values).into()]);
+        for Self { record, name, values, error, .. } in entries {
+            let value = match error {
+                Some(error) => view::Cell::from(in_a_word(error.kind)).tone(Tone::Bad),
+                None => values::in_a_line(values).into(),
+            };
+            table.row([(*record).into(), (*name).into(), value]);
         }
         table
     }
@@ -110,7 +136,7 @@ mod tests {
         assert_eq!(blocks(&["palletizing", "get", "3"]).len(), 16);
         assert_eq!(blocks(&["palletizing", "get", "3", "source-p1", "16"]), ["@RPLT 03 SNO=03", "@RPLT 03 SNO=16"]);
         assert_eq!(blocks(&["palletizing", "progress"]), ["@RPLD"]);
-        assert_eq!(blocks(&["palletizing", "select", "16"]), ["@SPLN PR=16"]);
+        assert_eq!(blocks(&["palletizing", "select", "16"]), ["@SPLN PR=16", "@RPLD"]);
         let copied = blocks(&["palletizing", "copy", "1", "2"]);
         assert_eq!((copied.len(), &copied[32][..]), (33, "@CPPL STA=01 TOP=02"));
         assert!(objection(&["palletizing", "get", "17"]).contains("17 is out of range (a number, 1 to 16)"));

@@ -10,7 +10,7 @@ use super::{Entry, parse_program, parse_record};
 use crate::command::ValueKind;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::link::wrong;
-use crate::command::toyo::stores::{self, Fate, Work};
+use crate::command::toyo::stores::{self, Fate, Store, Work};
 use crate::command::toyo::values::Changes;
 use crate::command::toyo::{Family, files};
 use crate::command::{Command, Context, Report};
@@ -66,18 +66,19 @@ impl Command for Set {
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
         let Context { link, screen, .. } = context;
         let records = match (&self.from, self.record) {
-            (Some(file), _) => from_file(file)?,
+            (Some(file), _) => from_file(file)?.into_iter().map(|filled| (filled, None)).collect(),
             (None, Some(record)) => {
                 let changes = Changes::read(record.name, &record.layout, &self.values)?;
                 let read = Request::read_pallet(self.program, record).map_err(|error| wrong(&error))?;
-                vec![(record, changes.completed(link, &read).await?)]
+                let (values, found) = changes.completed(link, &read).await?;
+                vec![((record, values), found)]
             }
             (None, None) => Vec::new(),
         };
         let mut entries = Vec::with_capacity(records.len());
         let mut stores = Vec::with_capacity(records.len());
-        for (record, values) in records {
-            let store = super::store(self.program, record, values)?;
+        for ((record, values), found) in records {
+            let store = Store { found, ..super::store(self.program, record, values)? };
             entries.push(Entry::of(record, &store.cell.wanted));
             stores.push(store);
         }

@@ -7,12 +7,12 @@ use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::entry::{Key, read_keys};
+use super::entry::{Key, is_refused, read_keys};
 use super::singles;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::numbers::Numbers;
-use crate::command::toyo::values::{in_a_line, shown};
-use crate::command::toyo::{Family, files};
+use crate::command::toyo::values::{NOT_IN_MANUAL, in_a_line, shown};
+use crate::command::toyo::{Family, files, items};
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::bulk::{Setting, parameters};
 use crate::controller::toyo::layout::Record;
@@ -57,9 +57,9 @@ impl Command for Dump {
             kept.text(),
         );
         let file = target.map(|target| files::write(&target, &text)).transpose()?;
-        let Kept { settings, refused, unfit } = kept;
+        let Kept { settings, refused, unfit, failed } = kept;
         let text = file.is_none().then_some(text);
-        Ok(Dumped { saved: settings.len(), refused, unfit, taken_at, file, text })
+        Ok(Dumped { saved: settings.len(), refused, unfit, failed, taken_at, file, text })
     }
 }
 
@@ -81,6 +81,17 @@ pub struct Kept {
     pub refused: Vec<String>,
     /// What holds something that may not be written.
     pub unfit: Vec<Unfit>,
+    /// What could not be read.
+    pub failed: Vec<Failed>,
+}
+
+/// A parameter or a row that could not be read.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Failed {
+    /// `M17`, or a row as `T2.5`.
+    pub key: String,
+    /// Why.
+    pub error: Failure,
 }
 
 /// A value that the controller holds although it may not be written.
@@ -90,6 +101,8 @@ pub struct Unfit {
     pub key: String,
     /// As it is.
     pub value: String,
+    /// Whether the manual lists it.
+    pub in_manual: bool,
     /// Why it may not be written.
     pub why: String,
 }
@@ -111,16 +124,26 @@ impl Kept {
         format!("{}{}", parameters::write(&self.settings), self.remarks())
     }
 
-    fn add(&mut self, (parameter, row): Key, content: Option<Record>) {
+    fn add(&mut self, (parameter, row): Key, answer: Result<Record, Failure>) {
         let key = key_text((parameter, row));
-        let Some(content) = content else { return self.refused.push(key) };
+        if is_refused(&answer) {
+            return self.refused.push(key);
+        }
+        let content = match answer {
+            Ok(content) => content,
+            Err(failure) => return self.failed.push(Failed { key, error: failure }),
+        };
+        if !content.is_listed() {
+            let value = in_a_line(&shown(&content));
+            return self.unfit.push(Unfit { key, value, in_manual: false, why: NOT_IN_MANUAL.to_owned() });
+        }
         let setting = Setting { parameter, values: content.values().to_vec() };
         match setting.write() {
             Ok(_) => self.settings.push(setting),
             Err(error) => {
                 let body = parameter.body().record(setting.values[parameter.key.fields.len()..].to_vec());
                 let value = body.map_or_else(|_| content.written(), |body| in_a_line(&shown(&body)));
-                self.unfit.push(Unfit { key, value, why: error.to_string() });
+                self.unfit.push(Unfit { key, value, in_manual: true, why: error.to_string() });
             }
         }
     }
@@ -131,7 +154,10 @@ impl Kept {
         if !self.refused.is_empty() {
             text.push_str(&format!("\n# Not on this controller: {}\n", self.refused.join(", ")));
         }
-        for Unfit { key, value, why } in &self.unfit {
+        for Failed { key, error } in &self.failed {
+            text.push_str(&format!("\n# {key} was not read: {}\n", escape::line(&error.message)));
+        }
+        for Unfit { key, value, why, .. } in &self.unfit {
             text.push_str(&format!("\n# {key} is {value}, which may not be written: {why}\n"));
         }
         text
@@ -157,6 +183,8 @@ pub struct Dumped {
     refused: Vec<String>,
     /// Those that are left out, as what they hold may not be written.
     unfit: Vec<Unfit>,
+    /// Those that could not be read.
+    failed: Vec<Failed>,
     taken_at: String,
     /// The TOML, if there is no file.
     text: Option<String>,
@@ -176,5 +204,10 @@ impl Report for Dumped {
             ("not on this controller", listed(refused.join(", ")).into()),
             ("may not be written", listed(unfit.join(", ")).into()),
         ])
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let all = self.saved + self.failed.len();
+        items::failure(all, self.failed.iter().map(|failed| Some(&failed.error)))
     }
 }

@@ -7,10 +7,10 @@ use serde::Serialize;
 use super::entry::{self, Entry};
 use super::parse_name;
 use crate::command::ValueKind;
-use crate::command::toyo::Family;
+use crate::command::toyo::{Family, items};
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::table::Parameter;
-use crate::failure::{Failure, Kind};
+use crate::failure::Failure;
 use crate::output::view::View;
 
 /// Which parameters.
@@ -46,14 +46,9 @@ impl Report for Parameters {
     }
 
     fn failure(&self) -> Option<Failure> {
-        let refused: Vec<&str> = self.parameters.iter().filter(|entry| entry.refused).map(|entry| entry.id).collect();
-        if refused.is_empty() {
-            return None;
-        }
-        Some(
-            Failure::new(Kind::Refused, format!("the controller refused {} (@NG)", refused.join(", ")))
-                .code("NG")
-                .hint("some parameters are only on some controllers; `only_on` in the JSON names them"),
-        )
+        let failure = items::failure(self.parameters.len(), self.parameters.iter().map(|entry| entry.error.as_ref()))?;
+        let refused = self.parameters.iter().any(|entry| entry.refused);
+        let hint = "some parameters are only on some controllers; `only_on` in the JSON names them";
+        Some(if refused { failure.hint(hint) } else { failure })
     }
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::entry::{self, Entry};
 use super::singles;
-use crate::command::toyo::Family;
+use crate::command::toyo::{Family, items};
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::table::{Group, Parameter};
 use crate::failure::Failure;
@@ -70,5 +70,11 @@ pub struct Listing {
 impl Report for Listing {
     fn view(&self) -> View {
         View::table(Entry::table(&self.parameters))
+    }
+
+    /// That a controller does not have all parameters there are is no failure.
+    fn failure(&self) -> Option<Failure> {
+        let errors = self.parameters.iter().map(|entry| entry.error.as_ref().filter(|_| !entry.refused));
+        items::failure(self.parameters.len(), errors)
     }
 }

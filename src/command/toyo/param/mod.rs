@@ -8,7 +8,7 @@ mod machine;
 mod restore;
 mod set;
 
-pub use dump::{Kept, Unfit};
+pub use dump::{Failed, Kept, Unfit};
 pub use restore::store;
 
 use super::Family;

@@ -151,7 +151,7 @@ pub fn store(setting: &Setting) -> Result<Store, Failure> {
         wanted: setting.parameter.layout.record(setting.values.clone()).map_err(wrong)?,
     };
     let is_optional = !setting.parameter.only_on.is_empty();
-    Ok(Store { key: key_text((setting.parameter, setting.row())), cell, is_optional })
+    Ok(Store { key: key_text((setting.parameter, setting.row())), cell, is_optional, found: None })
 }
 
 /// What became of the parameters of a file.

@@ -63,8 +63,7 @@ impl Command for Set {
             Some(values) if !machine::is_task_steps(parameter) || link.is_dry() => (None, values),
             _ => {
                 let found = link.read_content(&read).await?;
-                let values = changes.applied(found.values());
-                (Some(found), values)
+                (Some(found.clone()), changes.over(&found)?)
             }
         };
         machine::check(parameter, &values)?;
@@ -76,7 +75,7 @@ impl Command for Set {
             screen.note(&warning);
         }
         let mut cells = Cells::default();
-        link.store(screen, &cell, &mut cells).await?;
+        link.store_over(screen, &cell, found.as_ref(), &mut cells).await?;
         Ok(Written {
             id: parameter.id,
             name: parameter.name,

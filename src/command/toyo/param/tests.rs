@@ -201,3 +201,22 @@ fn a_machine_parameter_asks_for_the_power_to_be_cycled() {
     assert_eq!((&changed["needs_power_cycle"], &changed["values"][0]["value"]), (&true.into(), &777.into()));
     assert_eq!(bench.data(&["status"])["needs_power_cycle"], true);
 }
+
+#[test]
+fn a_change_of_a_part_reads_once_before_it_writes() {
+    let (mut bench, heard) = Bench::spoilt("", |_, _| Fate::Pass);
+    for (words, read) in [
+        (&["param", "set", "P01", "ax2=150"][..], "@RPAR P01"),
+        (&["point", "set", "7", "z=5"], "@RPAR T1 PT=007"),
+        (&["torque-table", "set", "2", "load=1"], "@RPAR T5 LIM02"),
+        (&["easy", "set", "1", "loop=7"], "@RESY PNO=01 ST=000"),
+        (&["palletizing", "set", "1", "source-p1", "x=5"], "@RPLT 01 SNO=03"),
+        (&["mvm", "set", "1", "origin=5"], "@RPAR T4 S1 GRP=01"),
+    ] {
+        heard.borrow_mut().clear();
+        bench.data(words);
+        let heard = heard.borrow();
+        // Once before it is written, once to read it back.
+        assert_eq!(heard.iter().filter(|block| *block == read).count(), 2, "{heard:#?}");
+    }
+}

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::{OTHER_TASK, Row, field, parse_points, read_all};
 use crate::command::toyo::Family;
+use crate::command::toyo::items::{self, Item};
 use crate::command::toyo::numbers::Numbers;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -35,8 +36,10 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Points, Failure> {
         let Context { link, screen, .. } = context;
-        let (task, points) = read_all(link, screen, self.task, &Numbers::of(&self.points, &field())).await?;
-        Ok(Points { task, points: points.iter().map(Row::of).collect() })
+        let points = Numbers::of(&self.points, &field());
+        let axes = link.letters().await?.all();
+        let (task, answers) = read_all(link, screen, self.task, &points).await?;
+        Ok(Points { task, points: Row::items(&points, &answers), axes })
     }
 }
 
@@ -45,11 +48,17 @@ impl Command for Get {
 pub struct Points {
     /// Whose points these are.
     pub task: u8,
-    pub points: Vec<Row>,
+    pub points: Vec<Item<Row>>,
+    /// The letters of axes 1 to 4, of which `x_mm`, `y_mm`, `z_mm` and `r_mm` are the coordinates in this order.
+    pub axes: [String; 4],
 }
 
 impl Report for Points {
     fn view(&self) -> View {
-        View::table(Row::table(&self.points))
+        View::table(Row::table(&self.points, &self.axes))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::failure_of(&self.points)
     }
 }

@@ -8,13 +8,14 @@ use serde::Serialize;
 
 use super::get::Points;
 use super::{OTHER_TASK, Row, read_all};
+use crate::command::toyo::items::{self, Item};
 use crate::command::toyo::{Family, files};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::bulk::{Setting, points};
 use crate::controller::toyo::layout::Record;
 use crate::failure::Failure;
-use crate::output::view::View;
+use crate::output::view::{Section, View};
 
 /// Which points, and where to.
 #[derive(Debug, Args)]
@@ -59,14 +60,18 @@ impl Command for List {
         }
         let target = files::target(self.csv.as_deref(), self.force, several)?;
         let points: Vec<i32> = (self.from..=self.to).collect();
-        let (task, records) = read_all(link, screen, self.task, &points).await?;
+        let axes = if target.is_none() { link.letters().await?.all() } else { Default::default() };
+        let (task, answers) = read_all(link, screen, self.task, &points).await?;
+        let items = Row::items(&points, &answers);
         let Some(target) = target else {
-            return Ok(Listing::Points(Points { task, points: records.iter().map(Row::of).collect() }));
+            return Ok(Listing::Points(Points { task, points: items, axes }));
         };
         let setting = |record: &Record| Setting { parameter: points::table(), values: record.values().to_vec() };
-        let settings: Vec<Setting> = records.iter().map(setting).collect();
+        let settings: Vec<Setting> =
+            answers.iter().flatten().filter(|record| record.is_listed()).map(setting).collect();
         let file = files::write(&target, &points::write(&settings, AXES))?;
-        Ok(Listing::File(Saved { task, file, saved: settings.len() }))
+        let left_out = items.into_iter().filter(|item| item.value().is_none()).collect();
+        Ok(Listing::File(Saved { task, file, saved: settings.len(), asked: points.len(), left_out }))
     }
 }
 
@@ -91,15 +96,32 @@ pub struct Saved {
     file: String,
     /// How many it holds.
     saved: usize,
+    /// How many were asked for.
+    #[serde(skip)]
+    asked: usize,
+    /// Points that it does not hold: refused, or with something that the manual does not list.
+    left_out: Vec<Item<Row>>,
 }
 
 impl Report for Listing {
     fn view(&self) -> View {
         match self {
             Self::Points(points) => points.view(),
-            Self::File(Saved { task, file, saved }) => {
-                View::fields([("file", file.as_str().into()), ("task", (*task).into()), ("points", (*saved).into())])
+            Self::File(Saved { task, file, saved, left_out, .. }) => {
+                let mut fields =
+                    vec![("file", file.as_str().into()), ("task", (*task).into()), ("points", (*saved).into())];
+                if !left_out.is_empty() {
+                    fields.push(("left out", left_out.len().into()));
+                }
+                View { sections: vec![Section::Fields(fields)] }
             }
+        }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        match self {
+            Self::Points(points) => points.failure(),
+            Self::File(saved) => items::failure(saved.asked, saved.left_out.iter().map(Item::error)),
         }
     }
 }

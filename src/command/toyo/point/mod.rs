@@ -9,9 +9,10 @@ pub use list::AXES;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::items::{Answers, Item, read_each};
 use super::link::{self, Link};
-use super::numbers::{self, Numbers};
-use super::position::Place;
+use super::numbers::Numbers;
+use super::position::{Place, heading};
 use super::{Family, tasks};
 use crate::command::commands;
 use crate::controller::toyo::bulk::points::table;
@@ -53,13 +54,21 @@ impl Row {
     }
 
     /// With the columns of a CSV file that `point set --from` reads.
-    fn table(rows: &[Self]) -> Table {
-        let mut table = Table::new(&["point", "x (mm)", "y (mm)", "z (mm)", "r (mm)"], "no points");
+    fn table(rows: &[Item<Self>], letters: &[String; 4]) -> Table {
+        let [x, y, z, r] = [0, 1, 2, 3].map(|index| heading(index, &letters[index]));
+        let mut table = Table::new(&["point", x, y, z, r], "no points");
         let mm = |value: f64| Cell::number(format!("{value:.2}"));
-        for Self { point, place: Place { x_mm, y_mm, z_mm, r_mm } } in rows {
-            table.row([(*point).into(), mm(*x_mm), mm(*y_mm), mm(*z_mm), mm(*r_mm)]);
+        for row in rows {
+            row.show(&mut table, |Self { point, place: Place { x_mm, y_mm, z_mm, r_mm } }| {
+                vec![(*point).into(), mm(*x_mm), mm(*y_mm), mm(*z_mm), mm(*r_mm)]
+            });
         }
         table
+    }
+
+    /// Of what was answered for these points.
+    fn items(points: &[i32], answers: &Answers) -> Vec<Item<Self>> {
+        points.iter().zip(answers).map(|(point, answer)| Item::of("point", *point, answer, Self::of)).collect()
     }
 }
 
@@ -80,12 +89,12 @@ pub async fn read_all(
     screen: &Screen,
     task: Option<u8>,
     points: &[i32],
-) -> Result<(u8, Vec<Record>), Failure> {
+) -> Result<(u8, Answers), Failure> {
     let requests: Result<Vec<Request>, _> =
         points.iter().map(|point| Request::read_parameter(table(), Some(*point))).collect();
     let requests = requests.map_err(|error| link::wrong(&error))?;
     let task = tasks::choose(link, task).await?;
-    let read = numbers::read_contents(link, screen, "reading points", &requests).await;
+    let read = read_each(link, screen, "reading points", &requests).await;
     Ok((task, tasks::done(link, read).await?))
 }
 

@@ -99,8 +99,9 @@ async fn store_one(
     changes: &Changes,
 ) -> Result<Stored, Failure> {
     let read = Request::read_parameter(points::table(), Some(point)).map_err(|error| link::wrong(&error))?;
-    let coordinates = changes.completed(link, &read).await?;
-    let points = [store(std::iter::once(Value::Number(point)).chain(coordinates).collect())?];
+    let (coordinates, found) = changes.completed(link, &read).await?;
+    let stored = store(std::iter::once(Value::Number(point)).chain(coordinates).collect())?;
+    let points = [Store { found, ..stored }];
     let fates = stores::store_all(link, screen, WORK, &points, 0).await?;
     Ok(Stored::new(task, &points, &fates))
 }
@@ -108,7 +109,7 @@ async fn store_one(
 fn store(values: Vec<Value>) -> Result<Store, Failure> {
     let cell = parameter_cell(points::table(), values).map_err(|error| link::wrong(&error))?;
     let row = cell.wanted.number("row").unwrap_or_default();
-    Ok(Store { key: row.to_string(), cell, is_optional: false })
+    Ok(Store { key: row.to_string(), cell, is_optional: false, found: None })
 }
 
 /// What became of points.

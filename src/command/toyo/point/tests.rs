@@ -6,11 +6,14 @@ use crate::command::toyo::testing::{Bench, Fate, blocks, objection};
 fn points_and_ranges_are_read_once_each() {
     assert_eq!(
         blocks(&["point", "get", "9-10,20", "9"]).unwrap(),
-        ["@MTSK", "@RPAR T1 PT=009", "@RPAR T1 PT=010", "@RPAR T1 PT=020"]
+        ["@SYSP", "@MTSK", "@RPAR T1 PT=009", "@RPAR T1 PT=010", "@RPAR T1 PT=020"]
     );
-    assert_eq!(blocks(&["point", "get", "1", "--task", "2"]).unwrap(), ["@MTSK", "@CTSK TASK=02", "@RPAR T1 PT=001"]);
-    assert_eq!(blocks(&["point", "list"]).unwrap().len(), 1 + 999);
-    assert_eq!(blocks(&["point", "list", "--from", "998"]).unwrap()[1..], ["@RPAR T1 PT=998", "@RPAR T1 PT=999"]);
+    assert_eq!(
+        blocks(&["point", "get", "1", "--task", "2"]).unwrap(),
+        ["@SYSP", "@MTSK", "@CTSK TASK=02", "@RPAR T1 PT=001"]
+    );
+    assert_eq!(blocks(&["point", "list"]).unwrap().len(), 2 + 999);
+    assert_eq!(blocks(&["point", "list", "--from", "998"]).unwrap()[2..], ["@RPAR T1 PT=998", "@RPAR T1 PT=999"]);
     assert!(objection(&["point", "get", "1000"]).contains("1000 is out of range (a number, 1 to 999)"));
     assert_eq!(blocks(&["point", "list", "--from", "5", "--to", "4"]).unwrap_err().kind.exit(), 2);
 }
@@ -126,7 +129,7 @@ fn a_silent_controller_had_nothing_written() {
     let points = five_points();
     let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
     assert_eq!(failure.kind.exit(), 4);
-    assert!(failure.message.ends_with("; nothing was written; not written: points 1 to 5"), "{failure}");
+    assert!(failure.message.ends_with("; nothing was written"), "{failure}");
 }
 
 #[test]

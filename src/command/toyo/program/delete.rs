@@ -89,7 +89,7 @@ impl Delete {
             return Err(moved_wrong(self.step, &behind, &found));
         }
         let deleted = (usize::from(self.step)..).zip(&deleted);
-        let deleted = deleted.map(|(step, record)| Step { step, instruction: record.written() }).collect();
+        let deleted = deleted.map(|(step, record)| Step::of(step, record)).collect();
         Ok(Deleted { task, deleted })
     }
 
@@ -114,7 +114,7 @@ pub struct Deleted {
 
 impl Report for Deleted {
     fn view(&self) -> View {
-        let lines = self.deleted.iter().map(|Step { step, instruction }| format!("{step:04}  {instruction}\n"));
+        let lines = self.deleted.iter().map(|Step { step, instruction, .. }| format!("{step:04}  {instruction}\n"));
         View::text(format!("# deleted from task {}\n{}", self.task, lines.collect::<String>()))
     }
 }

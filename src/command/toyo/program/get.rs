@@ -101,7 +101,7 @@ impl Command for Get {
             last_step: last,
             used_steps: program::used(&read),
             tags: program::tags(&read, self.from.into()).into_iter().map(|(tag, step)| Tag { tag, step }).collect(),
-            steps: numbered.map(|(step, record)| Step { step, instruction: record.written() }).collect(),
+            steps: numbered.map(|(step, record)| Step::of(step, record)).collect(),
             text: file.is_none().then_some(text),
             file,
         })
@@ -176,6 +176,15 @@ pub struct Step {
     pub step: usize,
     /// As the controller has it.
     pub instruction: String,
+    /// Whether the manual lists it; what it does not cannot be written.
+    pub in_manual: bool,
+}
+
+impl Step {
+    /// As it was read.
+    pub fn of(step: usize, record: &Record) -> Self {
+        Self { step, instruction: record.written(), in_manual: record.is_listed() }
+    }
 }
 
 impl Report for Got {

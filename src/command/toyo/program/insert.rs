@@ -106,7 +106,7 @@ impl Insert {
         }
         let mut cells = Cells::default();
         link.store(screen, &steps::cell(step, instruction)?, &mut cells).await?;
-        Ok(Inserted { task, inserted: Step { step: step.into(), instruction: instruction.written() } })
+        Ok(Inserted { task, inserted: Step::of(step.into(), instruction) })
     }
 
     async fn rehearse(&self, link: &mut Link, screen: &Screen, instruction: &Record) -> Result<Inserted, Failure> {
@@ -136,7 +136,7 @@ pub struct Inserted {
 
 impl Report for Inserted {
     fn view(&self) -> View {
-        let Step { step, instruction } = &self.inserted;
+        let Step { step, instruction, .. } = &self.inserted;
         View::text(format!("inserted in task {}: {step:04} {instruction}", self.task))
     }
 }

@@ -137,7 +137,7 @@ fn steps_are_inserted_and_deleted() {
     let mut desk = Desk::new();
     desk.put(SAMPLE, &[]).unwrap();
     let inserted = desk.bench.data(&["program", "insert", "2", "acc", "a=1"]);
-    assert_eq!(inserted["inserted"], serde_json::json!({ "step": 2, "instruction": "ACC A=01" }));
+    assert_eq!(inserted["inserted"], serde_json::json!({ "step": 2, "instruction": "ACC A=01", "in_manual": true }));
     assert!(desk.text(&[]).starts_with("SPD V=05\nACC A=01\nMOVP"));
     let deleted = desk.bench.data(&["program", "delete", "1", "--to", "2"]);
     assert_eq!(deleted["deleted"][1]["instruction"], "ACC A=01");

@@ -277,7 +277,10 @@ area-output-1 = { compare = \"<=\", place = 10.00, station = 0, port = 1, bit = 
                 "[speed-table]\n1 = 0.9",
                 "line 2, column 5: error: speed: 0.9 is out of range (a number, 1.0 to 9999.9 mm/s)",
             ),
-            ("[speed-table]\n1 = 1.05", "line 2, column 5: error: speed: '1.05' is not a number, 1.0 to 9999.9 mm/s"),
+            (
+                "[speed-table]\n1 = 1.05",
+                "line 2, column 5: error: speed: 1.05 has too many decimals: at most 1 decimal (a number, 1.0 to 9999.9 mm/s)",
+            ),
             ("[speed-table]\n1 = \"1.0\"", "line 2, column 5: error: speed: a number, 1.0 to 9999.9 mm/s is expected"),
             ("[speed-table]\n1 = inf", "line 2, column 5: error: speed: 'inf' is not a number, 1.0 to 9999.9 mm/s"),
             ("[speed-table]\n1 = 1.0\n01 = 2.0", "line 3, column 1: error: row 1 is there already, in line 2"),

@@ -272,7 +272,10 @@ mod tests {
                 "1,0,8000.01,0,0",
                 "line 2, column 5: error: y: 8000.01 is out of range (a number, -8000.00 to 8000.00 mm)",
             ),
-            ("1,0,0.001,0,0", "line 2, column 5: error: y: '0.001' is not a number, -8000.00 to 8000.00 mm"),
+            (
+                "1,0,0.001,0,0",
+                "line 2, column 5: error: y: 0.001 has too many decimals: at most 2 decimals (a number, -8000.00 to 8000.00 mm)",
+            ),
             ("1000,0,0,0,0", "line 2, column 1: error: row: 1000 is out of range (a number, 1 to 999)"),
             (
                 "1,0,\"0,5\",0,0",

@@ -147,7 +147,7 @@ fn value(field: &Field, text: &str) -> Result<Value, FieldError> {
     }
     field.read(text).map_err(|error| match error {
         FieldError::Form { name, found, form } => FieldError::Form { name, found: shown(&found).to_owned(), form },
-        FieldError::Range { .. } => error,
+        FieldError::Range { .. } | FieldError::Decimals { .. } => error,
     })
 }
 

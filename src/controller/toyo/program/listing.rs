@@ -30,6 +30,9 @@ pub struct Style {
     pub is_numbered: bool,
 }
 
+/// Stands behind a step that the manual does not list; it is as it came.
+pub const NOT_IN_MANUAL: &str = "not in the manual";
+
 /// Fields of instructions that name a row of a table, with its id.
 const TABLES: [(&str, &str); 5] =
     [("point", "T1"), ("speed", "T2"), ("ramp", "T3"), ("group", "T4.S1"), ("table", "T5")];
@@ -68,6 +71,9 @@ pub fn listing(steps: &[Record], style: Style, rows: &Rows) -> Listing {
 
 /// What an instruction names, as people know it.
 fn comments(record: &Record, tags: &BTreeMap<i32, usize>, rows: &Rows) -> Vec<String> {
+    if !record.is_listed() {
+        return vec![NOT_IN_MANUAL.to_owned()];
+    }
     let jumps = record.layout() != Op::Tag.row().layout;
     let named = record.pairs().filter(|(field, _)| jumps && is_tag(field));
     let steps = named.filter_map(|(field, _)| {

@@ -21,12 +21,12 @@ mod tags;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-pub use listing::{Listing, Rows, Style, listing, tags, used, uses};
+pub use listing::{Listing, NOT_IN_MANUAL, Rows, Style, listing, tags, used, uses};
 
-use super::findings::Findings;
 pub use super::findings::{Finding, Severity};
+use super::findings::{Findings, Place};
 use super::layout::Record;
 use super::table::Instruction;
 
@@ -98,9 +98,48 @@ pub struct Part {
     pub tags: Option<BTreeSet<i32>>,
 }
 
+/// What a file is that is no program at all, and what takes it.
+fn foreign(text: &[u8]) -> Option<(&'static str, &'static str)> {
+    let first = text.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii).find(|line| !line.is_empty())?;
+    let first = first.strip_prefix("\u{FEFF}".as_bytes()).unwrap_or(first).to_ascii_lowercase();
+    let cells = first.split(|byte| matches!(byte, b',' | b';' | b'\t')).count();
+    let names_point = first.starts_with(b"point") || first.starts_with(b"\"point");
+    if names_point && cells > 1 {
+        return Some(("this is a CSV file of points, not a program", "`toyo point set --from FILE` writes points"));
+    }
+    if first.starts_with(b"[parameters]") || first.starts_with(b"# parameters of a toyo") {
+        return Some(("this is a file of parameters, not a program", "`toyo param restore FILE` writes parameters"));
+    }
+    None
+}
+
 /// Reads the text of a program for a task with so many steps (TO 2-4, E22).
 pub fn check(text: &[u8], room: usize) -> Checked {
     check_with(text, room, None)
+}
+
+/// Reads a whole [`listing`], in which steps may be marked as not in the manual: those are kept as they are, and are never
+/// sent.
+pub fn check_kept(text: &[u8], room: usize) -> Checked {
+    let mut kept = BTreeMap::new();
+    let mut lines = Vec::new();
+    for (index, line) in text.split(|byte| *byte == b'\n').enumerate() {
+        let marked = std::str::from_utf8(line).ok().and_then(|line| line.trim_end().rsplit_once("# "));
+        match marked.filter(|(_, comment)| *comment == NOT_IN_MANUAL) {
+            Some((raw, _)) => {
+                kept.insert(index + 1, Record::unlisted(raw));
+                lines.push(&b"NOP"[..]);
+            }
+            None => lines.push(line),
+        }
+    }
+    let mut checked = check(&lines.join(&b'\n'), room);
+    for step in checked.program.iter_mut().flat_map(|program| &mut program.steps) {
+        if let Some(record) = kept.remove(&step.line) {
+            step.record = record;
+        }
+    }
+    checked
 }
 
 /// Reads the text of a part of a program, for which there is room for so many steps.
@@ -110,6 +149,10 @@ pub fn check_part(text: &[u8], room: usize, part: &Part) -> Checked {
 
 fn check_with(text: &[u8], room: usize, part: Option<&Part>) -> Checked {
     let mut findings = Findings::default();
+    if let Some((what, hint)) = foreign(text) {
+        findings.error(Place { line: 1, column: 1 }, what, Some(hint.to_owned()));
+        return Checked { program: None, findings: findings.sorted() };
+    }
     let read = reader::read(text, room, part, &mut findings);
     let program = tags::resolve(read, part, &mut findings);
     if findings.errors() == 0 {

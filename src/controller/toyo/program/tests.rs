@@ -277,6 +277,18 @@ fn a_listing_reads_back() {
     }
 }
 
+#[test]
+fn what_is_not_in_the_manual_keeps_its_place_and_is_no_program() {
+    let steps: Vec<Record> = ["SPD V=05", "END"].map(|text| request::instruction(text).unwrap()).into();
+    let steps = [&steps[..1], &[Record::unlisted("FOO X=1 #2")], &steps[1..]].concat();
+    let text = listing(&steps, whole(false), &Rows::new()).text;
+    assert_eq!(text, "SPD V=05\nFOO X=1 #2  # not in the manual\nEND\n");
+    assert_eq!(findings(&text).len(), 1, "what is put is strict");
+    let program = check_kept(text.as_bytes(), 10).program.unwrap();
+    assert_eq!(program.steps.iter().map(|step| step.record.clone()).collect::<Vec<_>>(), steps);
+    assert!(program.steps[1].record.emit().is_err());
+}
+
 /// A value that a field may have.
 fn least(field: &crate::controller::toyo::field::Field) -> crate::controller::toyo::field::Value {
     use crate::controller::toyo::field::{Form, Mask, Value};
@@ -362,4 +374,17 @@ fn a_part_knows_the_tags_around_it() {
              (the machine parameter E22 (task-steps) says how many)"]
     );
     assert!(told(part("0001 NOP", None))[0].ends_with("its first instruction is step 100 nevertheless"));
+}
+
+#[test]
+fn a_file_of_something_else_is_told_in_one_sentence() {
+    let points = format!("point,x_mm,y_mm,z_mm,r_mm\n{}", "1,2,3,4,5\n".repeat(50));
+    assert_eq!(
+        findings(points),
+        ["line 1, column 1: error: this is a CSV file of points, not a program (`toyo point set --from FILE` writes \
+             points)"]
+    );
+    assert_eq!(findings("\u{FEFF}\"Point\";\"x_mm\"\n").len(), 1);
+    assert_eq!(findings("[parameters]\nP01 = 1\nP02 = 2\n").len(), 1);
+    assert_eq!(findings("point: NOP\nEND\n").len(), 1, "a label may be called so");
 }

@@ -65,9 +65,10 @@ fn a_late_ok_is_not_the_answer_to_the_next_order() {
     line.begin(&request("@SVON"), false);
     let Step::Wait(settled) = line.poll(deadline) else { panic!("it lets the line settle") };
     assert_eq!(settled, deadline + SECOND);
-    // It comes, and passes; the next order goes out at once.
+    // It comes, and passes; the next order goes out as soon as the line is quiet.
     line.handle(deadline + ms(300), b"@OK\r\n");
-    let now = deadline + ms(300);
+    assert_eq!(line.poll(deadline + ms(300)), Step::Wait(deadline + ms(350)));
+    let now = deadline + ms(350);
     assert_eq!(line.poll(now), Step::Send(b"@SVON\r\n".to_vec()));
     assert!(matches!(line.poll(now), Step::Wait(_)));
     line.handle(now + ms(20), b"@NG\r\n");
@@ -184,4 +185,42 @@ fn whatever_answers_a_raw_block_is_its_answer() {
     assert_eq!(line.poll(Now::ZERO), Step::Send(b"@ABCD\r\n".to_vec()));
     line.handle(ms(9), b"@ABCD\r\n@ABCD X=1\r\n");
     assert_eq!(line.poll(ms(9)), answered("@ABCD X=1"));
+}
+
+#[test]
+fn an_order_waits_for_a_quiet_line_but_not_for_ever_and_a_stop_not_at_all() {
+    let mut line = Line::new(POLICY);
+    line.handle(ms(0), b"@OK\r\n");
+    line.begin(&request("@SVON"), false);
+    assert_eq!(line.poll(ms(10)), Step::Wait(ms(50)));
+    // Something else comes again and again.
+    for at in (40..500).step_by(40) {
+        line.handle(ms(at), b"@OK\r\n");
+        assert!(matches!(line.poll(ms(at)), Step::Wait(_)), "{at}");
+    }
+    line.handle(ms(500), b"x");
+    assert_eq!(line.poll(ms(510)), Step::Send(b"@SVON\r\n".to_vec()));
+
+    let mut line = Line::new(POLICY);
+    line.handle(ms(0), b"@OK\r\n");
+    line.begin(&request("@STOP"), true);
+    assert_eq!(line.poll(ms(10)), Step::Send(b"@STOP\r\n".to_vec()));
+}
+
+#[test]
+fn what_the_manual_does_not_list_is_believed_the_second_time() {
+    let mut line = sent("@RPAR E17", true);
+    line.handle(ms(10), b"@RPAR E17 E=I\r\n");
+    let Step::Wait(again) = line.poll(ms(10)) else { panic!("it waits for a quiet line") };
+    assert_eq!(line.poll(again), Step::Send(b"@RPAR E17\r\n".to_vec()));
+    line.handle(again + ms(10), b"@RPAR E17 E=I\r\n");
+    assert_eq!(line.poll(again + ms(10)), answered("@RPAR E17 E=I"));
+
+    // Damage is another one each time.
+    let mut line = sent("@RPAR E17", true);
+    line.handle(ms(10), b"@RPAR E17 E=I\r\n");
+    let Step::Wait(again) = line.poll(ms(10)) else { panic!("it waits for a quiet line") };
+    assert_eq!(line.poll(again), Step::Send(b"@RPAR E17\r\n".to_vec()));
+    line.handle(again + ms(10), b"@RPAR E17 E=i\r\n");
+    assert_eq!(line.poll(again + ms(10)), answered("@RPAR E17 E=i"));
 }

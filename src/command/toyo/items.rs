@@ -1,0 +1,296 @@
+//! Several questions in one command: each item has its own outcome, and one refusal hides nothing.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::link::{Link, Refusal};
+use super::refusal;
+use super::values::NOT_IN_MANUAL;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::request::Request;
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::output::view::{Cell, Table, Tone};
+
+/// What became of one question of several.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Item<T> {
+    /// It was answered.
+    Answered {
+        #[serde(flatten)]
+        value: T,
+        /// True.
+        ok: bool,
+    },
+    /// The answer holds something that the manual does not list.
+    Unlisted {
+        /// Which it is: `counter`, `row`, `point`.
+        #[serde(flatten)]
+        key: Key,
+        /// True.
+        ok: bool,
+        /// False.
+        in_manual: bool,
+        /// As the controller holds it.
+        raw: String,
+    },
+    /// It was not answered.
+    Failed {
+        /// Which it is.
+        #[serde(flatten)]
+        key: Key,
+        /// False.
+        ok: bool,
+        /// Why, with the block that was refused.
+        error: Failure,
+    },
+}
+
+/// What tells an item from the others: `counter` 5.
+pub type Key = BTreeMap<&'static str, i32>;
+
+/// What was answered to each question.
+pub type Answers = Vec<Result<Record, Failure>>;
+
+impl<T> Item<T> {
+    /// From an answer.
+    pub fn of(name: &'static str, number: i32, answer: &Result<Record, Failure>, make: impl Fn(&Record) -> T) -> Self {
+        let key = Key::from([(name, number)]);
+        match answer {
+            Ok(record) if record.is_listed() => Self::Answered { ok: true, value: make(record) },
+            Ok(record) => Self::Unlisted { ok: true, key, in_manual: false, raw: record.written() },
+            Err(failure) => Self::Failed { ok: false, key, error: failure.clone() },
+        }
+    }
+
+    /// The value, if there is one.
+    pub fn value(&self) -> Option<&T> {
+        if let Self::Answered { value, .. } = self { Some(value) } else { None }
+    }
+
+    /// Why there is none.
+    pub fn error(&self) -> Option<&Failure> {
+        if let Self::Failed { error, .. } = self { Some(error) } else { None }
+    }
+
+    /// Puts it into a table: its cells, or what is there in place of them.
+    pub fn show(&self, table: &mut Table, cells: impl Fn(&T) -> Vec<Cell>) {
+        let (key, text, tone) = match self {
+            Self::Answered { value, .. } => return table.rows.push(cells(value)),
+            Self::Unlisted { key, raw, .. } => (key, format!("{raw} ({NOT_IN_MANUAL})"), Tone::Warning),
+            Self::Failed { key, error, .. } => (key, in_a_word(error.kind).to_owned(), Tone::Bad),
+        };
+        let mut row: Vec<Cell> = key.values().map(|number| Cell::from(*number)).collect();
+        row.push(Cell::from(text).tone(tone));
+        row.resize_with(table.columns.len(), Cell::default);
+        table.rows.push(row);
+    }
+}
+
+/// A failure where there is room for a word.
+pub fn in_a_word(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Refused => "refused",
+        Kind::NoAnswer => "no answer",
+        _ => "no sense",
+    }
+}
+
+/// Why a report is no success: all that failed, with the first of them in words.
+pub fn failure<'f>(all: usize, errors: impl Iterator<Item = Option<&'f Failure>>) -> Option<Failure> {
+    let failed: Vec<&Failure> = errors.flatten().collect();
+    let first = *failed.first()?;
+    if failed.len() == all {
+        return Some(first.clone());
+    }
+    let message = format!("{} of {all} failed: {}", failed.len(), first.message);
+    Some(Failure { kind: Kind::Mixed, message, ..first.clone() })
+}
+
+/// The same of items.
+pub fn failure_of<T>(items: &[Item<T>]) -> Option<Failure> {
+    failure(items.len(), items.iter().map(Item::error))
+}
+
+/// Asks for what is stored, one after the other; each answer counts for itself. When the line falls silent, the rest is not
+/// asked. A dry run notes all questions and ends.
+///
+/// # Errors
+/// The first failure, if nothing was answered at all.
+pub async fn read_each(link: &mut Link, screen: &Screen, what: &str, requests: &[Request]) -> Result<Answers, Failure> {
+    read(link, screen, what, requests, 1).await
+}
+
+/// As [`read_each`]; what is refused is asked for once more, as a controller that is busy refuses, too.
+///
+/// # Errors
+/// As those of [`read_each`].
+pub async fn read_each_twice(
+    link: &mut Link,
+    screen: &Screen,
+    what: &str,
+    requests: &[Request],
+) -> Result<Answers, Failure> {
+    read(link, screen, what, requests, 2).await
+}
+
+async fn read(
+    link: &mut Link,
+    screen: &Screen,
+    what: &str,
+    requests: &[Request],
+    times: u8,
+) -> Result<Answers, Failure> {
+    link.rehearse(requests)?;
+    let mut progress = (requests.len() > 1).then(|| screen.items_progress(what, requests.len() as u64));
+    let mut answers = Answers::with_capacity(requests.len());
+    let mut silence: Option<Failure> = None;
+    for request in requests {
+        let answer = match &silence {
+            Some(silence) => Err(not_asked(request, silence)),
+            None => outcome(link, request, times).await?,
+        };
+        if let Err(failure) = &answer
+            && failure.kind == Kind::NoAnswer
+            && silence.is_none()
+        {
+            silence = Some(failure.clone());
+            if !answers.iter().any(Result::is_ok) {
+                return Err(failure.clone());
+            }
+        }
+        answers.push(answer);
+        if let Some(progress) = &mut progress {
+            progress.advance(1);
+        }
+    }
+    match answers.first() {
+        Some(Err(first)) if answers.iter().all(Result::is_err) => Err(first.clone()),
+        _ => Ok(answers),
+    }
+}
+
+/// The answer to one question, or why there is none. What ends all the work is a failure.
+async fn outcome(link: &mut Link, request: &Request, times: u8) -> Result<Result<Record, Failure>, Failure> {
+    for _ in 1..times {
+        match link.try_read_content(request).await {
+            Ok(Err(_)) => {}
+            Ok(Ok(record)) => return Ok(Ok(record)),
+            Err(failure) => return of_one(failure),
+        }
+    }
+    match link.try_read_content(request).await {
+        Ok(Ok(record)) => Ok(Ok(record)),
+        Ok(Err(Refusal(request))) => Ok(Err(refusal::of_question(&request))),
+        Err(failure) => of_one(failure),
+    }
+}
+
+/// Whether a failure is of one question only.
+fn of_one(failure: Failure) -> Result<Result<Record, Failure>, Failure> {
+    if matches!(failure.kind, Kind::NoAnswer | Kind::Malformed) { Ok(Err(failure)) } else { Err(failure) }
+}
+
+fn not_asked(request: &Request, silence: &Failure) -> Failure {
+    let message = format!("{} was not asked, as the line fell silent before: {}", request.text(), silence.message);
+    Failure { message, ..silence.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{Bench, Fate};
+    use crate::failure::Kind;
+
+    fn spoilt(spoil: &'static str, fate: Fate) -> Bench {
+        Bench::spoilt("", move |block, _| if block == spoil { fate } else { Fate::Pass }).0
+    }
+
+    #[test]
+    fn one_refusal_hides_nothing_and_names_its_block() {
+        for (words, list, key, block) in [
+            (["counter", "get", "1-3"], "counters", "counter", "MCNT CN=02"),
+            (["timer", "get", "1-3"], "timers", "timer", "MTMR TN=2"),
+            (["speed-table", "get", "1-3"], "rows", "row", "RPAR T2 V02"),
+            (["accel-table", "get", "1-3"], "rows", "row", "RPAR T3 A02"),
+            (["torque-table", "get", "1-3"], "rows", "row", "RPAR T5 LIM02"),
+            (["easy", "get", "1-3"], "programs", "program", "RESY PNO=02 ST=000"),
+            (["mvm", "get", "1-3"], "groups", "group", "RPAR T4 S3 GRP=02"),
+            (["point", "get", "1-3"], "points", "point", "RPAR T1 PT=002"),
+        ] {
+            let asked = Box::leak(format!("@{block}").into_boxed_str());
+            let (data, failure) = spoilt(asked, Fate::Answered("@NG")).run(&words).unwrap();
+            let items = data[list].as_array().unwrap();
+            assert_eq!(items.len(), 3, "{data}");
+            assert_eq!(
+                (&items[0]["ok"], &items[1]["ok"], &items[2]["ok"]),
+                (&true.into(), &false.into(), &true.into())
+            );
+            assert_eq!((&items[1][key], &items[2][key]), (&2.into(), &3.into()), "{data}");
+            let error = &items[1]["error"];
+            assert_eq!((&error["kind"], &error["code"]), (&"refused".into(), &"NG".into()));
+            let failure = failure.unwrap();
+            assert_eq!(failure.kind, Kind::Mixed);
+            let expected = format!("1 of 3 failed: the controller refused {block} (@NG): the status does not tell why");
+            assert_eq!(failure.message, expected);
+        }
+    }
+
+    #[test]
+    fn what_falls_silent_is_not_asked_for_ever() {
+        let (data, failure) = spoilt("@MCNT CN=02", Fate::Lost).run(&["counter", "get", "1-9"]).unwrap();
+        let kinds: Vec<_> =
+            data["counters"].as_array().unwrap().iter().map(|item| item["error"]["kind"].clone()).collect();
+        assert!(kinds[0].is_null() && kinds[1..].iter().all(|kind| kind == "no_answer"), "{data}");
+        assert!(data["counters"][2]["error"]["message"].as_str().unwrap().starts_with("@MCNT CN=03 was not asked"));
+        assert_eq!(failure.unwrap().kind, Kind::Mixed);
+        let failure = spoilt("@MCNT CN=01", Fate::Lost).run(&["counter", "get", "1-9"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::NoAnswer);
+        let failure = spoilt("@MCNT CN=01", Fate::Answered("@NG")).run(&["counter", "get", "1"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::Refused);
+    }
+
+    #[test]
+    fn what_the_manual_does_not_list_is_kept_as_it_came() {
+        for (block, answer, raw) in [
+            ("@RPAR M18", "@RPAR M18 STN=01 BRT=156K", "M18 STN=01 BRT=156K"),
+            ("@RPAR P06", "@RPAR P06 AX1=+0000.50 AX2=+0000.5 AX3=+0001.234 AX4=+0000.00", "+0000.5"),
+            ("@RPAR E17", "@RPAR E17 E=I", "I"),
+            ("@RPAR E19", "@RPAR E19 1130", "1130"),
+        ] {
+            let mut bench = spoilt(block, Fate::Answered(answer));
+            let data = bench.data(&["param", "list"]);
+            let id = &block[6..];
+            let entry = data["parameters"].as_array().unwrap().iter().find(|entry| entry["id"] == id).unwrap();
+            assert_eq!((&entry["ok"], &entry["in_manual"]), (&true.into(), &false.into()), "{entry}");
+            let odd: Vec<_> =
+                entry["values"].as_array().unwrap().iter().filter(|one| one["in_manual"] == false).collect();
+            assert_eq!(odd[0]["raw"], raw, "{entry}");
+            let others = data["parameters"].as_array().unwrap().iter().filter(|entry| entry["in_manual"] == true);
+            assert!(others.count() > 70);
+            // Nothing of it is written back by leaving it as it is.
+            if id == "P06" {
+                let failure = bench.run(&["param", "set", "P06", "ax1=1"]).unwrap_err();
+                assert!(failure.message.contains("'ax2=+0000.5', which is not in the manual"), "{failure}");
+                assert_eq!(failure.hint.unwrap(), "nothing was written; give all values");
+            }
+            let dumped = bench.data(&["param", "dump"]);
+            assert_eq!((&dumped["unfit"][0]["key"], &dumped["unfit"][0]["in_manual"]), (&id.into(), &false.into()));
+        }
+        let mut bench = spoilt("@RPAR T2 V02", Fate::Answered("@RPAR T2 V02=250"));
+        let rows = bench.data(&["speed-table", "get", "1-2"]);
+        assert_eq!(
+            rows["rows"][1],
+            serde_json::json!({ "ok": true, "row": 2, "in_manual": false, "raw": "T2 V02=250" })
+        );
+        let mut bench = Bench::spoilt("steps = { 1 = [\"SPD V=05\", \"NOP\", \"END\"] }", |block, _| {
+            if block == "@RSTX 0002" { Fate::Answered("@RSTX 0002 FOO X=1") } else { Fate::Pass }
+        })
+        .0;
+        let got = bench.data(&["program", "get", "--to", "4"]);
+        assert_eq!(got["text"], "SPD V=05\nFOO X=1   # not in the manual\nEND\nNOP\n");
+        assert_eq!(got["steps"][1], serde_json::json!({ "step": 2, "instruction": "FOO X=1", "in_manual": false }));
+    }
+}

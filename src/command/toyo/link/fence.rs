@@ -1,0 +1,47 @@
+//! What makes sure that an answer is the answer to what was asked, and that a line that is gone comes back.
+//!
+//! `@OK` says nothing of the order it answers, and a line may bring one late: of an order whose answer was given up, or of
+//! another client of a device server. A controller answers one block after the other. So once it has answered a question,
+//! which no `@OK` can be taken for, nothing older can come any more: then an order goes out.
+
+use super::{Link, Transport, status_page};
+use crate::command::toyo::reach;
+use crate::controller::Risk;
+use crate::failure::{Failure, Kind};
+
+use super::borrowed::Host;
+
+impl Link {
+    /// Asks something harmless before an order, unless an answered question was the last on the line.
+    pub(super) async fn fence(&mut self) -> Result<(), Failure> {
+        if self.is_dry() || self.is_fenced {
+            return Ok(());
+        }
+        Box::pin(self.converse(&status_page(0), true)).await.map(|_| ()).map_err(|failure| {
+            let message = format!("the order was not sent: {}", failure.message);
+            Failure { message, ..failure }
+        })
+    }
+
+    /// Opens a line again that is gone, for what only reads: after a re-plug, or a device server that was started anew.
+    /// What this link has changed is left to the hints that tell how to undo it.
+    pub(super) async fn revive(&mut self, risk: Risk) -> Result<(), Failure> {
+        let owes = self.moving.is_some() || self.host == Host::Taken || !self.borrowed.is_empty();
+        if !self.is_gone || risk > Risk::Read || owes {
+            return Ok(());
+        }
+        let Some((robot, access)) = self.again.clone() else { return Ok(()) };
+        let opened = Box::pin(reach::open(&robot, &access, &self.screen)).await;
+        // Whatever is in the way, such as rights that a port gets a moment after it is there: it may pass.
+        let stream = opened.map_err(|failure| Failure { kind: Kind::NoAnswer, ..failure })?;
+        self.transport = Transport::Stream(Box::new(stream));
+        self.line.renew();
+        self.is_gone = false;
+        self.host = Host::Unknown;
+        self.is_fenced = false;
+        // It may be another machine now.
+        self.letters = None;
+        self.screen.detail(1, "the line is there again");
+        Ok(())
+    }
+}
