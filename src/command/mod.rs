@@ -10,6 +10,7 @@ pub mod checks;
 pub mod common;
 pub mod holding;
 pub mod interrupt;
+pub mod items;
 mod kind;
 pub mod line;
 pub mod lines;

@@ -3,7 +3,9 @@
 mod alarm;
 mod axes;
 mod check;
+mod each;
 pub mod file;
+mod fitted;
 mod hours;
 mod info;
 mod io;
@@ -13,6 +15,7 @@ mod motion;
 mod moves;
 mod orders;
 mod overview;
+mod parts;
 mod position;
 mod raw;
 mod reach;

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use super::link::Refusal;
+use super::link::{self, Refusal};
 use super::register::unsigned;
 use crate::command::common::decode::yerc::{FieldRow, field_table, parse_hex};
 use crate::command::{Command, Context, Report};
@@ -207,7 +207,7 @@ impl Answer {
             fields: fields.into_iter().filter(|field| field.offset >= HEADER_LEN).map(FieldRow::from).collect(),
             elapsed_ms: elapsed.as_secs_f64() * 1000.0,
             attempts,
-            refusal: (!status.is_ok()).then(|| Refusal(status).into()),
+            refusal: (!status.is_ok()).then(|| Refusal { status, to: link::Asked::from(request) }.into()),
         }
     }
 }

@@ -4,6 +4,7 @@
 //! bridged, since an undefined one refuses the whole answer. A write never touches what was not named.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::hash::Hash;
 
 use super::{Reference, Value, VariableKind};
 use crate::controller::yerc::Model;
@@ -48,6 +49,17 @@ impl<S: Query, P: Query> Either<S, P> {
     }
 }
 
+/// A request of a plan to read several things.
+pub trait PlannedRead: Query<Answer = Vec<(<Self as PlannedRead>::Item, <Self as PlannedRead>::Value)>> {
+    /// What names one of them.
+    type Item: Copy + Eq + Hash;
+    /// What one of them holds.
+    type Value;
+
+    /// What this request answers, in rising order.
+    fn wanted(&self) -> &[Self::Item];
+}
+
 macro_rules! read_step {
     ($(#[$doc:meta])* $name:ident, $item:ty, $value:ty, $single:ty, $plural:ty, $number:expr) => {
         $(#[$doc])*
@@ -58,9 +70,11 @@ macro_rules! read_step {
             wanted: Vec<$item>,
         }
 
-        impl $name {
-            /// What this request answers, in rising order.
-            pub fn wanted(&self) -> &[$item] {
+        impl PlannedRead for $name {
+            type Item = $item;
+            type Value = $value;
+
+            fn wanted(&self) -> &[$item] {
                 &self.wanted
             }
         }
