@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::Family;
 use super::each::{Denied, Outcome, Round};
 use super::link::Link;
+use super::numbers::within;
 use super::orders::usage;
 use crate::command::items::{self, ItemError, ItemOutcome};
 use crate::command::orders::Done;
@@ -103,10 +104,10 @@ pub struct History {
     #[arg(long, value_enum, default_value = "all")]
     class: Class,
     /// The first entry of each list, 1 being the latest
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=100))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = within::<u8>(1, 100))]
     from: u8,
     /// At most so many entries of each list
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u8).range(1..=100))]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = within::<u8>(1, 100))]
     limit: u8,
     /// Ask for codes and names only, as older controllers know them (0x71 instead of 0x30B)
     #[arg(long)]

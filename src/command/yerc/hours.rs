@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::Family;
 use super::axes::{Groups, groups_of};
 use super::each::{Outcome, existing};
+use super::numbers::within;
 use super::orders::usage;
 use crate::command::items::{self, ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report};
@@ -25,7 +26,7 @@ pub struct Hours {
     #[arg(long, value_name = "R1|all")]
     group: Option<Groups>,
     /// Operation time of an application
-    #[arg(long, value_name = "N", conflicts_with = "group", value_parser = clap::value_parser!(u8).range(1..=8))]
+    #[arg(long, value_name = "N", conflicts_with = "group", value_parser = within::<u8>(1, 8))]
     application: Option<u8>,
 }
 

@@ -12,12 +12,13 @@ use super::Family;
 use super::each::{Denied, Outcome};
 use super::link::Link;
 use super::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost};
+use super::numbers::within;
 use super::orders::{refuse_controls, usage};
 use crate::command::ValueKind;
 use crate::command::items::{self, ItemError};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
-use crate::controller::text::{Encoding, Name};
+use crate::controller::text::{Encoding, Name, integer};
 use crate::controller::units;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::payload::{ControllerStatus, JobInfo};
@@ -61,7 +62,8 @@ impl FromStr for Tasks {
         if text.eq_ignore_ascii_case("all") {
             return Ok(Self::All);
         }
-        text.parse().map(Self::One).map_err(|_| "a task is a number from 0 (master) on, or all".to_owned())
+        let task = integer(text).and_then(|task| u8::try_from(task).ok());
+        task.map(Self::One).ok_or_else(|| "a task is a number from 0 (master) on, or all".to_owned())
     }
 }
 
@@ -189,10 +191,10 @@ pub struct Select {
     #[arg(add = ValueKind::YercJob)]
     name: String,
     /// Line to start at
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=9999))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = within::<u32>(0, 9999))]
     line: u32,
     /// Make it the master job of a task, instead of the job to start
-    #[arg(long, value_name = "N", conflicts_with = "line")]
+    #[arg(long, value_name = "N", conflicts_with = "line", value_parser = within::<u8>(0, u8::MAX))]
     task: Option<u8>,
 }
 
@@ -404,6 +406,7 @@ impl Report for Started {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::yerc::link::{Asked, Refusal};
     use crate::command::yerc::testing::{frames, frames_on, golden, intent, objection, reports};
     use crate::controller::yerc::payload::{StatusBit, Text};
     use crate::controller::yerc::wire;

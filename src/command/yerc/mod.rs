@@ -13,6 +13,7 @@ mod job;
 pub mod link;
 mod motion;
 mod moves;
+mod numbers;
 mod orders;
 mod overview;
 mod parts;

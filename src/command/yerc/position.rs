@@ -449,7 +449,8 @@ mod tests {
     #[test]
     fn an_answer_in_other_coordinates_is_malformed() {
         let mut report = PositionReport::nowhere(Group::R1);
-        let failure = report.add(Coordinates::Base, &pulses(&[1])).unwrap_err();
+        report.take(Coordinates::Base, Ok((pulses(&[1]), Fitted::ALL)));
+        let failure = report.failure().unwrap();
         assert_eq!(failure.kind, Kind::Malformed);
     }
 

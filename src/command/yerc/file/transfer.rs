@@ -28,9 +28,14 @@ const JOB_EXISTS: &str = "0x4030";
 
 /// The names of one type, in the order of the controller.
 pub async fn list(link: &mut Link, kind: FileType) -> Result<Vec<Vec<u8>>, Failure> {
+    list_by(link, &files::list(kind)).await
+}
+
+/// The names that a request for a list brings.
+pub async fn list_by(link: &mut Link, request: &Request) -> Result<Vec<Vec<u8>>, Failure> {
     let mut data = Vec::new();
     let end = link
-        .download(&files::list(kind), MAX_LIST, None, |piece| {
+        .download(request, MAX_LIST, None, |piece| {
             data.extend_from_slice(piece);
             Ok(())
         })
@@ -42,7 +47,10 @@ pub async fn list(link: &mut Link, kind: FileType) -> Result<Vec<Vec<u8>>, Failu
         }
         end => {
             taken(service::LIST, &end)?;
-            Ok(split_list(&data).into_iter().map(<[u8]>::to_vec).collect())
+            let names = split_list(&data).map_err(|error| {
+                Failure::new(Kind::Malformed, error.to_string()).hint("record it with --trace and report it")
+            })?;
+            Ok(names.into_iter().map(<[u8]>::to_vec).collect())
         }
     }
 }
@@ -74,10 +82,11 @@ pub async fn is_same(
     screen: &Screen,
     file: &FileName,
     content: &mut Content,
+    ignore_header: bool,
 ) -> Result<bool, Failure> {
     let name = link.encoding.decode(file.as_bytes());
     let mut progress = screen.bytes_progress(&format!("{name} (comparing)"), Some(content.size()));
-    let mut comparer = Comparer::new(content.pieces()?);
+    let mut comparer = Comparer::new(content.pieces()?, ignore_header);
     let fetched = fetch(link, file, |block| {
         progress.advance(block.len() as u64);
         comparer.take(block)
@@ -131,7 +140,17 @@ pub async fn send(
             Ok(piece)
         })
         .await?;
-    given(&end, total, &link.encoding.decode(file.as_bytes()), &path)
+    let name = link.encoding.decode(file.as_bytes());
+    match end {
+        UploadEnd::Unnumbered { bytes, .. } if is_listed(link, file).await => Ok(bytes),
+        end => given(&end, total, &name, &path),
+    }
+}
+
+/// Whether the controller lists a file of this name.
+async fn is_listed(link: &mut Link, file: &FileName) -> bool {
+    let Some(kind) = file.file_type() else { return false };
+    list(link, kind).await.is_ok_and(|names| names.iter().any(|name| name.eq_ignore_ascii_case(file.as_bytes())))
 }
 
 /// What a dry run would send for [`send`].
@@ -194,6 +213,9 @@ fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Fai
     };
     match *end {
         UploadEnd::Complete { bytes, .. } => Ok(bytes),
+        UploadEnd::Unnumbered { .. } => unknown(format!(
+            "all was sent, but the last acknowledgement bears no block number, and no list shows {name}"
+        )),
         UploadEnd::Empty => {
             Err(Failure::usage("an empty file cannot be sent").hint("check that it is the file that was meant"))
         }

@@ -71,7 +71,7 @@ impl FromStr for Whole {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (group, value) = text.split_once('=').ok_or("a group, '=' and a value are expected, as in 2701=0xA5")?;
-        let number = unsigned(group).filter(|_| !group.starts_with("0x")).and_then(|group| u16::try_from(group).ok());
+        let number = unsigned(group).and_then(|group| u16::try_from(group).ok());
         let group = number.ok_or_else(|| format!("'{group}' is no group; #27010 to #27017 are group 2701"))?;
         let parsed = unsigned(value).and_then(|value| u8::try_from(value).ok());
         let value = parsed.ok_or_else(|| format!("'{value}' is not a number from 0 to 255 (0x00 to 0xFF)"))?;

@@ -15,6 +15,14 @@ pub enum UploadEnd {
         /// Blocks it went in.
         blocks: u32,
     },
+    /// The controller took every block, but acknowledged the last one without its number, as `0x80000000`. That is most
+    /// likely the end; only a look at the controller tells.
+    Unnumbered {
+        /// Size of the whole.
+        bytes: u64,
+        /// Blocks it went in.
+        blocks: u32,
+    },
     /// The file has no bytes; nothing was sent. A transfer ends with a block of data that is marked as the last, and
     /// neither manual knows one without data: the controller would be left with an open transfer or half a file.
     Empty,
@@ -72,6 +80,8 @@ pub struct Upload {
     stage: Stage,
     /// Whether the request was accepted.
     accepted: bool,
+    /// Whether it was accepted with block `0x80000000`: copies of that answer may come late.
+    is_accepted_as_last: bool,
     last_sent: Vec<u8>,
     /// Number of the block that was sent last, 0 before the first.
     block: u32,
@@ -98,6 +108,7 @@ impl Upload {
             source_ended: false,
             stage: Stage::Gather,
             accepted: false,
+            is_accepted_as_last: false,
             last_sent: Vec::new(),
             block: 0,
             sent: 0,
@@ -228,6 +239,11 @@ impl Upload {
     fn take_ack(&mut self, block: u32) {
         // A controller that acknowledges the last block without its mark means the same block all the same.
         let number = block & !LAST_BLOCK;
+        if block == LAST_BLOCK && self.stage == (Stage::Block { last: true }) && !self.is_accepted_as_last {
+            self.taken = self.sent;
+            self.ended = Some(UploadEnd::Unnumbered { bytes: self.sent, blocks: self.block });
+            return;
+        }
         if number > self.block {
             return count(&mut self.inbox.counters.foreign);
         }
@@ -235,6 +251,7 @@ impl Upload {
             return count(&mut self.inbox.counters.duplicated);
         }
         self.busy = None;
+        self.is_accepted_as_last |= !self.accepted && block == LAST_BLOCK;
         self.accepted = true;
         self.taken = self.sent;
         self.ended = (self.stage == Stage::Block { last: true })
@@ -435,6 +452,25 @@ mod tests {
             session.handle(ms(330), &answer(5, 0x8000_0002, status));
             assert_eq!(done(&mut session, ms(330)), UploadEnd::Refused { status, sent: 958, taken: 479, repeated });
         }
+    }
+
+    #[test]
+    fn a_last_block_acknowledged_without_its_number_is_an_end_of_its_own() {
+        let to_last_block = |first_ack| {
+            let mut session = start(&[1; 958]);
+            sent(&mut session, ms(0));
+            session.handle(ms(10), &ack(first_ack));
+            sent(&mut session, ms(10));
+            session.handle(ms(20), &ack(LAST_BLOCK));
+            assert!(matches!(session.poll(ms(20)), Step::Wait(_)), "only the last block may be meant");
+            session.handle(ms(20), &ack(1));
+            sent(&mut session, ms(20));
+            session.handle(ms(30), &ack(LAST_BLOCK));
+            session
+        };
+        assert_eq!(done(&mut to_last_block(0), ms(30)), UploadEnd::Unnumbered { bytes: 958, blocks: 2 });
+        // Where the request was answered so, it may be a late copy of that answer.
+        assert!(matches!(to_last_block(LAST_BLOCK).poll(ms(30)), Step::Wait(_)));
     }
 
     #[test]
