@@ -43,7 +43,9 @@ pub async fn read_in_parts<S: PlannedRead>(
             }
             Err(denied) => denied,
         };
-        let again = (asked.len() > 1).then(|| how(&denied, parts(asked))).flatten();
+        // Even one thing may have been asked for together with others that nobody wants.
+        let is_alone = asked.len() == 1 && plan(asked)?.iter().all(|alone| alone.request() == step.request());
+        let again = if is_alone { None } else { how(&denied, parts(asked)) };
         let Some(parts) = again else {
             known.extend(asked.iter().map(|item| (*item, Err(denied.clone()))));
             continue;

@@ -180,7 +180,8 @@ pub fn about(name: &str, failure: Failure) -> Failure {
     Failure { message: format!("{name}: {}", failure.message), ..failure }
 }
 
-fn taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
+/// The bytes that came, or how the transfer failed.
+pub fn taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
     match *end {
         DownloadEnd::Complete { bytes, .. } => Ok(bytes),
         DownloadEnd::Nothing(status) | DownloadEnd::Refused { status, bytes: 0 } => {

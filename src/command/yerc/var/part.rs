@@ -59,7 +59,8 @@ impl Word {
         }
     }
 
-    fn set(self, position: &mut Position) {
+    /// Writes it into a position.
+    pub fn set(self, position: &mut Position) {
         match self {
             Self::Tool(tool) => position.tool = tool,
             Self::User(user) => position.user = user,

@@ -176,13 +176,18 @@ impl Command for Set {
             }
             named.push((reference, part));
         }
+        let mut parts: Vec<Part> = self.assignments.iter().filter_map(Assignment::part).collect();
+        for (reference, value) in &mut values {
+            // Words of a position that is given whole are a part of it.
+            let Value::Position(position) = value else { continue };
+            for word in words.remove(reference).unwrap_or_default() {
+                word.set(position);
+                parts.push(Part::new(*reference, word, None));
+            }
+        }
         let plain: Vec<(u16, Value)> =
             values.iter().map(|(reference, value)| (reference.number, value.clone())).collect();
         let steps = plan_writes(&plain).map_err(usage)?;
-        if let Some((whole, _)) = values.iter().find(|(reference, _)| words.contains_key(reference)) {
-            return Err(Failure::usage(format!("{whole} is given whole and in parts"))
-                .hint("give each variable one value: tool= and user= can stand in the position"));
-        }
         let mut changes: Vec<Change> = steps.into_iter().map(Change::Values).chain(fields).collect();
         if link.is_dry() && !words.is_empty() {
             part::foresee_reads(link, &words);
@@ -193,15 +198,9 @@ impl Command for Set {
             // All that can be foreseen is noted: this does not return.
             link.ask_all::<Change>(&[]).await?;
         }
-        let mut parts: Vec<Part> = self.assignments.iter().filter_map(Assignment::part).collect();
         for (reference, old, write) in part::changed(link, &words).await? {
-            parts.extend(words.get(&reference).into_iter().flatten().map(|word| Part {
-                name: reference.to_string(),
-                part: word.name(),
-                attribute: word.attribute(),
-                old: Some(word.old(&old)),
-                value: word.value(),
-            }));
+            let words = words.get(&reference).into_iter().flatten();
+            parts.extend(words.map(|word| Part::new(reference, *word, Some(word.old(&old)))));
             changes.push(Change::Position(reference, write));
         }
         write_all(link, screen, &changes).await?;
@@ -327,6 +326,13 @@ struct Part {
     /// What was there; null where that was not read.
     old: Option<i64>,
     value: i64,
+}
+
+impl Part {
+    fn new(reference: Reference, word: Word, old: Option<i64>) -> Self {
+        let (name, part) = (reference.to_string(), word.name());
+        Self { name, part, attribute: word.attribute(), old, value: word.value() }
+    }
 }
 
 impl Report for Written {

@@ -113,12 +113,10 @@ impl Storage {
         self.capacity.saturating_sub(self.files.values().map(|file| file.content.size()).sum())
     }
 
-    /// The names that match a filter, each followed by CR LF; `None` for a filter that is none. What the manuals leave
-    /// open: no filter is that of jobs, `*.*` lets everything through.
+    /// The names that match a filter, each followed by CR LF; `None` for a filter that is none.
     fn list(&self, filter: &[u8]) -> Option<Vec<u8>> {
         let extension = match filter {
-            b"" => JOB,
-            b"*.*" => b"",
+            b"" | b"*.*" => JOB,
             _ => filter.strip_prefix(b"*").filter(|extension| EXTENSIONS.contains(extension))?,
         };
         let names = self.files.keys().filter(|name| name.ends_with(extension));
