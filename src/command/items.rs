@@ -100,12 +100,16 @@ pub fn verdict<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>
     Some(Failure { kind, code, message: format!("{how_many}: {}", failure.message), hint: failure.hint })
 }
 
-/// The failure of a command that asked for one thing alone, which has no report then.
-pub fn alone<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>) -> Result<(), Failure> {
-    match errors.into_iter().next() {
-        Some(only) if total == 1 => Err(only.failure()),
-        _ => Ok(()),
+/// The failure of a command that got nothing, for one and the same reason: there is no report then. Where the reasons
+/// differ, the report has them.
+pub fn nothing<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>) -> Result<(), Failure> {
+    let errors: Vec<&ItemError> = errors.into_iter().collect();
+    let reason = |error: &ItemError| (error.failure.kind, error.failure.code.clone());
+    let is_one = errors.windows(2).all(|pair| reason(pair[0]) == reason(pair[1]));
+    if errors.len() < total || !is_one {
+        return Ok(());
     }
+    verdict(total, errors).map_or(Ok(()), Err)
 }
 
 #[cfg(test)]
@@ -147,9 +151,11 @@ mod tests {
     }
 
     #[test]
-    fn one_thing_fails_as_a_command() {
-        assert_eq!(alone(1, &[refused("B300", "0xA001")]).unwrap_err().kind, Kind::Refused);
-        assert!(alone(2, &[refused("B300", "0xA001")]).is_ok());
-        assert!(alone(1, &[]).is_ok());
+    fn nothing_for_one_reason_fails_as_a_command() {
+        let one = refused("B300", "0xA001");
+        assert_eq!(nothing(1, [&one]).unwrap_err().message, "B300: the controller refused. Because");
+        assert_eq!(nothing(2, [&one, &one]).unwrap_err().kind, Kind::Refused);
+        assert!(nothing(2, [&one]).is_ok() && nothing(1, []).is_ok());
+        assert!(nothing(2, [&one, &refused("B301", "0x2010")]).is_ok(), "the report has both reasons");
     }
 }

@@ -67,7 +67,9 @@ impl Command for List {
             };
             alarms.push(ActiveAlarm { slot, outcome: ItemOutcome::new(format!("alarm slot {slot}"), outcome) });
         }
-        Ok(ActiveAlarms { alarms, with_texts: texts, asked: SLOTS.into() })
+        let report = ActiveAlarms { alarms, with_texts: texts, asked: SLOTS.into() };
+        items::nothing(report.asked, report.errors())?;
+        Ok(report)
     }
 }
 
@@ -146,7 +148,7 @@ impl Command for History {
             }
         }
         let report = PastAlarms { alarms, with_texts: texts, asked };
-        items::alone(asked, report.errors())?;
+        items::nothing(asked, report.errors())?;
         Ok(report)
     }
 }

@@ -71,7 +71,7 @@ impl Command for Position {
             };
             report.take(*coordinates, position);
         }
-        items::alone(wanted.len(), report.errors())?;
+        items::nothing(wanted.len(), report.errors())?;
         Ok(report)
     }
 }
@@ -87,7 +87,7 @@ pub(super) async fn ask(
     let position = payload::Position { axes, ..position };
     let mut report = PositionReport::nowhere(group);
     report.take(coordinates, Ok((position, fitted)));
-    items::alone(1, report.errors())?;
+    items::nothing(1, report.errors())?;
     Ok((position, report))
 }
 

@@ -104,7 +104,7 @@ impl Command for Get {
             Some(Word::new(number, outcome.map_err(Failure::from)))
         });
         let report = Registers { registers: words.collect() };
-        items::alone(report.registers.len(), report.errors())?;
+        items::nothing(report.registers.len(), report.errors())?;
         Ok(report)
     }
 }

@@ -66,7 +66,7 @@ impl Command for Get {
         let groups = groups.into_iter().filter_map(|group| Some(GroupState::new(model, group, byte(group)?)));
         let signals = signals.collect::<Result<_, _>>()?;
         let report = States { signals, groups: groups.collect::<Result<_, _>>()? };
-        items::alone(report.asked(), report.errors())?;
+        items::nothing(report.asked(), report.errors())?;
         Ok(report)
     }
 }

@@ -57,7 +57,7 @@ impl Command for Get {
             Some(Entry::new(*reference, answer, link.encoding))
         });
         let report = Variables { variables: entries.collect() };
-        items::alone(report.variables.len(), report.variables.iter().filter_map(Entry::error))?;
+        items::nothing(report.variables.len(), report.variables.iter().filter_map(Entry::error))?;
         Ok(report)
     }
 }
