@@ -54,6 +54,7 @@ fn answer(request: &RequestFrame<'_>, block: u32, status: Status, data: &[u8]) -
     AnswerFrame { division, ack: true, id, block, service: service | ANSWER_BIT, status, data }.emit()
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "it stands where an answer may be left as it is")]
 fn refused(request: &RequestFrame<'_>, code: u16) -> Option<Vec<u8>> {
     Some(answer(request, LAST_BLOCK, Status::refused(code), &[]))
 }
@@ -268,15 +269,7 @@ fn a_list_bears_what_controllers_put_into_it() {
     let names: Vec<&Value> = list["data"]["files"].as_array().unwrap().iter().map(|file| &file["name"]).collect();
     assert_eq!(
         (exit, names),
-        (
-            0,
-            vec!["A.JBI", "B.JBI", "C.JBI", "D.JBI"]
-                .iter()
-                .map(|name| json!(name))
-                .collect::<Vec<_>>()
-                .iter()
-                .collect()
-        ),
+        (0, ["A.JBI", "B.JBI", "C.JBI", "D.JBI"].iter().map(|name| json!(name)).collect::<Vec<_>>().iter().collect()),
         "{error}"
     );
     let (exit, _, error) = at(&target, "file list --type dat");

@@ -65,11 +65,11 @@ impl Word {
             Self::Tool(tool) => position.tool = tool,
             Self::User(user) => position.user = user,
             Self::Axis(axis, value) => {
-                let mut axes: [i32; MAX_AXES] = position.axes.padded();
-                if let Some(word) = axes.get_mut(axis) {
+                let mut values: [i32; MAX_AXES] = position.axes.padded();
+                if let Some(word) = values.get_mut(axis) {
                     *word = value;
                 }
-                position.axes = Axes::full(axes);
+                position.axes = Axes::full(values);
             }
         }
     }
@@ -84,7 +84,9 @@ pub async fn changed(link: &mut Link, words: &Words) -> Result<Vec<(Reference, P
     for (reference, words) in words {
         let old = read(link, *reference).await?;
         let mut position = old;
-        words.iter().for_each(|word| word.set(&mut position));
+        for word in words {
+            word.set(&mut position);
+        }
         let write = WriteVariable::new(reference.number, Value::Position(position)).map_err(usage)?;
         changed.push((*reference, old, write));
     }
@@ -130,7 +132,9 @@ pub fn foresee_writes(link: &mut Link, words: &Words) -> Result<(), Failure> {
             extended: ExtendedForm(0),
             axes: Axes::full([0; MAX_AXES]),
         };
-        words.iter().for_each(|word| word.set(&mut position));
+        for word in words {
+            word.set(&mut position);
+        }
         let write = WriteVariable::new(reference.number, Value::Position(position)).map_err(usage)?;
         let named: Vec<String> = words.iter().map(|word| format!("{}={}", word.name(), word.value())).collect();
         let about =

@@ -78,10 +78,8 @@ pub struct Upload {
     buffer: Vec<u8>,
     source_ended: bool,
     stage: Stage,
-    /// Whether the request was accepted.
-    accepted: bool,
-    /// Whether it was accepted with block `0x80000000`: copies of that answer may come late.
-    is_accepted_as_last: bool,
+    /// The block number with which the request was accepted.
+    accepted: Option<u32>,
     last_sent: Vec<u8>,
     /// Number of the block that was sent last, 0 before the first.
     block: u32,
@@ -107,8 +105,7 @@ impl Upload {
             buffer: Vec::new(),
             source_ended: false,
             stage: Stage::Gather,
-            accepted: false,
-            is_accepted_as_last: false,
+            accepted: None,
             last_sent: Vec::new(),
             block: 0,
             sent: 0,
@@ -161,7 +158,7 @@ impl Upload {
         if !self.source_ended && self.buffer.len() <= self.block_size {
             return Step::Feed;
         }
-        if !self.accepted {
+        if self.accepted.is_none() {
             if self.buffer.is_empty() {
                 return self.end(UploadEnd::Empty);
             }
@@ -239,7 +236,9 @@ impl Upload {
     fn take_ack(&mut self, block: u32) {
         // A controller that acknowledges the last block without its mark means the same block all the same.
         let number = block & !LAST_BLOCK;
-        if block == LAST_BLOCK && self.stage == (Stage::Block { last: true }) && !self.is_accepted_as_last {
+        // Where the request was answered so, too, a late copy of that answer would look the same.
+        let is_unnumbered = block == LAST_BLOCK && self.accepted != Some(LAST_BLOCK);
+        if is_unnumbered && self.stage == (Stage::Block { last: true }) {
             self.taken = self.sent;
             self.ended = Some(UploadEnd::Unnumbered { bytes: self.sent, blocks: self.block });
             return;
@@ -251,8 +250,7 @@ impl Upload {
             return count(&mut self.inbox.counters.duplicated);
         }
         self.busy = None;
-        self.is_accepted_as_last |= !self.accepted && block == LAST_BLOCK;
-        self.accepted = true;
+        self.accepted = self.accepted.or(Some(block));
         self.taken = self.sent;
         self.ended = (self.stage == Stage::Block { last: true })
             .then_some(UploadEnd::Complete { bytes: self.sent, blocks: self.block });
