@@ -27,7 +27,7 @@ pub enum Kind {
     RefusedHere,
     /// The condition of `--until` or `--check` was not met.
     ConditionNotMet,
-    /// Some robots failed, some did not.
+    /// Some robots or items failed, some did not.
     Mixed,
     /// Ctrl-C.
     Interrupted,
@@ -48,7 +48,7 @@ impl Kind {
         (Self::OutcomeUnknown, 6, "outcome unknown: a state-changing request was sent, the answer was lost"),
         (Self::RefusedHere, 7, "refused here: not confirmed, or a read-only robot"),
         (Self::ConditionNotMet, 8, "condition not met (--until, --check, diff)"),
-        (Self::Mixed, 9, "some robots failed, some did not"),
+        (Self::Mixed, 9, "some robots or items failed, some did not"),
         (Self::Interrupted, 130, "interrupted"),
     ];
 

@@ -226,5 +226,5 @@ fn a_full_disk_behind_stdout_does_not_hide_what_was_done() {
     // Of several files one is missing: that is the failure, whatever becomes of the report.
     let output =
         command(home.path(), "--sim yerc file get TESTJOB.JBI NOPE.JBI --json").stdout(full()).output().unwrap();
-    fails(&output, 3, &["NOPE.JBI", "0xE29C"]);
+    fails(&output, 9, &["NOPE.JBI", "0xE29C"]);
 }

@@ -341,7 +341,7 @@ fn controller_frames() -> Vec<(&'static str, Expected)> {
             Expected {
                 block: LAST_BLOCK + 1,
                 ..answer(|data| {
-                    let names = files::split_list(data);
+                    let names = files::split_list(data).unwrap();
                     assert_eq!(names, [&b"1.JBI"[..], b"22.JBI", b"333.JBI", b"TEST01.JBI"]);
                     names.into_iter().flat_map(|name| [name, b"\r\n"].concat()).collect()
                 })

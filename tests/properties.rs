@@ -15,7 +15,8 @@ use armctl::controller::yerc::query::{Query, WriteVariable};
 use armctl::controller::yerc::request::Request;
 use armctl::controller::yerc::table::{ROWS, service};
 use armctl::controller::yerc::variables::{
-    Reference, Value, VariableKind, parse_references, plan_io_reads, plan_reads, plan_register_reads, plan_writes,
+    PlannedRead as _, Reference, Value, VariableKind, parse_references, plan_io_reads, plan_reads, plan_register_reads,
+    plan_writes,
 };
 use armctl::controller::yerc::wire::{AnswerFrame, Division, RequestFrame, Status};
 use proptest::collection::vec;

@@ -240,7 +240,9 @@ impl Items {
             0 => format!("{} of {total} failed", self.failed),
             left => format!("{} of {total} failed, {left} not tried", self.failed),
         };
-        Some(Failure { message: format!("{failed}: {name}: {}", gravest.message), ..gravest.clone() })
+        // Some done, some not.
+        let kind = if self.done > 0 { Kind::Mixed } else { gravest.kind };
+        Some(Failure { kind, message: format!("{failed}: {name}: {}", gravest.message), ..gravest.clone() })
     }
 
     /// The same with how it goes on.

@@ -12,6 +12,7 @@ pub mod common;
 pub mod dry_run;
 pub mod holding;
 pub mod interrupt;
+pub mod items;
 mod kind;
 pub mod line;
 pub mod lines;

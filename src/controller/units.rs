@@ -7,6 +7,8 @@ use std::fmt;
 
 use thiserror::Error;
 
+use super::text::integer;
+
 /// A decimal unit: the symbol, and how many digits after the point one step of the wire is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Unit {
@@ -99,6 +101,16 @@ impl Unit {
             lowest: self.show(i32::MIN).to_string(),
             highest: self.show(i32::MAX).to_string(),
         })
+    }
+
+    /// As [`Unit::parse`]; what is counted in whole steps, such as pulses, may be hexadecimal after `0x`.
+    pub fn parse_steps(self, text: &str) -> Result<i32, UnitError> {
+        let is_hex = text.trim_start_matches(['-', '+']).get(..2).is_some_and(|head| head.eq_ignore_ascii_case("0x"));
+        let steps = integer(text).filter(|_| is_hex && self.decimals == 0);
+        match steps.and_then(|steps| i32::try_from(steps).ok()) {
+            Some(steps) => Ok(steps),
+            None => self.parse(text),
+        }
     }
 
     /// The value with all its digits: 100000 is `100.000` in millimetres.

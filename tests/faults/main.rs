@@ -257,7 +257,7 @@ fn upload(link: &mut Link<impl Controller>, content: &[u8], ids: &Ids) -> End {
             assert!(taken < sent && sent <= size, "{what}");
             End::Unknown
         }
-        UploadEnd::TooLong { .. } => panic!("{what}"),
+        UploadEnd::TooLong { .. } | UploadEnd::Unnumbered { .. } => panic!("{what}"),
     }
 }
 

@@ -175,9 +175,9 @@ async fn positions_agree_in_pulses_and_in_base_coordinates() {
         let mut peer = Peer::start(model, "positions = { R1 = [1000, -2000, 3000, -4000, 5000, -6000] }").await;
         let pulses = vec![1000, -2000, 3000, -4000, 5000, -6000];
         let TheirPosition::Pulse(pulse) = peer.robot.read_position(1).await.unwrap() else { panic!("no pulses") };
-        assert_eq!(pulse.joints, pulses);
+        assert_eq!(pulse.joints[..6], pulses);
         let ours = peer.ask(ReadPosition::new(model, Group::R1, Coordinates::Pulse).unwrap()).await;
-        assert_eq!(ours.axes.as_slice(), pulses);
+        assert_eq!(ours.axes.as_slice()[..6], pulses);
 
         let TheirPosition::Cartesian(theirs) = peer.robot.read_position(101).await.unwrap() else { panic!("no base") };
         let Position { form, tool, user, extended, axes, .. } =

@@ -328,7 +328,7 @@ async fn files_are_listed_fetched_and_deleted() {
         state.set_file("V.DAT".to_owned(), b"//VAR\r\n".to_vec());
     }
     let (list, _) = fetch(&mut peer.link, &files::list(FileType::Jbi)).await;
-    let mut names = files::split_list(&list);
+    let mut names = files::split_list(&list).unwrap();
     names.sort_unstable();
     assert_eq!(names, [&b"A.JBI"[..], b"FULL.JBI"]);
     for (name, expected) in [("A.JBI", &content[..]), ("FULL.JBI", &[b'x'; 479]), ("V.DAT", b"//VAR\r\n")] {

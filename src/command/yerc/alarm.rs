@@ -5,8 +5,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
+use super::each::{Denied, Outcome, Round};
 use super::link::Link;
+use super::numbers::within;
 use super::orders::usage;
+use crate::command::items::{self, ItemError, ItemOutcome};
 use crate::command::orders::Done;
 use crate::command::{Command, Context, Report, commands, sample};
 use crate::controller::Risk;
@@ -15,7 +18,7 @@ use crate::controller::yerc::Model;
 use crate::controller::yerc::payload;
 use crate::controller::yerc::query::{self, Query, ReadAlarm, ReadAlarmHistory};
 use crate::controller::yerc::wire::Status;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
 
 commands! {
@@ -54,14 +57,19 @@ impl Command for List {
         let question = |slot, texts| ReadAlarm::new(slot, texts).map_err(usage);
         link.rehearse(&(1..=SLOTS).map(|slot| question(slot, texts)).collect::<Result<Vec<_>, _>>()?)?;
         let mut alarms = Vec::new();
+        let mut round = Round::default();
         for slot in 1..=SLOTS {
-            let alarm = read(link, &mut texts, |texts| question(slot, texts)).await?;
             // A gap between slots is not described, so all four are read.
-            if !alarm.is_none() {
-                alarms.push(ActiveAlarm { slot, alarm: AlarmEntry::new(&alarm, link.encoding, link.model) });
-            }
+            let outcome = match read(link, &mut round, &mut texts, |texts| question(slot, texts)).await? {
+                Ok(alarm) if alarm.is_none() => continue,
+                Ok(alarm) => Ok(AlarmEntry::new(&alarm, link.encoding, link.model)),
+                Err(denied) => Err(denied.into()),
+            };
+            alarms.push(ActiveAlarm { slot, outcome: ItemOutcome::new(format!("alarm slot {slot}"), outcome) });
         }
-        Ok(ActiveAlarms { alarms, with_texts: texts })
+        let report = ActiveAlarms { alarms, with_texts: texts, asked: SLOTS.into() };
+        items::nothing(report.asked, report.errors())?;
+        Ok(report)
     }
 }
 
@@ -98,10 +106,10 @@ pub struct History {
     #[arg(long, value_enum, default_value = "all")]
     class: Class,
     /// The first entry of each list, 1 being the latest
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=100))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = within::<u8>(1, 100))]
     from: u8,
     /// At most so many entries of each list
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u8).range(1..=100))]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = within::<u8>(1, 100))]
     limit: u8,
     /// Ask for codes and names only, as older controllers know them (0x71 instead of 0x30B)
     #[arg(long)]
@@ -125,50 +133,70 @@ impl Command for History {
         let all = classes.clone().flat_map(|row| numbers.clone().map(|number| question(row.1, number, texts)));
         link.rehearse(&all.collect::<Result<Vec<_>, _>>()?)?;
         let mut alarms = Vec::new();
+        let mut asked = 0;
+        let mut round = Round::default();
         for &(_, list, class) in classes {
             for number in numbers.clone() {
-                let alarm = read(link, &mut texts, |texts| question(list, number, texts)).await?;
-                if alarm.is_none() {
-                    break;
-                }
-                alarms.push(PastAlarm { class, number, alarm: AlarmEntry::new(&alarm, link.encoding, link.model) });
+                asked += 1;
+                let outcome = match read(link, &mut round, &mut texts, |texts| question(list, number, texts)).await? {
+                    Ok(alarm) if alarm.is_none() => break,
+                    Ok(alarm) => Ok(AlarmEntry::new(&alarm, link.encoding, link.model)),
+                    Err(denied) => Err(denied.into()),
+                };
+                let outcome = ItemOutcome::new(format!("{class} alarm {number}"), outcome);
+                alarms.push(PastAlarm { class, number, outcome });
             }
         }
-        Ok(PastAlarms { alarms, with_texts: texts })
+        let report = PastAlarms { alarms, with_texts: texts, asked };
+        items::nothing(asked, report.errors())?;
+        Ok(report)
     }
 }
 
 /// The alarms in the first `slots` slots, for a live view. `texts` goes off where the controller shows that it has none.
+/// An alarm that cannot be read hides no other.
 pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Result<Vec<sample::Alarm>, Failure> {
     let mut alarms = Vec::new();
+    let mut round = Round::default();
     for slot in 1..=slots {
-        let alarm = read(link, texts, |texts| ReadAlarm::new(slot, texts).map_err(usage)).await?;
-        if !alarm.is_none() {
-            alarms.push(AlarmEntry::new(&alarm, link.encoding, link.model).sample());
+        let outcome = read(link, &mut round, texts, |texts| ReadAlarm::new(slot, texts).map_err(usage)).await?;
+        match outcome {
+            Ok(alarm) if alarm.is_none() => {}
+            Ok(alarm) => alarms.push(AlarmEntry::new(&alarm, link.encoding, link.model).sample()),
+            Err(denied) => {
+                let failure = Failure::from(denied);
+                if failure.kind == Kind::NoAnswer {
+                    return Err(failure);
+                }
+                let text = format!("slot {slot}: {}", items::brief(&failure));
+                alarms.push(sample::Alarm { code: "?".to_owned(), text, remedy: String::new() });
+            }
         }
     }
     Ok(alarms)
 }
 
-/// Reads an alarm with its texts; without, as soon as the controller has shown that it does not know the command.
+/// Reads an alarm with its texts; without, as soon as the controller has shown that it may not know the command.
 async fn read<Q: Query<Answer = payload::Alarm>>(
     link: &mut Link,
+    round: &mut Round,
     texts: &mut bool,
     question: impl Fn(bool) -> Result<Q, Failure>,
-) -> Result<payload::Alarm, Failure> {
+) -> Result<Outcome<payload::Alarm>, Failure> {
     if *texts {
-        match link.try_ask(&question(true)?).await? {
-            Ok(alarm) => return Ok(alarm),
-            Err(refusal) if is_unknown_command(refusal.0) => *texts = false,
-            Err(refusal) => return Err(refusal.into()),
+        match round.ask(link, &question(true)?).await? {
+            Err(Denied::Refused(refusal)) if may_be_unknown(refusal.status) => *texts = false,
+            outcome => return Ok(outcome),
         }
     }
-    link.ask(&question(false)?).await
+    round.ask(link, &question(false)?).await
 }
 
-/// How a controller before FS1.14 may say that it has no 0x30A: status 0x08, or "command error" or "undefined command".
-fn is_unknown_command(status: Status) -> bool {
-    status.code == 0x08 || (status.added_size > 0 && matches!(status.added & 0xFFFF, 0x1010 | 0xA000))
+/// How a controller before FS1.14 may say that it has no 0x30A. None prints it, so every way to say "no such thing" leads
+/// to the older command: a status of its own, or "command error", "undefined command", instance or attribute.
+fn may_be_unknown(status: Status) -> bool {
+    matches!(status.code, 0x01 | 0x08 | 0x09 | 0x28)
+        || (status.added_size > 0 && matches!(status.added & 0xFFFF, 0x1010 | 0xA000..=0xA002))
 }
 
 macro_rules! order {
@@ -210,6 +238,8 @@ pub struct ActiveAlarms {
     alarms: Vec<ActiveAlarm>,
     /// Whether sub-code texts were asked for and the controller has them.
     with_texts: bool,
+    #[serde(skip)]
+    asked: usize,
 }
 
 /// The alarms of the past.
@@ -218,6 +248,8 @@ pub struct PastAlarms {
     alarms: Vec<PastAlarm>,
     /// Whether sub-code texts were asked for and the controller has them.
     with_texts: bool,
+    #[serde(skip)]
+    asked: usize,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -225,7 +257,7 @@ struct ActiveAlarm {
     /// 1 is the latest.
     slot: u8,
     #[serde(flatten)]
-    alarm: AlarmEntry,
+    outcome: ItemOutcome<AlarmEntry>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -235,7 +267,7 @@ struct PastAlarm {
     /// 1 is the latest of its class.
     number: u8,
     #[serde(flatten)]
-    alarm: AlarmEntry,
+    outcome: ItemOutcome<AlarmEntry>,
 }
 
 /// An alarm in words.
@@ -329,14 +361,39 @@ pub(super) fn in_a_line(alarm: &payload::Alarm, encoding: Encoding, model: Model
     words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
+/// The cells of an alarm, or of the reason why it is not there.
+fn cells(outcome: &ItemOutcome<AlarmEntry>) -> [Cell; 5] {
+    let blank = || Cell::maybe(None::<Cell>);
+    match (outcome.data(), outcome.error()) {
+        (Some(alarm), _) => alarm.cells(),
+        (None, error) => [blank(), error.map_or_else(blank, ItemError::cell), blank(), blank(), blank()],
+    }
+}
+
+impl ActiveAlarms {
+    fn errors(&self) -> impl Iterator<Item = &ItemError> {
+        self.alarms.iter().filter_map(|alarm| alarm.outcome.error())
+    }
+}
+
+impl PastAlarms {
+    fn errors(&self) -> impl Iterator<Item = &ItemError> {
+        self.alarms.iter().filter_map(|alarm| alarm.outcome.error())
+    }
+}
+
 impl Report for ActiveAlarms {
     fn view(&self) -> View {
         let mut table = Table::new(&["slot", "code", "name", "sub-code", "time", "board"], "no alarm");
-        for ActiveAlarm { slot, alarm } in &self.alarms {
-            let [code, name, sub_code, time, board] = alarm.cells();
+        for ActiveAlarm { slot, outcome } in &self.alarms {
+            let [code, name, sub_code, time, board] = cells(outcome);
             table.row([(*slot).into(), code, name, sub_code, time, board]);
         }
         View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::verdict(self.asked, self.errors())
     }
 }
 
@@ -344,11 +401,15 @@ impl Report for PastAlarms {
     fn view(&self) -> View {
         let columns = ["class", "#", "code", "name", "sub-code", "time", "board"];
         let mut table = Table::new(&columns, "no alarm");
-        for PastAlarm { class, number, alarm } in &self.alarms {
-            let [code, name, sub_code, time, board] = alarm.cells();
+        for PastAlarm { class, number, outcome } in &self.alarms {
+            let [code, name, sub_code, time, board] = cells(outcome);
             table.row([(*class).into(), (*number).into(), code, name, sub_code, time, board]);
         }
         View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::verdict(self.asked, self.errors())
     }
 }
 
@@ -405,12 +466,15 @@ mod tests {
     }
 
     #[test]
-    fn only_an_unknown_command_leads_to_the_older_one() {
-        for status in [Status { code: 8, added_size: 0, added: 0 }, Status::refused(0xA000), Status::refused(0x1010)] {
-            assert!(is_unknown_command(status), "{status:?}");
+    fn only_what_may_be_an_unknown_command_leads_to_the_older_one() {
+        for code in [0x01, 0x08, 0x09, 0x28] {
+            assert!(may_be_unknown(Status { code, added_size: 0, added: 0 }), "{code:#x}");
         }
-        for status in [Status::refused(0x2010), Status { code: 0x28, added_size: 0, added: 0 }] {
-            assert!(!is_unknown_command(status), "{status:?}");
+        for added in [0x1010, 0xA000, 0xA001, 0xA002] {
+            assert!(may_be_unknown(Status::refused(added)), "{added:#x}");
+        }
+        for status in [Status::refused(0x2010), Status::refused(0x2100), Status { code: 0x1F, ..Status::OK }] {
+            assert!(!may_be_unknown(status), "{status:?}");
         }
     }
 
@@ -430,8 +494,8 @@ mod tests {
     fn the_text_of_the_controller_wins_in_the_table() {
         let texts =
             AlarmTexts { source: Text::cut(b"[SV#1]"), sub_code: Text::cut(b"[R1: S]"), reversed: Text::cut(b"0") };
-        let alarms =
-            ActiveAlarms { alarms: vec![ActiveAlarm { slot: 1, alarm: entry(20, 1, Some(texts)) }], with_texts: true };
+        let outcome = ItemOutcome::new("alarm slot 1", Ok(entry(20, 1, Some(texts))));
+        let alarms = ActiveAlarms { alarms: vec![ActiveAlarm { slot: 1, outcome }], with_texts: true, asked: 4 };
         let csv = render::csv(&alarms.view(), None);
         assert_eq!(
             csv,
@@ -442,7 +506,7 @@ mod tests {
 
     #[test]
     fn nothing_is_said_as_such() {
-        let none = ActiveAlarms { alarms: Vec::new(), with_texts: true };
+        let none = ActiveAlarms { alarms: Vec::new(), with_texts: true, asked: 4 };
         assert_eq!(render::text(&none.view(), 80, false), "no alarm\n");
     }
 

@@ -8,15 +8,16 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use super::link::{Link, Refusal};
+use super::each::existing;
 use super::orders::usage;
 use super::position::ByAxis;
+use crate::command::items::{self, ItemError};
 use crate::command::{Command, Context, Report};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::AxisNames;
-use crate::controller::yerc::query::{Coordinates, Query, ReadAxes, ReadPositionError, ReadTorque};
+use crate::controller::yerc::query::{Coordinates, ReadAxes, ReadPositionError, ReadTorque};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, View};
 
@@ -55,29 +56,6 @@ pub(super) fn groups_of(model: Model) -> impl Iterator<Item = Group> {
     (1..=robots).map(Group::Robot).chain((1..=bases).map(Group::Base)).chain((1..=stations).map(Group::Station))
 }
 
-/// Asks about things that may not exist and keeps those that do. If all are refused, it is not about existence: the
-/// first refusal is the failure.
-pub(super) async fn existing<K, Q: Query + Copy>(
-    link: &mut Link,
-    questions: Vec<(K, Q)>,
-) -> Result<Vec<(K, Q::Answer)>, Failure> {
-    let (keys, queries): (Vec<K>, Vec<Q>) = questions.into_iter().unzip();
-    let answers = link.try_ask_all(&queries).await?;
-    of_existing(keys.into_iter().zip(answers)).map_err(Failure::from)
-}
-
-fn of_existing<K, A>(answers: impl Iterator<Item = (K, Result<A, Refusal>)>) -> Result<Vec<(K, A)>, Refusal> {
-    let mut found = Vec::new();
-    let mut refused = None;
-    for (key, answer) in answers {
-        match answer {
-            Ok(answer) => found.push((key, answer)),
-            Err(refusal) => refused = refused.or(Some(refusal)),
-        }
-    }
-    refused.filter(|_| found.is_empty()).map_or(Ok(found), Err)
-}
-
 /// The names of the axes (FS and DX 3.3.5).
 #[derive(Debug, Args)]
 pub struct AxesOf {
@@ -109,17 +87,25 @@ impl Command for AxesOf {
         }
         let is_all = self.group == Groups::All;
         let mut found: Vec<GroupAxes> = Vec::new();
-        for ((group, coordinates), names) in existing(link, questions).await? {
-            let names = names_of(&names, encoding);
-            if is_all && names.is_empty() {
+        for ((group, coordinates), outcome) in existing(link, questions).await? {
+            let names = outcome.map(|names| names_of(&names, encoding));
+            if is_all && names.as_ref().is_ok_and(Vec::is_empty) {
                 continue;
             }
             let name = group.to_string();
             if found.last().is_none_or(|entry| entry.group != name) {
-                found.push(GroupAxes { group: name, pulse: None, base: None });
+                found.push(GroupAxes { group: name, pulse: None, base: None, errors: Vec::new() });
             }
             let entry = found.last_mut().expect("a group has its entry by now");
-            *(if coordinates == Coordinates::Pulse { &mut entry.pulse } else { &mut entry.base }) = Some(names);
+            let is_pulse = coordinates == Coordinates::Pulse;
+            match names {
+                Ok(names) if is_pulse => entry.pulse = Some(names),
+                Ok(names) => entry.base = Some(names),
+                Err(denied) => {
+                    let asked = format!("{} axes of {group}", if is_pulse { "pulse" } else { "cartesian" });
+                    entry.errors.push(ItemError::new(asked, denied.into()));
+                }
+            }
         }
         Ok(Configuration { groups: found })
     }
@@ -145,6 +131,9 @@ struct GroupAxes {
     pulse: Option<Vec<String>>,
     /// Names in cartesian coordinates; null for stations, or if the controller refused.
     base: Option<Vec<String>>,
+    /// What was refused for another reason than that it does not exist.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    errors: Vec<ItemError>,
 }
 
 impl Report for Configuration {
@@ -155,6 +144,16 @@ impl Report for Configuration {
             table.row([group.group.as_str().into(), names(&group.pulse), names(&group.base)]);
         }
         View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let answered: usize = self
+            .groups
+            .iter()
+            .map(|group| usize::from(group.pulse.is_some()) + usize::from(group.base.is_some()))
+            .sum();
+        let errors = || self.groups.iter().flat_map(|group| &group.errors);
+        items::verdict(answered + errors().count(), errors())
     }
 }
 
@@ -179,8 +178,9 @@ macro_rules! by_axis {
             async fn run(&self, context: Context<'_, Family>) -> Result<$report, Failure> {
                 let link = context.link;
                 let axes = link.ask(&$query::new(link.model, self.group).map_err(usage)?).await?;
+                let (axes, fitted) = link.fit(self.group, Coordinates::Pulse, axes).await;
                 let is_robot = matches!(self.group, Group::Robot(_));
-                Ok($report { group: self.group.to_string(), $field: ByAxis::new(axes, is_robot) })
+                Ok($report { group: self.group.to_string(), $field: ByAxis::new(axes, is_robot, fitted) })
             }
         }
 
@@ -229,9 +229,9 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+    use crate::command::yerc::fitted::Fitted;
     use crate::command::yerc::testing::{frames, frames_on, golden, reports};
     use crate::controller::yerc::payload::{Axes, Text};
-    use crate::controller::yerc::wire::Status;
     use crate::failure::Kind;
     use crate::output::render;
 
@@ -251,15 +251,6 @@ mod tests {
     }
 
     #[test]
-    fn refused_entries_are_left_out_unless_all_are() {
-        let no = |code| Err(Refusal(Status::refused(code)));
-        let found = of_existing([(1, no(0xA001)), (2, Ok("x")), (3, no(0xA001))].into_iter());
-        assert_eq!(found, Ok(vec![(2, "x")]));
-        let none = of_existing::<i32, &str>([(1, no(0x2100)), (2, no(0xA001))].into_iter());
-        assert_eq!(none, Err(Refusal(Status::refused(0x2100))));
-    }
-
-    #[test]
     fn unused_axes_are_no_names() {
         let mut names = AxisNames::default();
         for (slot, name) in names.names.iter_mut().zip(["S", "L", "U"]) {
@@ -271,7 +262,7 @@ mod tests {
     #[test]
     fn torque_is_labelled_as_raw() {
         let axes = Axes::new(&[-3, 7]).unwrap();
-        let report = Torques { group: "R1".into(), torque_raw: ByAxis::new(axes, true) };
+        let report = Torques { group: "R1".into(), torque_raw: ByAxis::new(axes, true, Fitted::ALL) };
         assert_eq!(render::csv(&report.view(), None), "axis,torque_raw\nS,-3\nL,7\n");
         assert_eq!(serde_json::to_string(&report).unwrap(), r#"{"group":"R1","torque_raw":{"s":-3,"l":7}}"#);
     }

@@ -5,8 +5,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use super::axes::{Groups, existing, groups_of};
+use super::axes::{Groups, groups_of};
+use super::each::{Outcome, existing};
+use super::numbers::within;
 use super::orders::usage;
+use crate::command::items::{self, ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -23,7 +26,7 @@ pub struct Hours {
     #[arg(long, value_name = "R1|all")]
     group: Option<Groups>,
     /// Operation time of an application
-    #[arg(long, value_name = "N", conflicts_with = "group", value_parser = clap::value_parser!(u8).range(1..=8))]
+    #[arg(long, value_name = "N", conflicts_with = "group", value_parser = within::<u8>(1, 8))]
     application: Option<u8>,
 }
 
@@ -62,20 +65,22 @@ impl Command for Hours {
         let question = |counter| Ok((counter, ReadManagementTime::new(model, counter)?));
         let counters = self.counters(model).into_iter();
         let questions: Vec<_> = counters.map(question).collect::<Result<_, QueryError>>().map_err(usage)?;
-        let mut times = Vec::new();
-        if self.group == Some(Groups::All) {
-            for (counter, time) in existing(link, questions).await? {
-                // A controller may answer for what it does not have, with nothing.
-                if !(time.start.is_empty() && time.elapsed.is_empty()) {
-                    times.push(Time::new(counter, &time, encoding));
-                }
-            }
+        let outcomes = if self.group == Some(Groups::All) {
+            let mut found = existing(link, questions).await?;
+            // A controller may answer for what it does not have, with nothing.
+            let is_empty = |time: &ManagementTime| time.start.is_empty() && time.elapsed.is_empty();
+            found.retain(|(_, outcome)| !outcome.as_ref().is_ok_and(is_empty));
+            found
         } else {
             let (counters, queries): (Vec<_>, Vec<_>) = questions.into_iter().unzip();
-            let answers = link.ask_all(&queries).await?;
-            times.extend(counters.iter().zip(&answers).map(|(counter, time)| Time::new(*counter, time, encoding)));
-        }
-        Ok(Times { times })
+            counters.into_iter().zip(link.ask_each(&queries).await?).collect()
+        };
+        let time = |(counter, outcome): (_, Outcome<ManagementTime>)| {
+            Time::new(counter, outcome.map_err(Failure::from), encoding)
+        };
+        let report = Times { times: outcomes.into_iter().map(time).collect() };
+        items::nothing(report.times.len(), report.errors())?;
+        Ok(report)
     }
 }
 
@@ -93,6 +98,12 @@ struct Time {
     group: Option<String>,
     /// Number of the application; null where the counter is not of one.
     application: Option<u8>,
+    #[serde(flatten)]
+    outcome: ItemOutcome<Elapsed>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct Elapsed {
     /// When counting began, as the controller shows it, `YYYY/MM/DD HH:MM`.
     since: String,
     /// As received, such as `000123:45'06`.
@@ -102,7 +113,7 @@ struct Time {
 }
 
 impl Time {
-    fn new(counter: TimeCounter, time: &ManagementTime, encoding: Encoding) -> Self {
+    fn new(counter: TimeCounter, time: Result<ManagementTime, Failure>, encoding: Encoding) -> Self {
         let (name, group, application) = match counter {
             TimeCounter::ControlPower => ("control_power", None, None),
             TimeCounter::Servo(group) => ("servo", group, None),
@@ -110,14 +121,29 @@ impl Time {
             TimeCounter::Motion(group) => ("motion", group, None),
             TimeCounter::Application(number) => ("application", None, Some(number)),
         };
-        Self {
-            counter: name,
-            group: group.map(|group| group.to_string()),
-            application,
+        let group = group.map(|group| group.to_string());
+        let elapsed = time.map(|time| Elapsed {
             since: encoding.decode(time.start.as_bytes()),
             elapsed: encoding.decode(time.elapsed.as_bytes()),
             elapsed_s: time.seconds(),
-        }
+        });
+        let asked = format!("{} time of {}", name.replace('_', " "), of(name, group.as_deref(), application));
+        Self { counter: name, group, application, outcome: ItemOutcome::new(asked, elapsed) }
+    }
+}
+
+/// What a counter is of.
+fn of(counter: &str, group: Option<&str>, application: Option<u8>) -> String {
+    match (group, application) {
+        (Some(group), _) => group.to_owned(),
+        (None, Some(number)) => format!("application {number}"),
+        (None, None) => if counter == "control_power" { "the controller" } else { "all" }.to_owned(),
+    }
+}
+
+impl Times {
+    fn errors(&self) -> impl Iterator<Item = &ItemError> {
+        self.times.iter().filter_map(|time| time.outcome.error())
     }
 }
 
@@ -130,13 +156,21 @@ impl Report for Times {
                 (None, Some(number)) => number.to_string().into(),
                 (None, None) => if time.counter == "control_power" { "controller" } else { "all" }.into(),
             };
-            let elapsed = match time.elapsed_s {
-                Some(s) => Cell::number(format!("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)),
-                None => time.elapsed.as_str().into(),
+            let since = time.outcome.data().map(|time| time.since.as_str());
+            let elapsed = match (time.outcome.data(), time.outcome.error()) {
+                (Some(Elapsed { elapsed_s: Some(s), .. }), _) => {
+                    Cell::number(format!("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60))
+                }
+                (Some(time), _) => time.elapsed.as_str().into(),
+                (None, error) => error.map_or_else(|| "-".into(), ItemError::cell),
             };
-            table.row([time.counter.replace('_', " ").into(), of, time.since.as_str().into(), elapsed]);
+            table.row([time.counter.replace('_', " ").into(), of, Cell::maybe(since), elapsed]);
         }
         View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::verdict(self.times.len(), self.errors())
     }
 }
 
@@ -168,9 +202,9 @@ mod tests {
             |elapsed: &[u8]| ManagementTime { start: Text::cut(b"2024/01/02 03:04"), elapsed: Text::cut(elapsed) };
         let times = Times {
             times: vec![
-                Time::new(TimeCounter::ControlPower, &time(b"000123:45'06"), Encoding::ShiftJis),
-                Time::new(TimeCounter::Servo(Some(Group::R1)), &time(b"18:19'02"), Encoding::ShiftJis),
-                Time::new(TimeCounter::Application(2), &time(b"?"), Encoding::ShiftJis),
+                Time::new(TimeCounter::ControlPower, Ok(time(b"000123:45'06")), Encoding::ShiftJis),
+                Time::new(TimeCounter::Servo(Some(Group::R1)), Ok(time(b"18:19'02")), Encoding::ShiftJis),
+                Time::new(TimeCounter::Application(2), Ok(time(b"?")), Encoding::ShiftJis),
             ],
         };
         assert_eq!(

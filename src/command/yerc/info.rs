@@ -5,8 +5,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use super::axes::{Groups, existing, groups_of};
+use super::axes::{Groups, groups_of};
+use super::each::existing;
+use super::numbers::within;
 use super::orders::usage;
+use crate::command::items::{self, ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -23,7 +26,7 @@ pub struct Info {
     #[arg(long, value_name = "R1|all")]
     group: Option<Groups>,
     /// An application
-    #[arg(long, value_name = "N", conflicts_with = "group", value_parser = clap::value_parser!(u8).range(1..=8))]
+    #[arg(long, value_name = "N", conflicts_with = "group", value_parser = within::<u8>(1, 8))]
     application: Option<u8>,
 }
 
@@ -64,9 +67,10 @@ impl Command for Info {
         let answers = existing(link, questions).await?;
         // Controllers answer for groups that do not exist with the version alone.
         let is_there = |info: &SystemInfo| is_single || !(info.name.is_empty() && info.parameters.is_empty());
-        let software_version = answers.first().map(|(_, info)| encoding.decode(info.version.as_bytes()));
-        let parts =
-            answers.iter().filter(|(_, info)| is_there(info)).map(|(part, info)| Part::new(*part, info, encoding));
+        let first = answers.iter().find_map(|(_, outcome)| outcome.as_ref().ok());
+        let software_version = first.map(|info| encoding.decode(info.version.as_bytes()));
+        let parts = answers.into_iter().filter(|(_, outcome)| outcome.as_ref().map_or(true, is_there));
+        let parts = parts.map(|(part, outcome)| Part::new(part, outcome.map_err(Failure::from), encoding));
         Ok(Versions { software_version, parts: parts.collect() })
     }
 }
@@ -85,6 +89,12 @@ struct Part {
     group: Option<String>,
     /// Number of the application; null for a control group.
     application: Option<u8>,
+    #[serde(flatten)]
+    outcome: ItemOutcome<Named>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct Named {
     /// Robot model or name of the application; null for stations.
     name: Option<String>,
     /// Robots only.
@@ -92,18 +102,23 @@ struct Part {
 }
 
 impl Part {
-    fn new(part: SystemPart, info: &SystemInfo, encoding: Encoding) -> Self {
+    fn new(part: SystemPart, info: Result<SystemInfo, Failure>, encoding: Encoding) -> Self {
         let (group, application) = match part {
             SystemPart::Group(group) => (Some(group.to_string()), None),
             SystemPart::Application(number) => (None, Some(number)),
         };
-        Self {
-            group,
-            application,
+        let named = info.map(|info| Named {
             name: given(&info.name, encoding),
             parameter_version: given(&info.parameters, encoding),
-        }
+        });
+        let outcome = ItemOutcome::new(name_of(group.as_deref(), application), named);
+        Self { group, application, outcome }
     }
+}
+
+/// What a part is called.
+fn name_of(group: Option<&str>, application: Option<u8>) -> String {
+    group.map_or_else(|| format!("application {}", application.unwrap_or_default()), ToOwned::to_owned)
 }
 
 fn given<const N: usize>(text: &Text<N>, encoding: Encoding) -> Option<String> {
@@ -115,13 +130,18 @@ impl Report for Versions {
         let mut table = Table::new(&["part", "name", "version"], "no part");
         table.row(["controller".into(), "system software".into(), Cell::maybe(self.software_version.as_deref())]);
         for part in &self.parts {
-            let what = match (&part.group, part.application) {
-                (Some(group), _) => group.clone(),
-                (None, number) => format!("application {}", number.unwrap_or_default()),
+            let what = name_of(part.group.as_deref(), part.application);
+            let [name, version] = match (part.outcome.data(), part.outcome.error()) {
+                (Some(part), _) => [Cell::maybe(part.name.as_deref()), Cell::maybe(part.parameter_version.as_deref())],
+                (None, error) => [error.map_or_else(|| "-".into(), ItemError::cell), "-".into()],
             };
-            table.row([what.into(), Cell::maybe(part.name.as_deref()), Cell::maybe(part.parameter_version.as_deref())]);
+            table.row([what.into(), name, version]);
         }
         View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::verdict(self.parts.len(), self.parts.iter().filter_map(|part| part.outcome.error()))
     }
 }
 
@@ -153,11 +173,11 @@ mod tests {
         let versions = Versions {
             software_version: Some("DS2.07".into()),
             parts: vec![
-                Part::new(SystemPart::Group(Group::R1), &info, Encoding::ShiftJis),
-                Part::new(SystemPart::Group(Group::Station(1)), &station, Encoding::ShiftJis),
+                Part::new(SystemPart::Group(Group::R1), Ok(info.clone()), Encoding::ShiftJis),
+                Part::new(SystemPart::Group(Group::Station(1)), Ok(station), Encoding::ShiftJis),
                 Part::new(
                     SystemPart::Application(1),
-                    &SystemInfo { parameters: Text::default(), ..info },
+                    Ok(SystemInfo { parameters: Text::default(), ..info }),
                     Encoding::ShiftJis,
                 ),
             ],

@@ -9,18 +9,21 @@ use serde::Serialize;
 use tokio::time::Instant;
 
 use super::Family;
-use super::link::{Link, Refusal};
+use super::each::{Denied, Outcome};
+use super::link::Link;
 use super::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost};
+use super::numbers::within;
 use super::orders::{refuse_controls, usage};
 use crate::command::ValueKind;
+use crate::command::items::{self, ItemError};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
-use crate::controller::text::{Encoding, Name};
+use crate::controller::text::{Encoding, Name, integer};
 use crate::controller::units;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::payload::{ControllerStatus, JobInfo};
 use crate::controller::yerc::query::{Query, ReadJob, ReadStatus, SelectJob, Selection, StartJob};
-use crate::controller::yerc::status;
+use crate::controller::yerc::status::{self, is_absent};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::settings::duration;
@@ -59,7 +62,8 @@ impl FromStr for Tasks {
         if text.eq_ignore_ascii_case("all") {
             return Ok(Self::All);
         }
-        text.parse().map(Self::One).map_err(|_| "a task is a number from 0 (master) on, or all".to_owned())
+        let task = integer(text).and_then(|task| u8::try_from(task).ok());
+        task.map(Self::One).ok_or_else(|| "a task is a number from 0 (master) on, or all".to_owned())
     }
 }
 
@@ -74,17 +78,17 @@ impl Command for Show {
         let jobs = match self.task {
             Tasks::One(task) => {
                 let job = link.ask(&ReadJob::new(link.model, task).map_err(usage)?).await?;
-                vec![Task::new(task, Ok(&job), encoding)]
+                vec![Task::new(task, Ok(job), encoding)]
             }
             Tasks::All => {
                 let model = link.model;
                 let questions: Vec<ReadJob> = (0..=u8::MAX).map_while(|task| ReadJob::new(model, task).ok()).collect();
-                let answers = link.try_ask_all(&questions).await?;
-                if let Some(Err(refusal)) = answers.first() {
+                let outcomes = link.ask_each(&questions).await?;
+                if let Some(Err(denied)) = outcomes.first().filter(|_| outcomes.iter().all(Result::is_err)) {
                     // Every controller has a master task: this is not about a task that is absent.
-                    return Err((*refusal).into());
+                    return Err(denied.clone().into());
                 }
-                (0..).zip(&answers).map(|(task, answer)| Task::new(task, answer.as_ref(), encoding)).collect()
+                (0..).zip(outcomes).map(|(task, outcome)| Task::new(task, outcome, encoding)).collect()
             }
         };
         Ok(Jobs { tasks: jobs })
@@ -102,8 +106,8 @@ struct Task {
     /// 0 is the master.
     #[serde(rename = "task")]
     number: u8,
-    /// Whether the controller has it; where not, all that follows but `refusal` is null.
-    exists: bool,
+    /// Whether the controller has it; where not, all that follows but `refusal` is null. Null if that was not told.
+    exists: Option<bool>,
     /// Name of the job without `.JBI`; null if there is none.
     job: Option<String>,
     /// The bytes of the name, where the text does not lead back to them.
@@ -116,28 +120,45 @@ struct Task {
     /// The controller's code where it has no such task.
     #[serde(skip_serializing_if = "Option::is_none")]
     refusal: Option<String>,
+    /// Why nothing is known of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "ItemError")]
+    error: Option<ItemError>,
     /// The override with all its digits.
     #[serde(skip)]
     shown_override: Option<String>,
 }
 
 impl Task {
-    fn new(number: u8, answer: Result<&JobInfo, &Refusal>, encoding: Encoding) -> Self {
-        let info = answer.ok();
+    fn new(number: u8, outcome: Outcome<JobInfo>, encoding: Encoding) -> Self {
+        let (info, refusal, error) = match outcome {
+            Ok(info) => (Some(info), None, None),
+            Err(Denied::Refused(refusal)) if is_absent(refusal.status) => {
+                (None, Some(status::explain(refusal.status).code_text), None)
+            }
+            Err(denied) => (None, None, Some(ItemError::new(task_name(number), denied.into()))),
+        };
+        let info = info.as_ref();
         let name = info.filter(|info| !info.name.is_empty()).map(|info| encoding.name(info.name.as_bytes()));
         let (job, job_hex) = name.map_or((None, None), |Name { text, hex }| (Some(text), hex));
         Self {
             number,
-            exists: info.is_some(),
+            exists: error.is_none().then_some(info.is_some()),
             job,
             job_hex,
             line: info.map(|info| info.line),
             step: info.map(|info| info.step),
             speed_override_percent: info.map(|info| f64::from(info.speed_override) / 100.0),
-            refusal: answer.err().map(|refusal| status::explain(refusal.0).code_text),
+            refusal,
+            error,
             shown_override: info.map(|info| units::PERCENT.show_unsigned(info.speed_override).to_string()),
         }
     }
+}
+
+/// What a task is called.
+fn task_name(number: u8) -> String {
+    if number == 0 { "master".to_owned() } else { format!("sub {number}") }
 }
 
 impl Report for Jobs {
@@ -146,15 +167,20 @@ impl Report for Jobs {
         // Of all tasks only those that exist; one that was asked for says why there is nothing to show.
         let is_one = self.tasks.len() == 1;
         for task in self.tasks.iter().filter(|task| is_one || task.refusal.is_none()) {
-            let name = if task.number == 0 { "master".to_owned() } else { format!("sub {}", task.number) };
-            let job = match &task.refusal {
-                Some(code) => format!("(no such task: {code})").into(),
-                None => Cell::maybe(task.job.as_deref()),
+            let name = task_name(task.number);
+            let job = match (&task.refusal, &task.error) {
+                (Some(code), _) => format!("(no such task: {code})").into(),
+                (None, Some(error)) => error.cell(),
+                (None, None) => Cell::maybe(task.job.as_deref()),
             };
             let percent = task.shown_override.as_deref().map(Cell::number);
             table.row([name.into(), job, Cell::maybe(task.line), Cell::maybe(task.step), Cell::maybe(percent)]);
         }
         View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::verdict(self.tasks.len(), self.tasks.iter().filter_map(|task| task.error.as_ref()))
     }
 }
 
@@ -165,10 +191,10 @@ pub struct Select {
     #[arg(add = ValueKind::YercJob)]
     name: String,
     /// Line to start at
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=9999))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = within::<u32>(0, 9999))]
     line: u32,
     /// Make it the master job of a task, instead of the job to start
-    #[arg(long, value_name = "N", conflicts_with = "line")]
+    #[arg(long, value_name = "N", conflicts_with = "line", value_parser = within::<u8>(0, u8::MAX))]
     task: Option<u8>,
 }
 
@@ -380,6 +406,7 @@ impl Report for Started {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::yerc::link::{Asked, Refusal};
     use crate::command::yerc::testing::{frames, frames_on, golden, intent, objection, reports};
     use crate::controller::yerc::payload::{StatusBit, Text};
     use crate::controller::yerc::wire;
@@ -431,12 +458,13 @@ mod tests {
     #[test]
     fn an_absent_task_is_data() {
         let info = JobInfo { name: Text::cut(b"\x85\x41"), line: 3, step: 0, speed_override: 3333 };
-        let refusal = Refusal(wire::Status::refused(0xA001));
+        let to = Asked::Robot { command: 0x73, instance: 2 };
+        let refused = |code| Err(Denied::Refused(Refusal { status: wire::Status::refused(code), to }));
         let tasks = Jobs {
             tasks: vec![
-                Task::new(0, Ok(&info), Encoding::ShiftJis),
-                Task::new(1, Err(&refusal), Encoding::ShiftJis),
-                Task::new(2, Ok(&JobInfo::default()), Encoding::ShiftJis),
+                Task::new(0, Ok(info), Encoding::ShiftJis),
+                Task::new(1, refused(0xA001), Encoding::ShiftJis),
+                Task::new(2, Ok(JobInfo::default()), Encoding::ShiftJis),
             ],
         };
         let json = serde_json::to_string(&tasks).unwrap();

@@ -6,8 +6,9 @@ use std::time::Duration;
 use serde_json::json;
 use tokio::time::Instant;
 
+use super::fitted::Fitted;
 use super::reach::{self, Transport};
-pub use super::refusal::Refusal;
+pub use super::refusal::{Asked, Refusal};
 use super::simulated::channel;
 use super::trace::Trace;
 use crate::command::attach::hindered;
@@ -16,7 +17,8 @@ use crate::command::{Access, Family};
 use crate::controller::text::{Encoding, hex};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::files::data_frame;
-use crate::controller::yerc::query::{Hold, Query};
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::query::{Coordinates, Hold, Query};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::session::{
     Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd,
@@ -58,6 +60,8 @@ pub struct Link {
     totals: Totals,
     /// The last download, in case its final ACK got lost.
     finished: Option<Download>,
+    /// Which axes groups have, as far as it was asked.
+    pub(super) fitted: Vec<(Group, Coordinates, Fitted)>,
 }
 
 /// How long a stop is tried at least, the silence after which it is sent again (it doubles), and how often.
@@ -101,6 +105,7 @@ impl Family for Yerc {
             trace: Trace::open(&access, screen)?,
             totals: Totals::default(),
             finished: None,
+            fitted: Vec::new(),
         })
     }
 
@@ -115,9 +120,10 @@ impl Family for Yerc {
         // HOLD once, and a lost one lets the robot move on.
         let Policy { deadline, .. } = link.policy;
         link.policy = Policy { deadline: deadline.max(STOP_WITHIN), attempt: REPEAT_STOP, retries: STOPS };
-        let reply = link.converse(&Hold(true).request(), true).await?;
+        let request = Hold(true).request();
+        let reply = link.converse(&request, true).await?;
         if !reply.status.is_ok() {
-            return Err(Refusal(reply.status).into());
+            return Err(Refusal { status: reply.status, to: Asked::from(&request) }.into());
         }
         Ok("the robot was stopped: HOLD is on; `yerc hold off` releases it".to_owned())
     }
@@ -208,7 +214,8 @@ impl Link {
     /// Sends a request as it is and returns the data of the answer.
     pub async fn exchange(&mut self, request: &Request) -> Result<Result<Vec<u8>, Refusal>, Failure> {
         let reply = self.reply(request).await?;
-        Ok(if reply.status.is_ok() { Ok(reply.data) } else { Err(Refusal(reply.status)) })
+        let Reply { status, data, .. } = reply;
+        Ok(if status.is_ok() { Ok(data) } else { Err(Refusal { status, to: Asked::from(request) }) })
     }
 
     /// Sends a request as it is and returns the whole answer, good or bad. Only what changes nothing is repeated.
@@ -264,6 +271,11 @@ impl Link {
                 Err(self.unknown(request, first_wait.unwrap_or(self.policy.deadline), counters))
             }
             DownloadEnd::NoAnswer { bytes: 0, counters } => Err(self.silence(counters)),
+            DownloadEnd::NoAnswer { bytes, counters } if counters.is_garbage() => Err(Failure::new(
+                Kind::Malformed,
+                format!("{}: after {bytes} bytes came nothing of the protocol, but {counters}", self.label),
+            )
+            .hint("nothing was kept of it; repeat it, and record it with --trace if it comes again")),
             DownloadEnd::NoAnswer { bytes, .. } => {
                 Err(Failure::new(Kind::NoAnswer, format!("{}: the transfer broke off after {bytes} bytes", self.label))
                     .hint("nothing was kept of it; repeat the command, with a longer --timeout if the line is bad"))
@@ -524,7 +536,7 @@ impl Link {
     /// Nobody answered a question that does no harm.
     fn silence(&self, counters: Counters) -> Failure {
         let waited = self.policy.deadline;
-        if counters.garbage + counters.truncated + counters.oversized + counters.foreign > 0 {
+        if counters.is_garbage() {
             return Failure::new(
                 Kind::Malformed,
                 format!("{}: no answer of the protocol within {waited:?}, but {counters}", self.label),

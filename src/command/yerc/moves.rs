@@ -13,6 +13,7 @@ use self::going::{Goal, Going, Moved};
 use super::Family;
 use super::link::Link;
 use super::orders::usage;
+use crate::command::yerc::numbers::within;
 use crate::command::{Command, Context, Verbs, commands};
 use crate::controller::Risk;
 use crate::controller::units;
@@ -281,7 +282,7 @@ struct PulseTarget {
         required_unless_present = "station_axes")]
     pulses: Option<Values>,
     /// Tool number
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=63))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = within::<u32>(0, 63))]
     tool: u32,
     /// Axes of the robot's base, in pulses
     #[arg(long, value_name = "PULSES,…", allow_hyphen_values = true, value_parser = base_pulses)]

@@ -7,8 +7,10 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Serialize, Serializer};
 
 use super::Family;
+use super::fitted::Fitted;
 use super::link::Link;
 use super::orders::usage;
+use crate::command::items::{self, ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
@@ -57,11 +59,19 @@ impl Command for Position {
         };
         let question = |coordinates: &Coordinates| ReadPosition::new(link.model, self.group, *coordinates);
         let questions: Vec<ReadPosition> = wanted.iter().map(question).collect::<Result<_, _>>().map_err(usage)?;
-        let answers = link.ask_all(&questions).await?;
         let mut report = PositionReport::nowhere(self.group);
-        for (coordinates, position) in wanted.iter().zip(answers) {
-            report.add(*coordinates, &position)?;
+        let outcomes = link.ask_each(&questions).await?;
+        for (coordinates, outcome) in wanted.iter().zip(outcomes) {
+            let position = match outcome {
+                Ok(position) => {
+                    let (axes, fitted) = link.fit(self.group, *coordinates, position.axes).await;
+                    Ok((payload::Position { axes, ..position }, fitted))
+                }
+                Err(denied) => Err(denied.into()),
+            };
+            report.take(*coordinates, position);
         }
+        items::nothing(wanted.len(), report.errors())?;
         Ok(report)
     }
 }
@@ -73,8 +83,11 @@ pub(super) async fn ask(
     coordinates: Coordinates,
 ) -> Result<(payload::Position, PositionReport), Failure> {
     let position = link.ask(&ReadPosition::new(link.model, group, coordinates).map_err(usage)?).await?;
+    let (axes, fitted) = link.fit(group, coordinates, position.axes).await;
+    let position = payload::Position { axes, ..position };
     let mut report = PositionReport::nowhere(group);
-    report.add(coordinates, &position)?;
+    report.take(coordinates, Ok((position, fitted)));
+    items::nothing(1, report.errors())?;
     Ok((position, report))
 }
 
@@ -84,9 +97,9 @@ pub struct PositionReport {
     /// Control group, such as `R1`.
     group: String,
     /// By axis; null if not asked for.
-    pulse: Option<PulsePosition>,
+    pulse: Option<ItemOutcome<PulsePosition>>,
     /// In base coordinates; null if not asked for.
-    base: Option<CartesianPosition>,
+    base: Option<ItemOutcome<CartesianPosition>>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -120,6 +133,8 @@ struct CartesianPosition {
     extended_form_code: u32,
     #[serde(skip)]
     axes: Axes,
+    #[serde(skip)]
+    fitted: Fitted,
 }
 
 impl PositionReport {
@@ -127,37 +142,64 @@ impl PositionReport {
         Self { group: group.to_string(), pulse: None, base: None }
     }
 
+    fn pulses(&self) -> Option<&PulsePosition> {
+        self.pulse.as_ref().and_then(ItemOutcome::data)
+    }
+
+    fn cartesian(&self) -> Option<&CartesianPosition> {
+        self.base.as_ref().and_then(ItemOutcome::data)
+    }
+
+    fn errors(&self) -> impl Iterator<Item = &ItemError> {
+        let pulse = self.pulse.as_ref().and_then(ItemOutcome::error);
+        pulse.into_iter().chain(self.base.as_ref().and_then(ItemOutcome::error))
+    }
+
     /// Where it stands, in a line.
     pub(super) fn line(&self) -> String {
         let pulses = self
-            .pulse
-            .as_ref()
+            .pulses()
             .map(|pulse| in_a_line(PositionKind::Pulse, pulse.pulses.axes.as_slice(), pulse.pulses.is_robot));
-        let base = self.base.as_ref().map(|base| in_a_line(PositionKind::Base, base.axes.as_slice(), true));
+        let base = self.cartesian().map(|base| in_a_line(PositionKind::Base, base.axes.as_slice(), true));
         pulses.into_iter().chain(base).collect::<Vec<_>>().join(", ")
     }
 
-    /// Takes an answer in the coordinates that were asked for.
-    fn add(&mut self, asked: Coordinates, position: &payload::Position) -> Result<(), Failure> {
-        match (asked, position.kind) {
-            (Coordinates::Pulse, PositionKind::Pulse) => {
-                let pulses = ByAxis::new(position.axes, self.group.starts_with('R'));
-                self.pulse = Some(PulsePosition { pulses, tool: position.tool });
+    /// Takes the outcome for the coordinates that were asked for.
+    fn take(&mut self, asked: Coordinates, position: Result<(payload::Position, Fitted), Failure>) {
+        let what = |coordinates: &str| format!("position of {} in {coordinates}", self.group);
+        let position = position.and_then(|(position, fitted)| match (asked, position.kind) {
+            (Coordinates::Pulse, PositionKind::Pulse) | (Coordinates::Base, PositionKind::Base) => {
+                Ok((position, fitted))
             }
-            (Coordinates::Base, PositionKind::Base) => self.base = Some(position.into()),
             (_, kind) => {
                 let message = format!("unexpected answer: a position of type {} was not asked for", kind.word());
-                return Err(Failure::new(Kind::Malformed, message).hint("-vvv shows the bytes"));
+                Err(Failure::new(Kind::Malformed, message).hint("-vvv shows the bytes"))
+            }
+        });
+        match asked {
+            Coordinates::Pulse => {
+                let is_robot = self.group.starts_with('R');
+                let pulse = position.map(|(position, fitted)| PulsePosition {
+                    pulses: ByAxis::new(position.axes, is_robot, fitted),
+                    tool: position.tool,
+                });
+                self.pulse = Some(ItemOutcome::new(what("pulses"), pulse));
+            }
+            Coordinates::Base => {
+                let base = position.map(|(position, fitted)| CartesianPosition::new(&position, fitted));
+                self.base = Some(ItemOutcome::new(what("base coordinates"), base));
             }
         }
-        Ok(())
     }
 }
 
-impl From<&payload::Position> for CartesianPosition {
-    fn from(position: &payload::Position) -> Self {
+impl CartesianPosition {
+    fn new(position: &payload::Position, fitted: Fitted) -> Self {
         let axes = position.axes.as_slice();
-        let value = |axis: usize| axes.get(axis).map(|value| decimal(*value, position.kind.unit(axis)));
+        let value = |axis: usize| {
+            let value = axes.get(axis).filter(|_| fitted.has(axis));
+            value.map(|value| decimal(*value, position.kind.unit(axis)))
+        };
         Self {
             x_mm: value(0),
             y_mm: value(1),
@@ -173,6 +215,7 @@ impl From<&payload::Position> for CartesianPosition {
             extended_form: position.extended.words().collect(),
             extended_form_code: position.extended.0,
             axes: position.axes,
+            fitted,
         }
     }
 }
@@ -192,18 +235,20 @@ const NUMBERED_AXES: [&str; MAX_AXES] = ["1", "2", "3", "4", "5", "6", "7", "8"]
 pub(super) struct ByAxis {
     axes: Axes,
     is_robot: bool,
+    fitted: Fitted,
 }
 
 impl ByAxis {
     /// `is_robot` decides about the names.
-    pub(super) fn new(axes: Axes, is_robot: bool) -> Self {
-        Self { axes, is_robot }
+    pub(super) fn new(axes: Axes, is_robot: bool, fitted: Fitted) -> Self {
+        Self { axes, is_robot, fitted }
     }
 
     /// Names as people know them, and the values that are there.
     pub(super) fn rows(&self) -> impl Iterator<Item = (&'static str, i32)> {
         let names = if self.is_robot { ROBOT_AXES } else { NUMBERED_AXES };
-        names.into_iter().zip(self.axes.as_slice().iter().copied())
+        let rows = names.into_iter().zip(self.axes.as_slice().iter().copied()).enumerate();
+        rows.filter(|(axis, _)| self.fitted.has(*axis)).map(|(_, row)| row)
     }
 }
 
@@ -232,27 +277,33 @@ impl JsonSchema for ByAxis {
 
 impl Report for PositionReport {
     fn view(&self) -> View {
-        let pulses: Vec<[Cell; 2]> = self.pulse.iter().flat_map(|pulse| pulse.pulses.rows()).map(pulse_row).collect();
-        let base: Vec<[Cell; 3]> = self.base.iter().flat_map(CartesianPosition::rows).collect();
+        let pulses = self.pulses().into_iter().flat_map(|pulse| pulse.pulses.rows());
+        let pulses: Vec<[Cell; 2]> = pulses.map(pulse_row).collect();
+        let base: Vec<[Cell; 3]> = self.cartesian().into_iter().flat_map(CartesianPosition::rows).collect();
         let mut table = Table { empty: "the controller answered no axis", ..Table::default() };
         let blank = || Cell::from("");
-        if self.pulse.is_some() {
+        if self.pulses().is_some() {
             table.columns.extend(["axis", "pulses"]);
         }
-        if self.base.is_some() {
+        if self.cartesian().is_some() {
             table.columns.extend(["base", "value", "unit"]);
         }
         for index in 0..pulses.len().max(base.len()) {
             let mut row = Vec::new();
-            if self.pulse.is_some() {
+            if self.pulses().is_some() {
                 row.extend(pulses.get(index).cloned().unwrap_or_else(|| [blank(), blank()]));
             }
-            if self.base.is_some() {
+            if self.cartesian().is_some() {
                 row.extend(base.get(index).cloned().unwrap_or_else(|| [blank(), blank(), blank()]));
             }
             table.rows.push(row);
         }
         View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let asked = [self.pulse.is_some(), self.base.is_some()].iter().filter(|is_asked| **is_asked).count();
+        items::verdict(asked, self.errors())
     }
 }
 
@@ -265,6 +316,7 @@ impl CartesianPosition {
     fn rows(&self) -> Vec<[Cell; 3]> {
         let axes = CARTESIAN_AXES.iter().zip(self.axes.as_slice()).enumerate();
         let mut rows: Vec<[Cell; 3]> = axes
+            .filter(|(axis, _)| self.fitted.has(*axis))
             .map(|(axis, (name, value))| {
                 let unit = PositionKind::Base.unit(axis);
                 [(*name).into(), Cell::number(unit.show(*value).to_string()), unit.symbol.into()]
@@ -359,8 +411,8 @@ mod tests {
     #[test]
     fn a_position_is_exact_in_json() {
         let mut report = PositionReport::nowhere(Group::R1);
-        report.add(Coordinates::Pulse, &pulses(&[-90000, 1, 2, 3, 4, 5])).unwrap();
-        report.add(Coordinates::Base, &base(&[185_001, -1, 600_000, 1_800_000, 0, -1])).unwrap();
+        report.take(Coordinates::Pulse, Ok((pulses(&[-90000, 1, 2, 3, 4, 5]), Fitted::ALL)));
+        report.take(Coordinates::Base, Ok((base(&[185_001, -1, 600_000, 1_800_000, 0, -1]), Fitted::ALL)));
         let json = serde_json::to_value(&report).unwrap();
         assert_eq!(json["pulse"]["pulses"].to_string(), r#"{"s":-90000,"l":1,"u":2,"r":3,"b":4,"t":5}"#);
         assert_eq!(json["base"]["x_mm"].to_string(), "185.001");
@@ -374,8 +426,8 @@ mod tests {
     #[test]
     fn both_coordinates_stand_side_by_side() {
         let mut report = PositionReport::nowhere(Group::R1);
-        report.add(Coordinates::Pulse, &pulses(&[1, 2, 3, 4, 5, 6])).unwrap();
-        report.add(Coordinates::Base, &base(&[100_000, 0, 0, 1_800_000, 0, 0])).unwrap();
+        report.take(Coordinates::Pulse, Ok((pulses(&[1, 2, 3, 4, 5, 6]), Fitted::ALL)));
+        report.take(Coordinates::Base, Ok((base(&[100_000, 0, 0, 1_800_000, 0, 0]), Fitted::ALL)));
         assert_eq!(
             render::csv(&report.view(), None),
             "axis,pulses,base,value,unit\nS,1,X,100.000,mm\nL,2,Y,0.000,mm\nU,3,Z,0.000,mm\nR,4,Rx,180.0000,deg\n\
@@ -386,7 +438,7 @@ mod tests {
     #[test]
     fn other_groups_have_numbered_axes() {
         let mut report = PositionReport::nowhere(Group::Station(1));
-        report.add(Coordinates::Pulse, &pulses(&[7, -8])).unwrap();
+        report.take(Coordinates::Pulse, Ok((pulses(&[7, -8]), Fitted::ALL)));
         assert_eq!(
             serde_json::to_value(&report).unwrap()["pulse"]["pulses"].to_string(),
             r#"{"axis_1":7,"axis_2":-8}"#
@@ -397,7 +449,8 @@ mod tests {
     #[test]
     fn an_answer_in_other_coordinates_is_malformed() {
         let mut report = PositionReport::nowhere(Group::R1);
-        let failure = report.add(Coordinates::Base, &pulses(&[1])).unwrap_err();
+        report.take(Coordinates::Base, Ok((pulses(&[1]), Fitted::ALL)));
+        let failure = report.failure().unwrap();
         assert_eq!(failure.kind, Kind::Malformed);
     }
 

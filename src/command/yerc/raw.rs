@@ -1,11 +1,15 @@
 //! `yerc raw`.
 
+use std::time::Duration;
+
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
+use tokio::time::Instant;
 
 use super::Family;
-use super::link::Refusal;
+use super::file::download_failed;
+use super::link::{self, Link, Refusal};
 use super::register::unsigned;
 use crate::command::common::decode::yerc::{FieldRow, field_table, parse_hex};
 use crate::command::{Command, Context, Report};
@@ -13,10 +17,10 @@ use crate::controller::Risk;
 use crate::controller::text::hex;
 use crate::controller::yerc::describe::{Sender, describe};
 use crate::controller::yerc::request::Request;
-use crate::controller::yerc::session::Reply;
+use crate::controller::yerc::session::{DownloadEnd, Reply};
 use crate::controller::yerc::status;
-use crate::controller::yerc::table::{Row, service};
-use crate::controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, MAX_DATA};
+use crate::controller::yerc::table::{BATCH_BACKUP_PATH, Row, service};
+use crate::controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, MAX_DATA, Status};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, View};
 
@@ -25,8 +29,8 @@ use crate::output::view::{Cell, Section, View};
 #[command(
     after_help = "Numbers are decimal, or hexadecimal after 0x. A request that the manuals do not list is sent with \
                         a warning, or refused with --check; what armctl does not know counts as a motion, so it asks \
-                        before it sends. File services that transfer in blocks (load, save, list) are those of `yerc \
-                        file`. If the controller refuses, its answer is printed and the exit code is 3."
+                        before it sends. List (0x32) and save (0x16) show all blocks of the transfer as one; a \
+                        file is sent by `yerc file put`. If the controller refuses, its answer is printed and the exit code is 3."
 )]
 pub struct Raw {
     /// Command number, such as 0x72
@@ -111,9 +115,9 @@ impl Command for Raw {
         if !self.file && request.division() == Division::File {
             return Err(Failure::usage("command 0 is that of the file server").hint("use --file without --command"));
         }
-        if self.file && matches!(request.service, service::LOAD | service::SAVE | service::LIST) {
-            return Err(Failure::usage(format!("file service {:#04x} transfers blocks", request.service))
-                .hint("use `yerc file put`, `yerc file get` or `yerc file list`"));
+        if self.file && request.service == service::LOAD {
+            return Err(Failure::usage(format!("file service {:#04x} sends blocks", request.service))
+                .hint("use `yerc file put`"));
         }
         let doubt = request.check(link.model).err().map(|error| error.to_string());
         if let Some(doubt) = &doubt {
@@ -122,9 +126,41 @@ impl Command for Raw {
             }
             screen.note(&format!("warning: {doubt}"));
         }
-        let reply = link.reply(&request).await?;
+        let reply = if self.file && matches!(request.service, service::SAVE | service::LIST) {
+            transfer(link, &request).await?
+        } else {
+            link.reply(&request).await?
+        };
         Ok(Answer::new(&request, doubt, reply))
     }
+}
+
+/// Most bytes of a transfer that are shown.
+const MOST: u64 = 4 << 20;
+/// How long the first answer may take where the controller writes its batch backup first.
+const BACKUP: Duration = Duration::from_secs(15 * 60);
+
+/// All blocks of a transfer as the data of one answer.
+async fn transfer(link: &mut Link, request: &Request) -> Result<Reply, Failure> {
+    let began = Instant::now();
+    let mut data = Vec::new();
+    // The backup must not be asked for twice.
+    let first_wait = (request.data == BATCH_BACKUP_PATH).then_some(BACKUP);
+    let end = link
+        .download(request, MOST, first_wait, |piece| {
+            data.extend_from_slice(piece);
+            Ok(())
+        })
+        .await?;
+    let status = match &end {
+        DownloadEnd::Complete { .. } | DownloadEnd::Finished => Status::OK,
+        DownloadEnd::Nothing(status) | DownloadEnd::Refused { status, .. } => *status,
+        end => {
+            download_failed(request.service, end)?;
+            Status::OK
+        }
+    };
+    Ok(Reply { status, data, elapsed: began.elapsed(), attempts: 1 })
 }
 
 /// What was asked and what came back.
@@ -207,7 +243,7 @@ impl Answer {
             fields: fields.into_iter().filter(|field| field.offset >= HEADER_LEN).map(FieldRow::from).collect(),
             elapsed_ms: elapsed.as_secs_f64() * 1000.0,
             attempts,
-            refusal: (!status.is_ok()).then(|| Refusal(status).into()),
+            refusal: (!status.is_ok()).then(|| Refusal { status, to: link::Asked::from(request) }.into()),
         }
     }
 }
@@ -240,7 +276,6 @@ mod tests {
 
     use super::*;
     use crate::command::yerc::testing::{Bench, DX200, same};
-    use crate::controller::yerc::wire::Status;
     use crate::failure::Kind;
 
     fn answer(status: Status, data: &[u8]) -> Answer {
@@ -282,6 +317,18 @@ mod tests {
         ];
         same("R35", DX200, &words);
         same("M01", DX200, &["raw", "--command", "0x72", "--instance", "1", "--service", "0x01"]);
+    }
+
+    #[test]
+    fn raw_lists_and_fetches() {
+        let mut bench = Bench::new("sim:");
+        let list = bench.data(&["raw", "--file", "--service", "0x32", "--data", &hex(b"*.PRM")]);
+        assert_eq!(list["data_hex"], hex(b"ALL.PRM\r\nRC.PRM\r\n"));
+        let file = bench.data(&["raw", "--file", "--service", "0x16", "--data", &hex(b"TESTJOB.JBI")]);
+        assert!(file["data_bytes"].as_u64().unwrap() > 479, "more than a block: {file}");
+        let (missing, _) = bench.run(&["raw", "--file", "--service", "0x16", "--data", &hex(b"NO.JBI")]).unwrap();
+        assert_eq!((&missing["status"], &missing["added_status"]), (&Value::from("0x00"), &Value::from("0xe29c")));
+        assert!(bench.run(&["raw", "--file", "--service", "0x15", "--data", "41"]).is_err());
     }
 
     #[test]

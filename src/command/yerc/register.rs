@@ -1,6 +1,6 @@
 //! `yerc register`: 16-bit words that ladder program and PC share.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::HashSet;
 use std::str::FromStr;
 
 use clap::Args;
@@ -9,7 +9,9 @@ use serde::Serialize;
 
 use super::Family;
 use super::orders::usage;
+use super::parts::{Parts, read_in_parts};
 use super::writes::{Order, runs, write_all};
+use crate::command::items::{self, ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yerc::variables::{WriteRegisterStep, parse_numbers, plan_register_reads, plan_register_writes};
@@ -90,12 +92,20 @@ impl Command for Get {
     const ID: &'static str = "yerc.register.get";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Registers, Failure> {
-        let numbers: Vec<u16> = self.registers.iter().flat_map(|numbers| numbers.0.iter().copied()).collect();
-        let steps = plan_register_reads(context.link.model, &numbers).map_err(usage)?;
-        let answers: BTreeMap<u16, u16> = context.link.ask_all(&steps).await?.into_iter().flatten().collect();
         let mut seen = HashSet::new();
-        let once = numbers.into_iter().filter(|number| seen.insert(*number));
-        Ok(Registers { registers: once.filter_map(|number| Some(Word::new(number, *answers.get(&number)?))).collect() })
+        let numbers = self.registers.iter().flat_map(|numbers| numbers.0.iter().copied());
+        let numbers: Vec<u16> = numbers.filter(|number| seen.insert(*number)).collect();
+        let link = context.link;
+        let model = link.model;
+        let plan = |numbers: &[u16]| plan_register_reads(model, numbers).map_err(usage);
+        let mut outcomes = read_in_parts(link, plan, &numbers, |_| Parts::Halves, |_, _| {}).await?;
+        let words = numbers.into_iter().filter_map(|number| {
+            let outcome = outcomes.remove(&number)?;
+            Some(Word::new(number, outcome.map_err(Failure::from)))
+        });
+        let report = Registers { registers: words.collect() };
+        items::nothing(report.registers.len(), report.errors())?;
+        Ok(report)
     }
 }
 
@@ -117,7 +127,9 @@ impl Command for Set {
         let values: Vec<(u16, u16)> = self.assignments.iter().map(|it| (it.number, it.value)).collect();
         let steps = plan_register_writes(link.model, &values).map_err(usage)?;
         write_all(link, screen, &steps).await?;
-        Ok(WrittenRegisters { written: values.into_iter().map(|(number, value)| Word::new(number, value)).collect() })
+        Ok(WrittenRegisters {
+            written: values.into_iter().map(|(number, value)| Word::new(number, Ok(value))).collect(),
+        })
     }
 }
 
@@ -134,17 +146,30 @@ impl Order for WriteRegisterStep {
 }
 
 /// A register.
-#[derive(Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, PartialEq, Serialize, JsonSchema)]
 struct Word {
     number: u16,
+    #[serde(flatten)]
+    outcome: ItemOutcome<WordValue>,
+}
+
+#[derive(Debug, PartialEq, Serialize, JsonSchema)]
+struct WordValue {
     value: u16,
     /// `0x03e8`.
     value_hex: String,
 }
 
 impl Word {
-    fn new(number: u16, value: u16) -> Self {
-        Self { number, value, value_hex: format!("{value:#06x}") }
+    fn new(number: u16, value: Result<u16, Failure>) -> Self {
+        let value = value.map(|value| WordValue { value, value_hex: format!("{value:#06x}") });
+        Self { number, outcome: ItemOutcome::new(format!("register {number}"), value) }
+    }
+}
+
+impl Registers {
+    fn errors(&self) -> impl Iterator<Item = &ItemError> {
+        self.registers.iter().filter_map(|word| word.outcome.error())
     }
 }
 
@@ -163,7 +188,11 @@ pub struct WrittenRegisters {
 fn table(first: &'static str, words: &[Word]) -> View {
     let mut table = Table::new(&[first, "value", "hex"], "no registers");
     for word in words {
-        table.row([word.number.into(), word.value.into(), Cell::from(word.value_hex.as_str())]);
+        let [value, hex] = match (word.outcome.data(), word.outcome.error()) {
+            (Some(word), _) => [word.value.into(), Cell::from(word.value_hex.as_str())],
+            (None, error) => ["-".into(), error.map_or_else(|| "-".into(), ItemError::cell)],
+        };
+        table.row([word.number.into(), value, hex]);
     }
     View::table(table)
 }
@@ -171,6 +200,10 @@ fn table(first: &'static str, words: &[Word]) -> View {
 impl Report for Registers {
     fn view(&self) -> View {
         table("register", &self.registers)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::verdict(self.registers.len(), self.errors())
     }
 }
 

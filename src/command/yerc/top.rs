@@ -40,7 +40,7 @@ impl Eye {
         let (status, answered_in) = clocked(self.link.ask(&ReadStatus)).await;
         let status = status?;
         // A controller without a first robot has no position to show; that is no failure.
-        let base = self.ask(ReadPosition::new(self.link.model, Group::R1, Coordinates::Base)).await?;
+        let base = self.position(Coordinates::Base).await?;
         let slots = if depth == Depth::Whole { SLOTS } else { 1 };
         let alarms = if status.alarm() { present(&mut self.link, &mut self.texts, slots).await? } else { Vec::new() };
         let whole = match depth {
@@ -57,7 +57,7 @@ impl Eye {
 
     async fn whole(&mut self, status: ControllerStatus, base: Option<&Position>) -> Result<Whole, Failure> {
         let model = self.link.model;
-        let pulses = self.ask(ReadPosition::new(model, Group::R1, Coordinates::Pulse)).await?;
+        let pulses = self.position(Coordinates::Pulse).await?;
         let torque = self.ask(ReadTorque::new(model, Group::R1)).await?;
         let error = self.ask(ReadPositionError::new(model, Group::R1)).await?;
         let mut axes = pulses.map_or_else(Vec::new, |pulses| joints(pulses.axes, torque, error));
@@ -71,6 +71,13 @@ impl Eye {
         }
         let torque_unit = torque.map(|_| "raw");
         Ok(Whole { lamps: lamps(status), axes, torque_unit, banks, not_asked: None })
+    }
+
+    async fn position(&mut self, coordinates: Coordinates) -> Result<Option<Position>, Failure> {
+        let position = self.ask(ReadPosition::new(self.link.model, Group::R1, coordinates)).await?;
+        let Some(position) = position else { return Ok(None) };
+        let (axes, _) = self.link.fit(Group::R1, coordinates, position.axes).await;
+        Ok(Some(Position { axes, ..position }))
     }
 
     /// Asks for what need not be there: a refusal is `None`.

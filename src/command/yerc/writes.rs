@@ -67,7 +67,8 @@ fn account<O: Order>(failure: Failure, orders: &[O], done: usize) -> Failure {
     }
     let message = parts.join("; ");
     let hint = failure.hint.clone().unwrap_or_else(|| "read them back before you repeat the command".to_owned());
-    Failure { message, ..failure }.hint(hint)
+    let kind = if failure.kind == Kind::Refused && !written.is_empty() { Kind::Mixed } else { failure.kind };
+    Failure { kind, message, ..failure }.hint(hint)
 }
 
 /// Numbers in the order given, runs as `5..9`.
@@ -106,6 +107,7 @@ mod tests {
             message(&refused, 0),
             "the controller refused: no. Because; nothing was written; not written: register 0..2, 10, 20..21"
         );
+        assert_eq!([0, 1].map(|done| account(refused.clone(), &orders(), done).kind.exit()), [3, 9]);
         let closed = Failure::new(Kind::NoAnswer, "nothing listens");
         assert_eq!(message(&closed, 1), "nothing listens; written: register 0..2; not written: register 10, 20..21");
         let lost = Failure::new(Kind::OutcomeUnknown, "no answer");

@@ -104,9 +104,15 @@ pub enum FileNameError {
         /// The name, escaped.
         name: String,
     },
-    /// Not one of the six extensions.
-    #[error("the file name '{name}' needs an extension out of JBI, DAT, CND, PRM, SYS, LST")]
+    /// No extension.
+    #[error("the file name '{name}' needs an extension, as in TESTJOB.JBI")]
     Extension {
+        /// The name, escaped.
+        name: String,
+    },
+    /// Sent to a controller, but not one of the six extensions.
+    #[error("the file name '{name}' needs an extension out of JBI, DAT, CND, PRM, SYS, LST to be sent")]
+    Type {
         /// The name, escaped.
         name: String,
     },
@@ -146,10 +152,14 @@ impl FileName {
         &self.0
     }
 
-    /// By its extension.
-    #[expect(clippy::missing_panics_doc, reason = "names are built with a known extension")]
-    pub fn file_type(&self) -> FileType {
-        FileType::of(&self.0).expect("a file name has a known extension by construction")
+    /// By its extension; `None` for one that the manuals do not list.
+    pub fn file_type(&self) -> Option<FileType> {
+        FileType::of(&self.0)
+    }
+
+    /// Checks what is expected of a name beyond the usual before a file is sent under it.
+    pub fn check_load(&self) -> Result<(), FileNameError> {
+        check_load_name(&self.0)
     }
 
     /// Deletes it.
@@ -177,6 +187,12 @@ impl fmt::Debug for FileName {
 /// Asks for the names of one type.
 pub fn list(kind: FileType) -> Request {
     Request::file(service::LIST, kind.filter())
+}
+
+/// Asks for the names that a filter of the manuals lets through; the empty one is that of the controller.
+pub fn list_by(filter: &str) -> Result<Request, FileNameError> {
+    check_filter(filter.as_bytes())?;
+    Ok(Request::file(service::LIST, filter))
 }
 
 /// Makes the controller write its batch backup, which takes about ten minutes; the same request fetches the file.
@@ -212,17 +228,28 @@ fn transfer_frame(id: u8, service: u8, block: u32, data: &[u8]) -> Vec<u8> {
     .emit()
 }
 
-/// Splits the joined data of a list at CR LF. A lone CR or LF stays part of its name.
-pub fn split_list(data: &[u8]) -> Vec<&[u8]> {
+/// A list with a line that is no name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("line {line} of the list has {len} bytes; at most {MAX_DATA} fit a frame")]
+pub struct ListError {
+    /// Which line, from 1.
+    pub line: usize,
+    /// Its bytes.
+    pub len: usize,
+}
+
+/// Splits the joined data of a list into names. The manuals end them with CR LF; a lone CR or LF, padding NULs and blanks
+/// at the end of a line are no part of a name either: none of them is ever half of a wider character.
+pub fn split_list(data: &[u8]) -> Result<Vec<&[u8]>, ListError> {
+    let lines = data.split(|byte| matches!(byte, b'\r' | b'\n' | 0)).map(<[u8]>::trim_ascii_end);
     let mut names = Vec::new();
-    let mut rest = data;
-    while let Some(end) = rest.windows(2).position(|pair| pair == b"\r\n") {
-        names.push(&rest[..end]);
-        rest = &rest[end + 2..];
+    for name in lines.filter(|line| !line.is_empty()) {
+        if name.len() > MAX_DATA {
+            return Err(ListError { line: names.len() + 1, len: name.len() });
+        }
+        names.push(name);
     }
-    names.push(rest);
-    names.retain(|name| !name.is_empty());
-    names
+    Ok(names)
 }
 
 /// The rules for names in requests; the path of the batch backup passes.
@@ -243,17 +270,30 @@ pub fn check_name(name: &[u8]) -> Result<(), FileNameError> {
     if name.iter().any(u8::is_ascii_control) {
         return Err(FileNameError::Control { name: shown() });
     }
-    let stem = name.iter().rposition(|&byte| byte == b'.').unwrap_or(name.len());
+    let stem = stem_len(name);
     if stem == 0 {
         return Err(FileNameError::Empty);
     }
+    if stem + 1 >= name.len() { Err(FileNameError::Extension { name: shown() }) } else { Ok(()) }
+}
+
+/// The rules for the name of a file that is sent: beyond [`check_name`], an extension of the manuals, and a job name that
+/// a controller can hold.
+pub fn check_load_name(name: &[u8]) -> Result<(), FileNameError> {
+    check_name(name)?;
+    let stem = stem_len(name);
     match FileType::of(name) {
-        None => Err(FileNameError::Extension { name: shown() }),
+        None => Err(FileNameError::Type { name: name.escape_ascii().to_string() }),
         Some(FileType::Jbi) if stem > MAX_JOB_NAME => {
             Err(FileNameError::JobName { name: name[..stem].escape_ascii().to_string(), len: stem })
         }
         Some(_) => Ok(()),
     }
+}
+
+/// Bytes before the extension.
+fn stem_len(name: &[u8]) -> usize {
+    name.iter().rposition(|&byte| byte == b'.').unwrap_or(name.len())
 }
 
 /// The filters that the manuals list (3.4.4).
@@ -293,10 +333,9 @@ mod tests {
         assert!(check_name(b"/SPDRV/CMOSBK.BIN").is_ok());
         assert!(FileName::new(*b"/SPDRV/CMOSBK.BIN").is_err());
         assert!(check_name(&[b'A'; 32].iter().copied().chain(*b".JBI").collect::<Vec<_>>()).is_ok());
-        assert!(matches!(
-            check_name(&[b'A'; 33].iter().copied().chain(*b".JBI").collect::<Vec<_>>()),
-            Err(FileNameError::JobName { len: 33, .. })
-        ));
+        let long: Vec<u8> = [b'A'; 33].iter().copied().chain(*b".JBI").collect();
+        assert!(check_name(&long).is_ok());
+        assert!(matches!(check_load_name(&long), Err(FileNameError::JobName { len: 33, .. })));
         assert_eq!(check_name(b""), Err(FileNameError::Empty));
         assert_eq!(check_name(b".JBI"), Err(FileNameError::Empty));
         assert!(matches!(check_name(b"A.JBI\0"), Err(FileNameError::Nul { .. })));
@@ -304,14 +343,28 @@ mod tests {
         assert!(matches!(check_name(b"\x83/A.JBI"), Err(FileNameError::Separator { .. })));
         assert!(matches!(check_name(b"C:\\A.JBI"), Err(FileNameError::Separator { .. })));
         assert!(matches!(check_name(b"A\r\n.JBI"), Err(FileNameError::Control { .. })));
-        assert!(matches!(check_name(b"A.EXE"), Err(FileNameError::Extension { .. })));
+        assert!(check_name(b"A.EXE").is_ok());
+        assert!(check_name(&[&[b'A'; MAX_DATA - 2][..], b".X"].concat()).is_ok());
+        assert!(matches!(check_load_name(b"A.EXE"), Err(FileNameError::Type { .. })));
+        assert!(matches!(check_name(b"A"), Err(FileNameError::Extension { .. })));
+        assert!(matches!(check_name(b"A."), Err(FileNameError::Extension { .. })));
         assert!(matches!(check_name(&[b'A'; 480]), Err(FileNameError::TooLong { len: 480 })));
     }
 
     #[test]
-    fn lists_split_at_cr_lf_only() {
-        assert_eq!(split_list(b"1.JBI\r\n22.JBI\r\n"), [&b"1.JBI"[..], b"22.JBI"]);
-        assert_eq!(split_list(b"A\rB.JBI\r\nC.JBI"), [&b"A\rB.JBI"[..], b"C.JBI"]);
-        assert!(split_list(b"").is_empty());
+    fn lists_bear_other_ends_of_lines_and_padding() {
+        let names = |data: &'static [u8]| split_list(data).unwrap();
+        assert_eq!(names(b"1.JBI\r\n22.JBI\r\n"), [&b"1.JBI"[..], b"22.JBI"]);
+        assert_eq!(names(b"A.JBI\nB.JBI\rC.JBI\0D.JBI"), [&b"A.JBI"[..], b"B.JBI", b"C.JBI", b"D.JBI"]);
+        assert_eq!(names(b"A.JBI  \r\n\r\n \r\nB C.JBI\r\n\0\0"), [&b"A.JBI"[..], b"B C.JBI"]);
+        assert!(names(b"").is_empty());
+    }
+
+    #[test]
+    fn a_line_longer_than_a_frame_is_no_name() {
+        let longest = [b'A'; MAX_DATA];
+        assert_eq!(split_list(&longest).unwrap(), [longest]);
+        let longer = [&b"A.JBI\r\n"[..], &[b'A'; MAX_DATA + 1]].concat();
+        assert_eq!(split_list(&longer), Err(ListError { line: 2, len: MAX_DATA + 1 }));
     }
 }

@@ -265,6 +265,7 @@ impl Request {
     fn check_file(&self) -> Result<(), RequestError> {
         match self.service {
             service::LIST => files::check_filter(&self.data)?,
+            service::LOAD => files::check_load_name(&self.data)?,
             _ => files::check_name(&self.data)?,
         }
         Ok(())

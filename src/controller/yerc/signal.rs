@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::Model;
 use super::table::{Row, Span};
+use crate::controller::text::integer;
 
 /// One signal by its logical number; the last digit is 0 to 7.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -82,10 +83,13 @@ impl FromStr for Signal {
 
     fn from_str(text: &str) -> Result<Self, SignalError> {
         let digits = text.strip_prefix('#').unwrap_or(text);
-        if digits.is_empty() || digits.len() > 6 || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
-            return Err(SignalError::Malformed { found: text.to_owned() });
-        }
-        Self::new(digits.parse().map_err(|_| SignalError::Malformed { found: text.to_owned() })?)
+        let number = integer(digits).filter(|_| digits.starts_with(|first: char| first.is_ascii_digit()));
+        let number = number.and_then(|number| u32::try_from(number).ok()).filter(|number| *number < 1_000_000);
+        let number = number.ok_or_else(|| SignalError::Malformed { found: text.to_owned() })?;
+        Self::new(number).map_err(|error| match error {
+            SignalError::Malformed { .. } => SignalError::Malformed { found: text.to_owned() },
+            error @ SignalError::Digit { .. } => error,
+        })
     }
 }
 
@@ -100,6 +104,7 @@ mod tests {
         assert!(signal.class(Model::Dx200).unwrap().writable);
         assert_eq!(signal.class(Model::Fs100), None);
         assert_eq!("10".parse::<Signal>().unwrap().class(Model::Fs100).unwrap().meaning, "robot user input");
+        assert_eq!("0x4E2A".parse::<Signal>().unwrap().to_string(), "#20010");
         assert_eq!("9".parse::<Signal>(), Err(SignalError::Digit { number: 9 }));
         for junk in ["", "#", "-10", "1e3", "9999999", "700000"] {
             assert!(matches!(junk.parse::<Signal>(), Err(SignalError::Malformed { .. })), "{junk}");

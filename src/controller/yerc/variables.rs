@@ -5,8 +5,8 @@ mod reference;
 mod value;
 
 pub use plan::{
-    IoStep, ReadStep, RegisterStep, WriteIoStep, WriteRegisterStep, WriteStep, plan_io_reads, plan_io_writes,
-    plan_reads, plan_register_reads, plan_register_writes, plan_writes,
+    IoStep, PlannedRead, ReadStep, RegisterStep, WriteIoStep, WriteRegisterStep, WriteStep, plan_io_reads,
+    plan_io_writes, plan_reads, plan_register_reads, plan_register_writes, plan_writes,
 };
 pub use reference::{Reference, ReferenceError, VariableKind, parse_numbers, parse_references};
 pub use value::{Value, ValueError};

@@ -23,17 +23,101 @@ pub struct Comparer<'a> {
     at: usize,
     so_far: Comparison,
     local_ended: bool,
+    /// What is left out of either side.
+    without: Option<[WithoutDate; 2]>,
+}
+
+/// The lines of a job without `///DATE`, which a controller writes anew when it stores a job.
+#[derive(Debug, Default)]
+pub struct WithoutDate {
+    at: Place,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Place {
+    /// Before a line.
+    #[default]
+    Start,
+    /// After so many bytes of a line, which are those of the one left out.
+    Begun(usize),
+    Kept,
+    Dropped,
+}
+
+const DATE: &[u8] = b"///DATE";
+
+impl WithoutDate {
+    /// What stays of the next bytes.
+    pub fn take(&mut self, piece: &[u8]) -> Vec<u8> {
+        let mut kept = Vec::with_capacity(piece.len());
+        for &byte in piece {
+            let begun = match self.at {
+                Place::Start => Some(0),
+                Place::Begun(count) => Some(count),
+                Place::Kept | Place::Dropped => None,
+            };
+            if let Some(count) = begun {
+                if DATE.get(count) == Some(&byte) {
+                    self.at = if count + 1 == DATE.len() { Place::Dropped } else { Place::Begun(count + 1) };
+                    continue;
+                }
+                kept.extend_from_slice(DATE.get(..count).unwrap_or_default());
+                self.at = Place::Kept;
+            }
+            if self.at == Place::Kept {
+                kept.push(byte);
+            }
+            if byte == b'\n' {
+                self.at = Place::Start;
+            }
+        }
+        kept
+    }
+
+    /// What stays at the end.
+    pub fn rest(&mut self) -> &'static [u8] {
+        match std::mem::take(&mut self.at) {
+            Place::Begun(count) => DATE.get(..count).unwrap_or_default(),
+            Place::Start | Place::Kept | Place::Dropped => &[],
+        }
+    }
+
+    /// What stays of all of it.
+    pub fn of(whole: &[u8]) -> Vec<u8> {
+        let mut filter = Self::default();
+        let mut kept = filter.take(whole);
+        kept.extend_from_slice(filter.rest());
+        kept
+    }
 }
 
 impl<'a> Comparer<'a> {
-    /// Compares with a local file from its beginning.
-    pub fn new(pieces: Pieces<'a>) -> Self {
+    /// Compares with a local file from its beginning; on request without the lines that controllers rewrite, which then
+    /// count neither as differences nor as bytes.
+    pub fn new(pieces: Pieces<'a>, ignore_header: bool) -> Self {
         let so_far = Comparison { controller_bytes: 0, local_bytes: 0, first_difference: None };
-        Self { pieces, ahead: Vec::new(), at: 0, so_far, local_ended: false }
+        Self {
+            pieces,
+            ahead: Vec::new(),
+            at: 0,
+            so_far,
+            local_ended: false,
+            without: ignore_header.then(Default::default),
+        }
     }
 
     /// Takes the next bytes of the controller's file.
-    pub fn take(&mut self, mut block: &[u8]) -> Result<(), Failure> {
+    pub fn take(&mut self, block: &[u8]) -> Result<(), Failure> {
+        match &mut self.without {
+            Some([theirs, _]) => {
+                let kept = theirs.take(block);
+                self.compare(&kept)
+            }
+            None => self.compare(block),
+        }
+    }
+
+    fn compare(&mut self, mut block: &[u8]) -> Result<(), Failure> {
         while !block.is_empty() {
             self.fill()?;
             let ahead = self.ahead.get(self.at..).unwrap_or_default();
@@ -54,6 +138,8 @@ impl<'a> Comparer<'a> {
 
     /// The result, after the last block.
     pub fn finish(mut self) -> Result<Comparison, Failure> {
+        let rest = self.without.as_mut().map_or(&[][..], |[theirs, _]| theirs.rest());
+        self.compare(rest)?;
         self.fill()?;
         if !self.local_ended {
             self.so_far.first_difference.get_or_insert(self.so_far.controller_bytes);
@@ -69,8 +155,20 @@ impl<'a> Comparer<'a> {
         if self.at < self.ahead.len() || self.local_ended {
             return Ok(());
         }
-        self.ahead = self.pieces.next_piece()?;
         self.at = 0;
+        loop {
+            let piece = self.pieces.next_piece()?;
+            self.local_ended = piece.is_empty();
+            self.ahead = match &mut self.without {
+                Some([_, ours]) if self.local_ended => ours.rest().to_vec(),
+                Some([_, ours]) => ours.take(&piece),
+                None => piece,
+            };
+            if self.local_ended || !self.ahead.is_empty() {
+                break;
+            }
+        }
+        // What a filter held back comes before the end.
         self.local_ended = self.ahead.is_empty();
         self.so_far.local_bytes = self.so_far.local_bytes.saturating_add(self.ahead.len() as u64);
         Ok(())
@@ -88,7 +186,7 @@ mod tests {
         let mut file = tempfile::NamedTempFile::new().unwrap();
         file.write_all(local).unwrap();
         let mut content = Content::open_any(file.path()).unwrap();
-        let mut comparer = Comparer::new(content.pieces().unwrap());
+        let mut comparer = Comparer::new(content.pieces().unwrap(), false);
         for block in blocks {
             comparer.take(block).unwrap();
         }
@@ -126,5 +224,25 @@ mod tests {
         assert_eq!(compared(&local, &blocks).first_difference, Some(70_000));
         let blocks: Vec<&[u8]> = local.chunks(479).collect();
         assert_eq!(compared(&local, &blocks).first_difference, None);
+    }
+
+    #[test]
+    fn the_date_of_a_job_can_be_left_out() {
+        let job = |date: &str| format!("/JOB\r\n//INST\r\n{date}///ATTR SC,RW\r\nNOP\r\nEND\r\n///DA").into_bytes();
+        let (old, new) = (job("///DATE 2026/03/14 08:00\r\n"), job("///DATE 2026/11/22 11:00\r\n"));
+        assert_eq!(WithoutDate::of(&old), job(""));
+        for (theirs, ours) in [(&old, &new), (&old, &job("")), (&job(""), &new)] {
+            let mut file = tempfile::NamedTempFile::new().unwrap();
+            file.write_all(ours).unwrap();
+            let mut content = Content::open_any(file.path()).unwrap();
+            for size in [1, 7, 479] {
+                let mut comparer = Comparer::new(content.pieces().unwrap(), true);
+                theirs.chunks(size).for_each(|block| comparer.take(block).unwrap());
+                let found = comparer.finish().unwrap();
+                let bytes = job("").len() as u64;
+                let expected = Comparison { controller_bytes: bytes, local_bytes: bytes, first_difference: None };
+                assert_eq!(found, expected);
+            }
+        }
     }
 }

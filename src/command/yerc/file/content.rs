@@ -5,7 +5,6 @@ use std::fs::File;
 use std::io::{Read as _, Seek as _};
 use std::path::{Path, PathBuf};
 
-use crate::controller::yerc::files::FileType;
 use crate::failure::Failure;
 
 /// A few blocks at a time.
@@ -73,11 +72,8 @@ impl Content {
         self.fixes
     }
 
-    /// Checks a job before anything is sent; other types pass.
-    pub fn check_job(&mut self, kind: FileType, rules: JobRules) -> Result<(), Failure> {
-        if kind != FileType::Jbi {
-            return Ok(());
-        }
+    /// Checks a job before anything is sent.
+    pub fn check_job(&mut self, rules: JobRules) -> Result<(), Failure> {
         let mut scan = JobScan::default();
         let mut pieces = self.pieces()?;
         loop {
@@ -243,7 +239,7 @@ mod tests {
 
     fn check(bytes: &[u8], rules: JobRules) -> Result<Vec<u8>, Failure> {
         let (_file, mut content) = content(bytes);
-        content.check_job(FileType::Jbi, rules)?;
+        content.check_job(rules)?;
         let sent = read(&mut content);
         assert_eq!(sent.len() as u64, content.size());
         Ok(sent)
@@ -262,7 +258,7 @@ mod tests {
     #[test]
     fn a_job_names_itself() {
         let (_file, mut content) = content(b"/JOB\r\n//NAME A B\r\nNOP\r\nEND\r\n//NAME C\r\n");
-        content.check_job(FileType::Jbi, JobRules::default()).unwrap();
+        content.check_job(JobRules::default()).unwrap();
         assert_eq!(content.job_name(), Some(&b"A B"[..]));
     }
 
@@ -289,13 +285,6 @@ mod tests {
             assert!(failure.message.contains(missing), "{failure}");
             assert_eq!(check(bytes, JobRules { force: true, ..JobRules::default() }).unwrap(), bytes);
         }
-    }
-
-    #[test]
-    fn other_types_are_any_bytes() {
-        let (_file, mut content) = content(b"\0\n\x80");
-        content.check_job(FileType::Dat, FIX).unwrap();
-        assert_eq!(read(&mut content), b"\0\n\x80");
     }
 
     #[test]

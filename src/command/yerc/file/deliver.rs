@@ -10,6 +10,7 @@ use super::results::FileResult;
 use super::transfer;
 use crate::command::local::{Target, folder_of, local_name};
 use crate::command::yerc::link::Link;
+use crate::controller::text::Encoding;
 use crate::controller::yerc::files::FileName;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -28,6 +29,8 @@ pub struct Delivery {
 pub struct Manner {
     /// Read it back and compare.
     pub verify: bool,
+    /// Compare without the line that controllers rewrite.
+    pub ignore_header: bool,
     /// Delete a job of that name that the controller does not overwrite by itself.
     pub replace: bool,
 }
@@ -59,22 +62,29 @@ pub async fn deliver(
         result.notes.push("line_endings_fixed");
     }
     if manner.verify {
-        verify(link, screen, delivery).await?;
+        verify(link, screen, delivery, manner.ignore_header).await?;
         result.notes.push("verified");
     }
     Ok(Some(bytes))
 }
 
+impl Delivery {
+    /// What a job calls itself and what it is sent as, where the two are not the same.
+    pub fn other_name(&self, encoding: Encoding) -> Option<(String, String)> {
+        let file = self.file.as_bytes();
+        let stem = file.get(..file.len().saturating_sub(4)).unwrap_or(file);
+        let own = self.content.job_name().filter(|own| *own != stem)?;
+        Some((encoding.decode(own), encoding.decode(stem)))
+    }
+}
+
 /// A job that calls itself otherwise than its file is a likely cause of a refusal.
 fn with_own_name(link: &Link, delivery: &Delivery, failure: Failure) -> Failure {
-    let file = delivery.file.as_bytes();
-    let stem = file.get(..file.len().saturating_sub(4)).unwrap_or(file);
-    match delivery.content.job_name() {
-        Some(own) if own != stem => {
-            let (own, stem) = (link.encoding.decode(own), link.encoding.decode(stem));
+    match delivery.other_name(link.encoding) {
+        Some((own, stem)) => {
             failure.hint(format!("the job says //NAME {own} but is sent as {stem}: make the two the same"))
         }
-        _ => failure,
+        None => failure,
     }
 }
 
@@ -85,11 +95,11 @@ async fn send(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Resu
 }
 
 /// Reads the file back and compares it byte for byte.
-async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<(), Failure> {
+async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery, ignore_header: bool) -> Result<(), Failure> {
     let name = link.encoding.decode(delivery.file.as_bytes());
     let mut progress = screen.bytes_progress(&format!("{name} (reading back)"), Some(delivery.content.size()));
     let path = delivery.content.path().display().to_string();
-    let mut comparer = Comparer::new(delivery.content.pieces()?);
+    let mut comparer = Comparer::new(delivery.content.pieces()?, ignore_header);
     transfer::fetch(link, &delivery.file, |block| {
         progress.advance(block.len() as u64);
         comparer.take(block)
@@ -105,7 +115,10 @@ async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Re
                  first difference at byte {at}"
             ),
         )
-        .hint(format!("`yerc file diff {name} {path}` shows them; a controller may rewrite the header of a job"))),
+        .hint(format!(
+            "`yerc file diff {name} {path}` shows them; --ignore-header leaves out the line \
+             ///DATE, which a controller may rewrite"
+        ))),
     }
 }
 

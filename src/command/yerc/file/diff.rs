@@ -6,7 +6,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::compare::{Comparer, Comparison};
+use super::compare::{Comparer, Comparison, WithoutDate};
 use super::content::Content;
 use super::name::{self, Shown};
 use super::transfer;
@@ -27,6 +27,9 @@ pub struct Diff {
     /// Local file; without it, the one of that name in this folder
     #[arg(value_name = "FILE")]
     local: Option<PathBuf>,
+    /// Compare without the line ///DATE, which controllers rewrite
+    #[arg(long)]
+    ignore_header: bool,
 }
 
 impl Command for Diff {
@@ -44,7 +47,7 @@ impl Command for Diff {
         let shown = Shown::new(link.encoding, file.as_bytes());
         let mut theirs = Vec::new();
         let mut progress = screen.bytes_progress(&shown.name, None);
-        let mut comparer = Comparer::new(source.pieces()?);
+        let mut comparer = Comparer::new(source.pieces()?, self.ignore_header);
         transfer::fetch(link, &file, |block| {
             progress.advance(block.len() as u64);
             // One byte more than can be shown tells that there is more.
@@ -66,6 +69,9 @@ impl Command for Diff {
                 }
                 ours.extend(piece);
             }
+            if self.ignore_header {
+                (theirs, ours) = (WithoutDate::of(&theirs), WithoutDate::of(&ours));
+            }
             TextDifference::of(link.encoding, &theirs, &ours)
         } else {
             None
@@ -83,6 +89,7 @@ pub struct Difference {
     path: String,
     /// Byte for byte.
     equal: bool,
+    /// Without what --ignore-header leaves out, here and below.
     controller_bytes: u64,
     local_bytes: u64,
     /// Where the first difference is, counted from 0.

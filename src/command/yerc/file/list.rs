@@ -4,13 +4,15 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::name::{Shown, TypeArg, type_word};
+use super::name::{Shown, TypeArg, type_word, word_of};
 use super::transfer;
+use crate::command::backup;
+use crate::command::items::{self, ItemError};
 use crate::command::yerc::Family;
 use crate::command::{Command, Context, Report};
-use crate::controller::yerc::files::{self, FileType};
-use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Table, Tone, View};
+use crate::controller::yerc::files;
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
 
 /// Lists the files on the controller.
 #[derive(Debug, Args)]
@@ -18,6 +20,13 @@ pub struct List {
     /// Which types, such as jbi,dat
     #[arg(long = "type", value_name = "TYPE", value_delimiter = ',', ignore_case = true, default_value = "jbi")]
     types: Vec<TypeArg>,
+    /// A filter as it is sent instead: '', '*.*' or '*.JBI' and the like
+    #[arg(long, value_name = "FILTER", conflicts_with = "types", value_parser = filter)]
+    filter: Option<String>,
+}
+
+fn filter(text: &str) -> Result<String, String> {
+    files::list_by(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
 }
 
 impl Command for List {
@@ -27,30 +36,40 @@ impl Command for List {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Listing, Failure> {
         let Context { link, screen, .. } = context;
-        let types = TypeArg::chosen(&self.types);
+        let filters = match &self.filter {
+            Some(filter) => vec![(filter.clone(), None)],
+            None => TypeArg::chosen(&self.types).into_iter().map(|kind| (kind.filter(), Some(kind))).collect(),
+        };
+        let requests = filters.iter().map(|(filter, _)| files::list_by(filter));
+        let requests: Vec<_> = requests.collect::<Result<_, _>>().map_err(|error| Failure::usage(error.to_string()))?;
         if link.is_dry() {
-            transfer::foresee_all(link, types.iter().map(|kind| files::list(*kind)));
+            transfer::foresee_all(link, requests);
             return Ok(Listing::default());
         }
-        let mut listing = Listing::default();
+        let mut listing = Listing { asked: filters.len(), ..Listing::default() };
         // The file service may be busy with what somebody else broke off.
         let _looking = screen.spinner("looking for files");
-        for kind in &types {
-            let listed = transfer::list(link, *kind).await;
-            match listed.map_err(|failure| transfer::about(&kind.filter(), failure)) {
+        for ((filter, kind), request) in filters.iter().zip(&requests) {
+            match transfer::list_by(link, request).await {
                 Ok(names) => listing.files.extend(names.iter().map(|name| Listed {
                     name: Shown::new(link.encoding, name),
-                    file_type: type_word(FileType::of(name).unwrap_or(*kind)),
+                    file_type: word_of(name).or(kind.map(type_word)),
                 })),
                 // A controller may show jobs to everybody and parameters to nobody.
-                Err(failure) if failure.kind == Kind::Refused && types.len() > 1 => {
-                    listing.refused.push(RefusedList { file_type: type_word(*kind), error: failure });
+                Err(failure) if backup::goes_on(&failure) && listing.asked > 1 => {
+                    let error = ItemError::new(filter.as_str(), failure);
+                    listing.refused.push(RefusedList { file_type: kind.map(type_word), error });
                 }
-                Err(failure) => return Err(failure),
+                Err(failure) => return Err(transfer::about(&shown(filter), failure)),
             }
         }
         Ok(listing)
     }
+}
+
+/// A filter in messages.
+fn shown(filter: &str) -> String {
+    if filter.is_empty() { "the empty filter".to_owned() } else { filter.to_owned() }
 }
 
 /// Files on the controller.
@@ -58,9 +77,11 @@ impl Command for List {
 pub struct Listing {
     /// In the order of the controller, type by type.
     files: Vec<Listed>,
-    /// Types that the controller refused to list.
+    /// Types that could not be listed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     refused: Vec<RefusedList>,
+    #[serde(skip)]
+    asked: usize,
 }
 
 /// One file.
@@ -68,37 +89,32 @@ pub struct Listing {
 struct Listed {
     #[serde(flatten)]
     name: Shown,
-    /// `jbi`, `dat`, `cnd`, `prm`, `sys` or `lst`.
+    /// `jbi`, `dat`, `cnd`, `prm`, `sys` or `lst`; null for any other extension.
     #[serde(rename = "type")]
-    file_type: &'static str,
+    file_type: Option<&'static str>,
 }
 
 /// One type that could not be listed.
 #[derive(Debug, Serialize, JsonSchema)]
 struct RefusedList {
     #[serde(rename = "type")]
-    file_type: &'static str,
-    error: Failure,
+    file_type: Option<&'static str>,
+    error: ItemError,
 }
 
 impl Report for Listing {
     fn view(&self) -> View {
         let mut table = Table::new(&["name", "type"], "no files of this type");
         for file in &self.files {
-            table.row([file.name.name.as_str().into(), file.file_type.into()]);
+            table.row([file.name.name.as_str().into(), Cell::maybe(file.file_type)]);
         }
         for list in &self.refused {
-            table.row([Cell::from("(refused)").tone(Tone::Bad), list.file_type.into()]);
+            table.row([list.error.cell(), Cell::maybe(list.file_type)]);
         }
         View::table(table)
     }
 
     fn failure(&self) -> Option<Failure> {
-        let first = &self.refused.first()?.error;
-        let message = match self.refused.len() {
-            1 => first.message.clone(),
-            more => format!("{more} types were refused: {}", first.message),
-        };
-        Some(Failure { message, ..first.clone() })
+        items::verdict(self.asked, self.refused.iter().map(|list| &list.error))
     }
 }

@@ -18,6 +18,7 @@ mod transfer;
 
 pub use backup::Backup;
 pub use restore::Restore;
+pub(super) use transfer::taken as download_failed;
 
 use super::Family;
 use crate::command::commands;

@@ -65,6 +65,11 @@ impl TypeArg {
     }
 }
 
+/// The type of a file in reports; null where its extension is not one of the manuals.
+pub fn word_of(name: &[u8]) -> Option<&'static str> {
+    FileType::of(name).map(type_word)
+}
+
 /// A type in reports and manifests: `jbi`.
 pub fn type_word(kind: FileType) -> &'static str {
     match kind {
@@ -90,6 +95,14 @@ pub fn typed(encoding: Encoding, text: &str) -> Result<FileName, Failure> {
         })?
     };
     exact(bytes)
+}
+
+/// The name under which a file is sent.
+pub fn to_send(file: FileName) -> Result<FileName, Failure> {
+    match file.check_load() {
+        Ok(()) => Ok(file),
+        Err(error) => Err(Failure::usage(error.to_string()).hint("jobs are named as in TESTJOB.JBI")),
+    }
 }
 
 /// Several of them, each once.
@@ -127,8 +140,7 @@ mod tests {
         assert_eq!(name("てすと.JBI"), Ok(b"\x82\xC4\x82\xB7\x82\xC6.JBI".to_vec()));
         assert_eq!(name("A\\xff.JBI"), Ok(b"A\xff.JBI".to_vec()));
         assert_eq!(name("hex:41FF2e4a4249"), Ok(b"A\xff.JBI".to_vec()));
-        for wrong in
-            ["hex:4", "hex:4g", "", "A", "A.TXT", "*.JBI", "?.JBI", "../A.JBI", "용접.JBI", "/SPDRV/CMOSBK.BIN"]
+        for wrong in ["hex:4", "hex:4g", "", "A", "A.", "*.JBI", "?.JBI", "../A.JBI", "용접.JBI", "/SPDRV/CMOSBK.BIN"]
         {
             let failure = name(wrong).unwrap_err();
             assert_eq!(failure.kind.exit(), 2, "{wrong}");

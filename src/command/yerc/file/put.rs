@@ -14,7 +14,7 @@ use crate::command::yerc::Family;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;
-use crate::controller::yerc::files::FileName;
+use crate::controller::yerc::files::{FileName, FileType};
 use crate::failure::Failure;
 
 /// Sends files to the controller.
@@ -33,6 +33,9 @@ pub struct Put {
     /// Read every file back and compare
     #[arg(long)]
     verify: bool,
+    /// Compare without the line ///DATE, which controllers rewrite
+    #[arg(long, requires = "verify")]
+    ignore_header: bool,
     /// Replace a job that the controller does not overwrite by itself
     #[arg(long)]
     replace: bool,
@@ -60,8 +63,18 @@ impl Command for Put {
         let Context { link, screen, .. } = context;
         let mut deliveries = self.deliveries(link.encoding)?;
         let mut results: Vec<FileResult> = Vec::with_capacity(deliveries.len());
-        for Delivery { file, content } in &deliveries {
-            results.push(FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(content.path())));
+        for delivery in &deliveries {
+            let Delivery { file, content } = delivery;
+            let mut result = FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(content.path()));
+            if let Some((own, sent)) = delivery.other_name(link.encoding) {
+                screen.note(&format!(
+                    "warning: {} says //NAME {own} but is sent as {sent}: a controller may refuse it, or store it as \
+                     {own}",
+                    content.path().display()
+                ));
+                result.notes.push("name_differs");
+            }
+            results.push(result);
         }
         if link.is_dry() {
             for Delivery { file, content } in &mut deliveries {
@@ -69,7 +82,7 @@ impl Command for Put {
             }
             return Ok(Results::new(results, SHAPE));
         }
-        let manner = Manner { verify: self.verify, replace: self.replace };
+        let manner = Manner { verify: self.verify, ignore_header: self.ignore_header, replace: self.replace };
         for (delivery, result) in deliveries.iter_mut().zip(&mut results) {
             let outcome = deliver(link, screen, delivery, manner, result).await;
             if !result.settle(outcome) {
@@ -93,12 +106,15 @@ impl Put {
                 Some(name) => name::typed(encoding, name)?,
                 None => named_after(encoding, path)?,
             };
+            let file = name::to_send(file)?;
             if deliveries.iter().any(|other| other.file == file) {
                 return Err(Failure::usage(format!("{}: another file has the same name", path.display()))
                     .hint("--as gives one of them another name; send it on its own"));
             }
             let mut content = Content::open(path)?;
-            content.check_job(file.file_type(), rules)?;
+            if file.file_type() == Some(FileType::Jbi) {
+                content.check_job(rules)?;
+            }
             deliveries.push(Delivery { file, content });
         }
         Ok(deliveries)
@@ -126,6 +142,7 @@ mod tests {
             name: None,
             fix_line_endings: false,
             verify: false,
+            ignore_header: false,
             replace: false,
             force: false,
         }

@@ -35,6 +35,9 @@ pub struct Restore {
     /// Read every file back and compare
     #[arg(long)]
     verify: bool,
+    /// Compare without the line ///DATE, which controllers rewrite
+    #[arg(long)]
+    ignore_header: bool,
     /// Replace jobs that the controller does not overwrite by itself
     #[arg(long)]
     replace: bool,
@@ -67,7 +70,17 @@ impl Restore {
         if machine {
             types.extend([TypeArg::Lst, TypeArg::Prm, TypeArg::Sys]);
         }
-        Self { folder, only: Vec::new(), types, verify: false, replace: true, differing: true, patterns, force }
+        Self {
+            folder,
+            only: Vec::new(),
+            types,
+            verify: false,
+            ignore_header: false,
+            replace: true,
+            differing: true,
+            patterns,
+            force,
+        }
     }
 }
 
@@ -115,12 +128,12 @@ impl Command for Restore {
             }
             return Ok(Results::new(results, SHAPE));
         }
-        let manner = Manner { verify: self.verify, replace: self.replace };
+        let manner = Manner { verify: self.verify, ignore_header: self.ignore_header, replace: self.replace };
         let total = deliveries.len();
         for (number, (delivery, result)) in deliveries.iter_mut().zip(&mut results).enumerate() {
             screen.step(&format!("{}/{total} {}", number + 1, result.name.name));
             if self.differing {
-                match transfer::is_same(link, screen, &delivery.file, &mut delivery.content).await {
+                match transfer::is_same(link, screen, &delivery.file, &mut delivery.content, self.ignore_header).await {
                     Ok(true) => {
                         result.state = State::Kept;
                         continue;
@@ -158,8 +171,9 @@ impl Restore {
             if manifest.entry_of(file.as_bytes()).and_then(|entry| entry.copy.as_ref()).is_none() {
                 return Err(Failure::usage(format!("the backup has no {shown}")).hint(format!("{MANIFEST} lists it")));
             }
-            if !types.contains(&file.file_type()) {
-                let kind = name::type_word(file.file_type());
+            let kind = file.file_type();
+            if !kind.is_some_and(|kind| types.contains(&kind)) {
+                let kind = kind.map_or("of another extension", name::type_word);
                 return Err(Failure::usage(format!("{shown} is of type {kind}, which is not asked for"))
                     .hint(format!("add --type {kind}; parameters and system data change the controller itself")));
             }
@@ -169,7 +183,7 @@ impl Restore {
         let mut chosen = Vec::new();
         for entry in copied().filter(|entry| self.patterns.has(&entry.name)) {
             let file = controller_file(entry)?;
-            if types.contains(&file.file_type()) && (only.is_empty() || only.contains(&file)) {
+            if file.file_type().is_some_and(|kind| types.contains(&kind)) && (only.is_empty() || only.contains(&file)) {
                 chosen.push((file, entry));
             }
         }
@@ -179,7 +193,7 @@ impl Restore {
             )
             .hint("add --machine if that is meant"));
         }
-        let place = |file: &FileName| ORDER.iter().position(|kind| *kind == file.file_type());
+        let place = |file: &FileName| ORDER.iter().position(|kind| Some(*kind) == file.file_type());
         chosen.sort_by_key(|(file, _)| place(file));
         Ok(chosen)
     }

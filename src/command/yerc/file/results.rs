@@ -1,7 +1,7 @@
 //! What became of each of several files.
 //!
-//! One file that fails is a failed command. Of several, each has its result, the others go on after a refusal, and the
-//! exit code is that of the gravest failure.
+//! One file that fails is a failed command. Of several, each has its result, and the others go on after a refusal; the
+//! exit code is 9 where some were done, and otherwise that of the gravest failure.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -10,8 +10,9 @@ use super::name::Shown;
 use super::transfer::about;
 use crate::command::Report;
 use crate::command::backup::{self, Item, Items, gravity};
+use crate::command::items::brief;
 use crate::command::manifest::State;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
 
 /// One file.
@@ -28,7 +29,8 @@ pub struct FileResult {
     /// Size of the whole.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bytes: Option<u64>,
-    /// What was done beyond the plain transfer: `replaced`, `verified`, `line_endings_fixed`, `empty`.
+    /// What was done beyond the plain transfer: `replaced`, `verified`, `line_endings_fixed`, `name_differs`,
+    /// `empty`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<&'static str>,
     /// Why it failed.
@@ -166,31 +168,24 @@ impl Report for Results {
             0 => format!("{} of {total} files failed", self.failed),
             left => format!("{} of {total} files failed, {left} not tried", self.failed),
         };
-        Some(Failure { message: format!("{failed}: {name}: {}", gravest.message), ..gravest.clone() })
+        // Some done, some not.
+        let kind = if self.done > 0 { Kind::Mixed } else { gravest.kind };
+        Some(Failure { kind, message: format!("{failed}: {name}: {}", gravest.message), ..gravest.clone() })
     }
 }
 
 fn notes(file: &FileResult) -> impl Iterator<Item = &'static str> {
     file.notes.iter().map(|note| match *note {
         "line_endings_fixed" => "line endings fixed",
+        "name_differs" => "//NAME differs",
         note => note,
     })
-}
-
-/// What fits a column: the first sentence and the code.
-fn brief(failure: &Failure) -> String {
-    let sentence = failure.message.split(". ").next().unwrap_or_default();
-    match &failure.code {
-        Some(code) => format!("{sentence} [{code}]"),
-        None => sentence.to_owned(),
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::controller::text::Encoding;
-    use crate::failure::Kind;
     use crate::output::render;
 
     const SHAPE: Shape = Shape { done: "saved", has_paths: false, has_bytes: true };
@@ -209,7 +204,7 @@ mod tests {
         let results = Results::new(files(), SHAPE);
         assert_eq!((results.done, results.failed, results.not_tried), (1, 2, 1));
         let failure = results.failure().unwrap();
-        assert_eq!(failure.kind, Kind::NoAnswer);
+        assert_eq!((failure.kind, failure.kind.exit()), (Kind::Mixed, 9));
         assert_eq!(failure.message, "2 of 4 files failed, 1 not tried: C.JBI: silence");
         assert_eq!(failure.hint.as_deref(), Some("cable"));
         let text = render::text(&results.view(), 80, false);

@@ -8,6 +8,7 @@ use crate::command::yerc::link::{Link, Refusal};
 use crate::controller::yerc::files::{self, FileName, FileType, split_list};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::session::{DownloadEnd, UploadEnd};
+use crate::controller::yerc::table::service;
 use crate::controller::yerc::wire::Status;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -27,9 +28,14 @@ const JOB_EXISTS: &str = "0x4030";
 
 /// The names of one type, in the order of the controller.
 pub async fn list(link: &mut Link, kind: FileType) -> Result<Vec<Vec<u8>>, Failure> {
+    list_by(link, &files::list(kind)).await
+}
+
+/// The names that a request for a list brings.
+pub async fn list_by(link: &mut Link, request: &Request) -> Result<Vec<Vec<u8>>, Failure> {
     let mut data = Vec::new();
     let end = link
-        .download(&files::list(kind), MAX_LIST, None, |piece| {
+        .download(request, MAX_LIST, None, |piece| {
             data.extend_from_slice(piece);
             Ok(())
         })
@@ -40,8 +46,11 @@ pub async fn list(link: &mut Link, kind: FileType) -> Result<Vec<Vec<u8>>, Failu
             Ok(Vec::new())
         }
         end => {
-            taken(&end)?;
-            Ok(split_list(&data).into_iter().map(<[u8]>::to_vec).collect())
+            taken(service::LIST, &end)?;
+            let names = split_list(&data).map_err(|error| {
+                Failure::new(Kind::Malformed, error.to_string()).hint("record it with --trace and report it")
+            })?;
+            Ok(names.into_iter().map(<[u8]>::to_vec).collect())
         }
     }
 }
@@ -52,7 +61,7 @@ pub async fn fetch(
     file: &FileName,
     take: impl FnMut(&[u8]) -> Result<(), Failure>,
 ) -> Result<u64, Failure> {
-    taken(&link.download(&file.save(), MAX_FILE, None, take).await?)
+    taken(service::SAVE, &link.download(&file.save(), MAX_FILE, None, take).await?)
 }
 
 /// As [`fetch`] for a file that was just listed: one that has no content then is empty, not missing.
@@ -63,7 +72,7 @@ pub async fn fetch_listed(
 ) -> Result<u64, Failure> {
     match link.download(&file.save(), MAX_FILE, None, take).await? {
         DownloadEnd::Nothing(Status { added: NO_FILE_OR_EMPTY, .. }) => Ok(0),
-        end => taken(&end),
+        end => taken(service::SAVE, &end),
     }
 }
 
@@ -73,10 +82,11 @@ pub async fn is_same(
     screen: &Screen,
     file: &FileName,
     content: &mut Content,
+    ignore_header: bool,
 ) -> Result<bool, Failure> {
     let name = link.encoding.decode(file.as_bytes());
     let mut progress = screen.bytes_progress(&format!("{name} (comparing)"), Some(content.size()));
-    let mut comparer = Comparer::new(content.pieces()?);
+    let mut comparer = Comparer::new(content.pieces()?, ignore_header);
     let fetched = fetch(link, file, |block| {
         progress.advance(block.len() as u64);
         comparer.take(block)
@@ -96,7 +106,7 @@ pub async fn fetch_backup(
 ) -> Result<Option<u64>, Failure> {
     match link.download(&files::batch_backup(), MAX_FILE, Some(wait), take).await? {
         DownloadEnd::Finished => Ok(None),
-        end => taken(&end).map(Some),
+        end => taken(service::SAVE, &end).map(Some),
     }
 }
 
@@ -109,7 +119,7 @@ pub async fn remove(link: &mut Link, file: &FileName) -> Result<(), Failure> {
     match reply.status {
         // "Done" with an added status beside it tells of a file that is not there (DX 3.1).
         status if status.is_ok() && status.added == 0 => Ok(()),
-        status => Err(Refusal(status).into()),
+        status => Err(Refusal::of_file(service::DELETE, status).into()),
     }
 }
 
@@ -130,7 +140,17 @@ pub async fn send(
             Ok(piece)
         })
         .await?;
-    given(&end, total, &link.encoding.decode(file.as_bytes()), &path)
+    let name = link.encoding.decode(file.as_bytes());
+    match end {
+        UploadEnd::Unnumbered { bytes, .. } if is_listed(link, file).await => Ok(bytes),
+        end => given(&end, total, &name, &path),
+    }
+}
+
+/// Whether the controller lists a file of this name.
+async fn is_listed(link: &mut Link, file: &FileName) -> bool {
+    let Some(kind) = file.file_type() else { return false };
+    list(link, kind).await.is_ok_and(|names| names.iter().any(|name| name.eq_ignore_ascii_case(file.as_bytes())))
 }
 
 /// What a dry run would send for [`send`].
@@ -160,12 +180,15 @@ pub fn about(name: &str, failure: Failure) -> Failure {
     Failure { message: format!("{name}: {}", failure.message), ..failure }
 }
 
-fn taken(end: &DownloadEnd) -> Result<u64, Failure> {
+/// The bytes that came, or how the transfer failed.
+pub fn taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
     match *end {
         DownloadEnd::Complete { bytes, .. } => Ok(bytes),
-        DownloadEnd::Nothing(status) | DownloadEnd::Refused { status, bytes: 0 } => Err(Refusal(status).into()),
+        DownloadEnd::Nothing(status) | DownloadEnd::Refused { status, bytes: 0 } => {
+            Err(Refusal::of_file(service, status).into())
+        }
         DownloadEnd::Refused { status, bytes } => {
-            Err(about(&format!("broken off after {bytes} bytes"), Refusal(status).into()))
+            Err(about(&format!("broken off after {bytes} bytes"), Refusal::of_file(service, status).into()))
         }
         DownloadEnd::Finished => Err(Failure::new(Kind::Malformed, "the controller says done, but sent nothing")
             .hint("`yerc file list` tells whether the file is there; it may be empty")),
@@ -191,6 +214,9 @@ fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Fai
     };
     match *end {
         UploadEnd::Complete { bytes, .. } => Ok(bytes),
+        UploadEnd::Unnumbered { .. } => unknown(format!(
+            "all was sent, but the last acknowledgement bears no block number, and no list shows {name}"
+        )),
         UploadEnd::Empty => {
             Err(Failure::usage("an empty file cannot be sent").hint("check that it is the file that was meant"))
         }
@@ -198,13 +224,15 @@ fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Fai
             Err(Failure::usage("the file is too long for a transfer").hint("check that it is the file that was meant"))
         }
         UploadEnd::Refused { status, sent, repeated: true, .. } if sent >= total => {
-            let Failure { message, .. } = Refusal(status).into();
+            let Failure { message, .. } = Refusal::of_file(service::LOAD, status).into();
             unknown(format!("the last block was sent again and then refused: {message} The file may be there"))
         }
         // At first, or as a whole at the end.
-        UploadEnd::Refused { status, sent, .. } if sent == 0 || sent >= total => Err(Refusal(status).into()),
+        UploadEnd::Refused { status, sent, .. } if sent == 0 || sent >= total => {
+            Err(Refusal::of_file(service::LOAD, status).into())
+        }
         UploadEnd::Refused { status, taken, .. } => {
-            Err(about(&format!("after {taken} of {total} bytes"), Refusal(status).into()))
+            Err(about(&format!("after {taken} of {total} bytes"), Refusal::of_file(service::LOAD, status).into()))
         }
         UploadEnd::OutcomeUnknown { sent, .. } if sent >= total => {
             unknown("all was sent, but the last acknowledgement did not come: the file may be there".to_owned())
@@ -221,6 +249,7 @@ fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Fai
 mod tests {
     use super::*;
     use crate::controller::yerc::session::Counters;
+    use crate::controller::yerc::table::service;
 
     #[test]
     fn a_refusal_of_a_repeated_last_block_leaves_the_outcome_open() {
@@ -247,7 +276,7 @@ mod tests {
         {
             let end =
                 if status.is_ok() { DownloadEnd::Nothing(status) } else { DownloadEnd::Refused { status, bytes: 0 } };
-            let failure = taken(&end).unwrap_err();
+            let failure = taken(service::SAVE, &end).unwrap_err();
             assert_eq!(failure.kind, Kind::Refused);
             assert!(failure.hint.unwrap().contains("file list"));
         }
@@ -261,7 +290,7 @@ mod tests {
             (DownloadEnd::Finished, Kind::Malformed),
             (DownloadEnd::TooLarge { limit: 5, bytes: 4 }, Kind::Malformed),
         ] {
-            assert_eq!(taken(&end).unwrap_err().kind, kind);
+            assert_eq!(taken(service::SAVE, &end).unwrap_err().kind, kind);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `yerc io get`.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::HashSet;
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -8,8 +8,10 @@ use serde::Serialize;
 
 use super::super::Family;
 use super::super::orders::usage;
+use super::super::parts::{Parts, read_in_parts};
 use super::signal::{self, Signals};
 use super::{GroupState, SignalState, group_table, signal_table};
+use crate::command::items::{self, ItemError};
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::signal::Signal;
 use crate::controller::yerc::variables::{parse_numbers, plan_io_reads};
@@ -54,14 +56,18 @@ impl Command for Get {
         for &group in &wanted {
             signal::class(model, group)?;
         }
-        let steps = plan_io_reads(model, &wanted).map_err(usage)?;
-        let bytes: BTreeMap<u16, u8> = link.ask_all(&steps).await?.into_iter().flatten().collect();
+        let plan = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
+        let bytes = read_in_parts(link, plan, &once(wanted.into_iter()), |_| Parts::Halves, |_, _| {}).await?;
+        let byte = |group| Some(bytes.get(&group)?.clone().map_err(Failure::from));
         let signals = signals.into_iter().filter_map(|signal| {
-            let byte = *bytes.get(&signal.group())?;
-            Some(SignalState::new(model, signal, signal.is_on(byte)))
+            let on = byte(signal.group())?.map(|byte| signal.is_on(byte));
+            Some(SignalState::new(model, signal, on))
         });
-        let groups = groups.into_iter().filter_map(|group| Some(GroupState::new(model, group, *bytes.get(&group)?)));
-        Ok(States { signals: signals.collect::<Result<_, _>>()?, groups: groups.collect::<Result<_, _>>()? })
+        let groups = groups.into_iter().filter_map(|group| Some(GroupState::new(model, group, byte(group)?)));
+        let signals = signals.collect::<Result<_, _>>()?;
+        let report = States { signals, groups: groups.collect::<Result<_, _>>()? };
+        items::nothing(report.asked(), report.errors())?;
+        Ok(report)
     }
 }
 
@@ -78,8 +84,23 @@ pub struct States {
     groups: Vec<GroupState>,
 }
 
+impl States {
+    fn asked(&self) -> usize {
+        self.signals.len() + self.groups.len()
+    }
+
+    fn errors(&self) -> impl Iterator<Item = &ItemError> {
+        let signals = self.signals.iter().filter_map(|state| state.outcome.error());
+        signals.chain(self.groups.iter().filter_map(|state| state.outcome.error()))
+    }
+}
+
 impl Report for States {
     fn view(&self) -> View {
         View { sections: [signal_table(&self.signals), group_table(&self.groups)].into_iter().flatten().collect() }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::verdict(self.asked(), self.errors())
     }
 }

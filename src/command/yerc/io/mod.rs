@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::Family;
 use crate::command::commands;
+use crate::command::items::{ItemError, ItemOutcome};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::signal::Signal;
 use crate::failure::Failure;
@@ -27,29 +28,36 @@ commands! {
 }
 
 /// A signal and its state.
-#[derive(Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, PartialEq, Serialize, JsonSchema)]
 struct SignalState {
     signal: u32,
     /// `#20010`.
     name: String,
     /// `external input`.
     class: &'static str,
-    on: bool,
     /// The group of eight that holds it.
     group: u16,
     bit: u8,
+    #[serde(flatten)]
+    outcome: ItemOutcome<On>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+struct On {
+    on: bool,
 }
 
 impl SignalState {
-    fn new(model: Model, signal: Signal, on: bool) -> Result<Self, Failure> {
+    fn new(model: Model, signal: Signal, on: Result<bool, Failure>) -> Result<Self, Failure> {
         let class = signal::class(model, signal.group())?.meaning;
-        let (number, group, bit) = (signal.number(), signal.group(), signal.bit());
-        Ok(Self { signal: number, name: signal.to_string(), class, on, group, bit })
+        let (number, group, bit, name) = (signal.number(), signal.group(), signal.bit(), signal.to_string());
+        let outcome = ItemOutcome::new(name.as_str(), on.map(|on| On { on }));
+        Ok(Self { signal: number, name, class, group, bit, outcome })
     }
 }
 
 /// A group of eight signals.
-#[derive(Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, PartialEq, Serialize, JsonSchema)]
 struct GroupState {
     group: u16,
     /// The first of its signals.
@@ -58,6 +66,12 @@ struct GroupState {
     last: String,
     /// `external input`.
     class: &'static str,
+    #[serde(flatten)]
+    outcome: ItemOutcome<GroupValue>,
+}
+
+#[derive(Debug, PartialEq, Eq, Serialize, JsonSchema)]
+struct GroupValue {
     /// The first signal is the least significant bit.
     value: u8,
     /// `0xa5`.
@@ -65,14 +79,14 @@ struct GroupState {
 }
 
 impl GroupState {
-    fn new(model: Model, group: u16, value: u8) -> Result<Self, Failure> {
+    fn new(model: Model, group: u16, value: Result<u8, Failure>) -> Result<Self, Failure> {
+        let value = value.map(|value| GroupValue { value, value_hex: format!("{value:#04x}") });
         Ok(Self {
             group,
             first: signal::name(group, 0),
             last: signal::name(group, 7),
             class: signal::class(model, group)?.meaning,
-            value,
-            value_hex: format!("{value:#04x}"),
+            outcome: ItemOutcome::new(format!("group {group}"), value),
         })
     }
 }
@@ -80,7 +94,11 @@ impl GroupState {
 fn signal_table(signals: &[SignalState]) -> Option<Section> {
     let mut table = Table::new(&["signal", "class", "state"], "no signals");
     for state in signals {
-        table.row([state.name.as_str().into(), state.class.into(), Cell::switch(state.on)]);
+        let on = match (state.outcome.data(), state.outcome.error()) {
+            (Some(On { on }), _) => Cell::switch(*on),
+            (None, error) => error.map_or_else(|| "-".into(), ItemError::cell),
+        };
+        table.row([state.name.as_str().into(), state.class.into(), on]);
     }
     (!signals.is_empty()).then_some(Section::Table(table))
 }
@@ -88,12 +106,16 @@ fn signal_table(signals: &[SignalState]) -> Option<Section> {
 fn group_table(groups: &[GroupState]) -> Option<Section> {
     let mut table = Table::new(&["group", "signals", "class", "value", "7 to 0"], "no groups");
     for state in groups {
+        let [value, bits] = match (state.outcome.data(), state.outcome.error()) {
+            (Some(group), _) => [Cell::from(group.value_hex.as_str()), format!("{:08b}", group.value).into()],
+            (None, error) => ["-".into(), error.map_or_else(|| "-".into(), ItemError::cell)],
+        };
         table.row([
             state.group.into(),
             format!("{} to {}", state.first, state.last).into(),
             state.class.into(),
-            state.value_hex.as_str().into(),
-            format!("{:08b}", state.value).into(),
+            value,
+            bits,
         ]);
     }
     (!groups.is_empty()).then_some(Section::Table(table))

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::super::Family;
 use super::super::orders::usage;
+use super::super::parts::{Parts, read_in_parts};
 use super::super::register::unsigned;
 use super::super::writes::{Order, runs, write_all};
 use super::signal;
@@ -18,7 +19,7 @@ use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yerc::query::Query as _;
 use crate::controller::yerc::signal::{Signal, SignalError};
-use crate::controller::yerc::variables::{IoStep, WriteIoStep, plan_io_reads, plan_io_writes};
+use crate::controller::yerc::variables::{IoStep, PlannedRead as _, WriteIoStep, plan_io_reads, plan_io_writes};
 use crate::failure::Failure;
 use crate::output::view::View;
 
@@ -70,7 +71,7 @@ impl FromStr for Whole {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (group, value) = text.split_once('=').ok_or("a group, '=' and a value are expected, as in 2701=0xA5")?;
-        let number = unsigned(group).filter(|_| !group.starts_with("0x")).and_then(|group| u16::try_from(group).ok());
+        let number = unsigned(group).and_then(|group| u16::try_from(group).ok());
         let group = number.ok_or_else(|| format!("'{group}' is no group; #27010 to #27017 are group 2701"))?;
         let parsed = unsigned(value).and_then(|value| u8::try_from(value).ok());
         let value = parsed.ok_or_else(|| format!("'{value}' is not a number from 0 to 255 (0x00 to 0xFF)"))?;
@@ -113,18 +114,23 @@ impl Command for Set {
         if link.is_dry() && !reads.is_empty() {
             return foresee(link, &reads, &changes).await;
         }
-        let found: BTreeMap<u16, u8> = match &reads[..] {
-            [] => BTreeMap::new(),
-            reads => link.ask_all(reads).await?.into_iter().flatten().collect(),
-        };
+        let plan = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
+        let mut found = BTreeMap::new();
+        for (group, outcome) in read_in_parts(link, plan, &partial, |_| Parts::Halves, |_, _| {}).await? {
+            let byte = outcome.map_err(|denied| {
+                let failure = Failure::from(denied);
+                Failure { message: format!("group {group}: {}; nothing was written", failure.message), ..failure }
+            })?;
+            found.insert(group, byte);
+        }
         let values: Vec<(u16, u8)> = changes
             .iter()
             .map(|(group, change)| (*group, change.apply(found.get(group).copied().unwrap_or_default())))
             .collect();
         let steps = plan_io_writes(model, &values).map_err(usage)?;
         write_all(link, screen, &steps).await?;
-        let signals = self.signals.iter().map(|switch| SignalState::new(model, switch.signal, switch.on));
-        let groups = values.into_iter().map(|(group, value)| GroupState::new(model, group, value));
+        let signals = self.signals.iter().map(|switch| SignalState::new(model, switch.signal, Ok(switch.on)));
+        let groups = values.into_iter().map(|(group, value)| GroupState::new(model, group, Ok(value)));
         Ok(Switched { signals: signals.collect::<Result<_, _>>()?, groups: groups.collect::<Result<_, _>>()? })
     }
 }

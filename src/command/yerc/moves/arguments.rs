@@ -4,6 +4,7 @@ use std::fmt;
 
 use clap::{Args, ValueEnum};
 
+use crate::command::yerc::numbers::within;
 use crate::command::yerc::position::{extended_words, form_words, in_a_line};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
@@ -125,11 +126,11 @@ pub(super) struct Frame {
     #[arg(long, value_enum, default_value = "base")]
     pub(super) coordinate: Coordinate,
     /// Tool number
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=63))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = within::<u32>(0, 63))]
     pub(super) tool: u32,
     /// User coordinate number
     #[arg(long, value_name = "N", default_value_t = 0, required_if_eq("coordinate", "user"),
-        value_parser = clap::value_parser!(u32).range(0..=63))]
+        value_parser = within::<u32>(0, 63))]
     pub(super) user: u32,
 }
 
@@ -323,7 +324,7 @@ pub(super) fn robot_pulses(text: &str) -> Result<Values, String> {
 }
 
 fn list(text: &str, unit: Unit, count: std::ops::RangeInclusive<usize>) -> Result<Values, String> {
-    let values = text.split(',').map(|value| unit.parse(value.trim())).collect::<Result<Vec<_>, _>>();
+    let values = text.split(',').map(|value| unit.parse_steps(value.trim())).collect::<Result<Vec<_>, _>>();
     let values = values.map_err(|error| error.to_string())?;
     if count.contains(&values.len()) {
         return Ok(Values(values));
@@ -438,6 +439,7 @@ mod tests {
         assert!(coordinates("1,2,3").unwrap_err().contains("3 given"));
         assert!(coordinates("1,2,3,4,5,6.00001").unwrap_err().starts_with("rz: "));
         assert_eq!(robot_pulses("1,2,3,4,5,-6"), Ok(Values(vec![1, 2, 3, 4, 5, -6])));
+        assert_eq!(robot_pulses("0x10,2,3,4,5,-0x6"), Ok(Values(vec![16, 2, 3, 4, 5, -6])));
         assert!(robot_pulses("1,2,3,4,5").is_err());
         assert!(robot_pulses("1,2,3,4,5,6.5").is_err());
         assert!(base_lengths("1,2,3,4").is_err());

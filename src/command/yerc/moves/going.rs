@@ -212,9 +212,12 @@ async fn refuse_silent_zeros(link: &mut Link, group: Group, named: usize, flag: 
     }
     let question = ReadPosition::new(link.model, group, Coordinates::Pulse).map_err(usage)?;
     match link.try_ask(&question).await? {
-        Ok(position) => silent_zero(group, &position, named, flag).map_or(Ok(()), Err),
+        Ok(position) => {
+            let (axes, _) = link.fit(group, Coordinates::Pulse, position.axes).await;
+            silent_zero(group, &Position { axes, ..position }, named, flag).map_or(Ok(()), Err)
+        }
         // A group that the controller does not have cannot move.
-        Err(Refusal(status)) if is_absent(status) => Ok(()),
+        Err(Refusal { status, .. }) if is_absent(status) => Ok(()),
         // Any other reason leaves open where the axes stand.
         Err(refusal) => {
             let failure = Failure::from(refusal);

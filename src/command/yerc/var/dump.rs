@@ -68,10 +68,10 @@ impl Command for Dump {
         .await?;
         drop(progress);
         let refused =
-            |reference: &&Reference| matches!(answers.get(reference), Some(Err(refusal)) if !is_undefined(*refusal));
+            |reference: &&Reference| matches!(answers.get(reference), Some(Err(denied)) if !is_undefined(denied));
         let missing: Vec<Reference> = references.iter().filter(refused).copied().collect();
-        if let Some(Err(refusal)) = missing.first().and_then(|reference| answers.get(reference)) {
-            let failure = Failure::from(*refusal);
+        if let Some(Err(denied)) = missing.first().and_then(|reference| answers.get(reference)) {
+            let failure = Failure::from(denied.clone());
             let message =
                 format!("{}: {}; no dump was written", listed(missing), failure.message.trim_end_matches('.'));
             return Err(Failure { message, ..failure }.hint("--kinds or --ranges leaves them out"));

@@ -6,14 +6,13 @@ use serde_json::{Map, Value as Json};
 
 use super::in_form;
 use super::position::{self, PositionData};
-use crate::command::yerc::link::Refusal;
+use crate::command::items::ItemError;
+use crate::command::yerc::each::{Denied, Outcome};
 use crate::controller::text::Encoding;
 use crate::controller::text::hex;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::payload::Text;
-use crate::controller::yerc::status;
 use crate::controller::yerc::variables::{Reference, Value, VariableKind};
-use crate::failure::{Failure, Kind};
 
 /// A variable and what it holds.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -23,14 +22,30 @@ pub struct Entry {
     /// `B`, `I`, `D`, `R`, `S`, `P`, `BP` or `EX`.
     kind: &'static str,
     number: u16,
+    /// Whether the controller answered, if only that there is no value; not in files.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "bool")]
+    ok: Option<bool>,
     /// Null where the controller has none.
     value: Option<Data>,
     /// The bytes on the wire, where the value does not lead back to them.
     #[serde(skip_serializing_if = "Option::is_none")]
     value_hex: Option<String>,
-    /// Why there is no value.
+    /// The variable exists and has not been taught yet.
+    #[serde(skip_serializing_if = "is_false")]
+    undefined: bool,
+    /// Why the controller did not answer.
     #[serde(skip_serializing_if = "Option::is_none")]
-    refused: Option<Refused>,
+    #[schemars(with = "ItemError")]
+    error: Option<ItemError>,
+    /// Why there is no value, in a failure.
+    #[serde(skip)]
+    missing: Option<ItemError>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+const fn is_false(flag: &bool) -> bool {
+    !*flag
 }
 
 /// The value of a variable.
@@ -47,48 +62,50 @@ pub enum Data {
     Position(Box<PositionData>),
 }
 
-/// What the controller said instead of a value.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-struct Refused {
-    /// `0xB005`.
-    code: String,
-    /// In words.
-    meaning: String,
-    /// The variable exists and has not been taught yet.
-    undefined: bool,
-}
-
 /// Added status of a variable without a value. The manuals give 0xB001 another meaning too, which cannot occur where
 /// one variable is read (3.3.16; DX chapter 5).
 const UNDEFINED: [u32; 2] = [0xB005, 0xB001];
 
 /// Whether a refusal to read one variable says that it holds nothing.
-pub fn is_undefined(Refusal(status): Refusal) -> bool {
-    UNDEFINED.contains(&status.added)
+pub fn is_undefined(denied: &Denied) -> bool {
+    matches!(denied, Denied::Refused(refusal) if UNDEFINED.contains(&refusal.status.added))
 }
 
 impl Entry {
     /// What a controller answered.
-    pub fn new(reference: Reference, answer: &Result<Value, Refusal>, encoding: Encoding) -> Self {
+    pub fn new(reference: Reference, outcome: &Outcome<Value>, encoding: Encoding) -> Self {
         let (name, kind, number) = (reference.to_string(), reference.kind.letters(), reference.number);
-        let (value, value_hex, refused) = match answer {
-            Ok(value) => {
-                let (data, hex) = data_of(value, encoding);
-                (Some(data), hex, None)
-            }
-            Err(refusal) => {
-                let explanation = status::explain(refusal.0);
-                let meaning = explanation.name.into_owned();
-                (None, None, Some(Refused { code: explanation.code_text, meaning, undefined: is_undefined(*refusal) }))
-            }
+        let known = Self {
+            name,
+            kind,
+            number,
+            ok: Some(true),
+            value: None,
+            value_hex: None,
+            undefined: false,
+            error: None,
+            missing: None,
         };
-        Self { name, kind, number, value, value_hex, refused }
+        match outcome {
+            Ok(value) => {
+                let (data, value_hex) = data_of(value, encoding);
+                Self { value: Some(data), value_hex, ..known }
+            }
+            Err(denied) => {
+                let missing = Some(ItemError::new(reference.to_string(), denied.clone().into()));
+                if is_undefined(denied) {
+                    Self { undefined: true, missing, ..known }
+                } else {
+                    Self { ok: Some(false), error: missing.clone(), missing, ..known }
+                }
+            }
+        }
     }
 
     /// The same without what the controller said, for a file in which null says enough.
     #[must_use]
     pub fn bare(self) -> Self {
-        Self { refused: None, ..self }
+        Self { ok: None, undefined: false, error: None, missing: None, ..self }
     }
 
     /// Its name.
@@ -98,10 +115,10 @@ impl Entry {
 
     /// Its value as a person reads it, or why there is none.
     pub fn shown(&self) -> String {
-        match (&self.value, &self.refused) {
+        match (&self.value, &self.error) {
             (Some(data), _) => data.to_string(),
-            (None, Some(Refused { undefined: false, code, meaning })) => format!("refused: {meaning} ({code})"),
-            (None, _) => "undefined".to_owned(),
+            (None, Some(error)) => error.cell().text,
+            (None, None) => "undefined".to_owned(),
         }
     }
 
@@ -115,11 +132,14 @@ impl Entry {
         self.value.is_some()
     }
 
-    /// Why it has none, as a failure.
-    pub fn failure(&self) -> Option<Failure> {
-        let Refused { code, meaning, .. } = self.refused.as_ref()?;
-        let failure = Failure::new(Kind::Refused, format!("{}: {meaning}", self.name)).code(code.as_str());
-        Some(failure.hint(format!("`armctl explain yerc {code}` tells what to do about it")))
+    /// Why the controller did not answer.
+    pub fn error(&self) -> Option<&ItemError> {
+        self.error.as_ref()
+    }
+
+    /// Why it has no value, whether that was refused or is not there.
+    pub fn missing(&self) -> Option<&ItemError> {
+        self.missing.as_ref()
     }
 }
 
@@ -171,14 +191,16 @@ pub struct Reading {
     pub encoding: Encoding,
 }
 
-const KEYS: [&str; 6] = ["name", "kind", "number", "value", "value_hex", "refused"];
+const KEYS: [&str; 5] = ["name", "kind", "number", "value", "value_hex"];
+/// What a report says beside them.
+const REPORTED: [&str; 3] = ["ok", "undefined", "error"];
 
 impl Reading {
     /// Reads an entry of a dump: the variable, and its value unless that is null. The error begins with the place in the
     /// entry, such as `.value: `.
     pub fn entry(self, entry: &Json) -> Result<(Reference, Option<Value>), String> {
         let object = entry.as_object().ok_or(": an object is expected")?;
-        if let Some(key) = object.keys().find(|key| !KEYS.contains(&key.as_str())) {
+        if let Some(key) = object.keys().find(|key| !KEYS.iter().chain(&REPORTED).any(|known| known == key)) {
             return Err(format!(".{key}: unknown; there are {}", KEYS.join(", ")));
         }
         let name = object.get("name").and_then(Json::as_str).ok_or(".name: a name such as \"B0\" is expected")?;
@@ -278,6 +300,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+    use crate::command::yerc::link::{Asked, Refusal};
     use crate::controller::yerc::wire::Status;
 
     const READING: Reading = Reading { model: Model::Dx200, encoding: Encoding::ShiftJis };
@@ -294,7 +317,10 @@ mod tests {
 
     #[test]
     fn numbers_survive_json() {
-        assert_eq!(round("B7", &Value::Byte(255)), json!({"name": "B7", "kind": "B", "number": 7, "value": 255}));
+        assert_eq!(
+            round("B7", &Value::Byte(255)),
+            json!({"name": "B7", "kind": "B", "number": 7, "ok": true, "value": 255})
+        );
         round("I0", &Value::Integer(-32768));
         round("D0", &Value::Double(i32::MIN));
         assert_eq!(round("R0", &Value::Real(1.1))["value"], json!(1.1));
@@ -311,7 +337,10 @@ mod tests {
     #[test]
     fn strings_survive_json() {
         let s = |bytes: &[u8]| Value::Long(Text::new(bytes).unwrap());
-        assert_eq!(round("S0", &s(b"\x83\x65")), json!({"name": "S0", "kind": "S", "number": 0, "value": "テ"}));
+        assert_eq!(
+            round("S0", &s(b"\x83\x65")),
+            json!({"name": "S0", "kind": "S", "number": 0, "ok": true, "value": "テ"})
+        );
         assert_eq!(round("S0", &s(b"A\xFF"))["value_hex"], json!("41ff"));
         round("S0", &s(b""));
         round("S0", &s(b"\x1b[31m\\x80"));
@@ -340,12 +369,15 @@ mod tests {
     #[test]
     fn refusals_say_whether_there_is_nothing_to_read() {
         let p = Reference::new(VariableKind::P, 3);
-        let undefined = Entry::new(p, &Err(Refusal(Status::refused(0xB005))), READING.encoding);
-        assert_eq!(undefined.shown(), "undefined");
+        let to = Asked::Robot { command: 0x7F, instance: 3 };
+        let refused = |code| Err(Denied::Refused(Refusal { status: Status::refused(code), to }));
+        let undefined = Entry::new(p, &refused(0xB005), READING.encoding);
+        assert_eq!((undefined.shown().as_str(), undefined.error()), ("undefined", None));
         let json = serde_json::to_value(&undefined).unwrap();
         assert_eq!(READING.entry(&json).unwrap(), (p, None));
-        let refused = Entry::new(p, &Err(Refusal(Status::refused(0x2010))), READING.encoding);
-        assert!(refused.shown().starts_with("refused: "), "{}", refused.shown());
+        let refused = Entry::new(p, &refused(0x2010), READING.encoding);
+        assert_eq!(refused.shown(), "the controller refused 0x7F (instance 3): manipulator is moving [0x2010]");
+        assert_eq!(serde_json::to_value(&refused).unwrap()["error"]["asked"], "P3");
     }
 
     #[test]

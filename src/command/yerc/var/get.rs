@@ -9,6 +9,7 @@ use super::entry::Entry;
 use super::in_form;
 use super::read::{once, read_all};
 use crate::command::ValueKind;
+use crate::command::items;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::variables::{Reference, parse_references};
 use crate::failure::Failure;
@@ -16,8 +17,9 @@ use crate::output::view::{Cell, Table, View};
 
 /// Variables to read.
 #[derive(Debug, Args)]
-#[command(after_help = "A position that was never taught has no value: it is shown as undefined (null in JSON). The \
-                        exit code is 3 only if every variable asked for was refused. Many variables take few requests; \
+#[command(after_help = "A position that was never taught has no value: it is shown as undefined (null in JSON). Of \
+                        several, each has its own outcome: the exit code is 9 if some were refused, 3 if all were or \
+                        none has a value. Many variables take few requests; \
                         numbers beyond the standard 0-99 (positions 0-127) exist where the controller's parameters \
                         say so.")]
 pub struct Get {
@@ -54,7 +56,9 @@ impl Command for Get {
             let answer = answers.get(reference)?;
             Some(Entry::new(*reference, answer, link.encoding))
         });
-        Ok(Variables { variables: entries.collect() })
+        let report = Variables { variables: entries.collect() };
+        items::nothing(report.variables.len(), report.variables.iter().filter_map(Entry::error))?;
+        Ok(report)
     }
 }
 
@@ -76,9 +80,10 @@ impl Report for Variables {
     }
 
     fn failure(&self) -> Option<Failure> {
-        if self.variables.iter().any(Entry::has_value) {
-            return None;
+        let variables = &self.variables;
+        if variables.iter().any(Entry::has_value) {
+            return items::verdict(variables.len(), variables.iter().filter_map(Entry::error));
         }
-        self.variables.first().and_then(Entry::failure)
+        items::verdict(variables.len(), variables.iter().filter_map(Entry::missing))
     }
 }

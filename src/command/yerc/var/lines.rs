@@ -72,7 +72,7 @@ fn what_cannot_be_meant_is_not_sent() {
     assert!(failed(&["io", "set", "10010=on"]).contains("robot user output"));
     assert!(failed(&["register", "get", "1000"]).contains("allowed: 0-999"));
     assert!(failed(&["register", "set", "560=1"]).contains("0-559"));
-    assert!(failed(&["raw", "--file", "--service", "0x32"]).contains("yerc file list"));
+    assert!(failed(&["raw", "--file", "--service", "0x15"]).contains("yerc file put"));
     assert!(failed(&["raw", "--command", "0x8D", "--instance", "1", "--service", "1", "--check"]).contains("0x008d"));
 }
 
@@ -91,7 +91,7 @@ fn undefined_positions_in_a_range_are_reported_one_by_one() {
         shown,
         [("P18", null), ("P19", null), ("P20", &p20), ("P21", null), ("P22", null), ("EX3", &ex3), ("B8", null)]
     );
-    assert_eq!(entries[0]["refused"]["undefined"], true);
+    assert_eq!((&entries[0]["undefined"], &entries[0]["ok"]), (&Value::from(true), &Value::from(true)));
     assert_eq!(entries[6]["value"], 0);
     let (_, failure) = bench.run(&["var", "get", "P18..P19"]).unwrap();
     assert_eq!(failure.unwrap().kind.exit(), 3);
@@ -99,10 +99,14 @@ fn undefined_positions_in_a_range_are_reported_one_by_one() {
 
 #[test]
 fn numbers_beyond_the_last_are_found_and_named() {
-    let data = Bench::new("sim:").data(&["var", "get", "B90..B110"]);
+    let (data, failure) = Bench::new("sim:").run(&["var", "get", "B90..B110"]).unwrap();
+    assert_eq!(failure.unwrap().kind.exit(), 9);
     let values = data["variables"].as_array().unwrap();
     assert_eq!(values.iter().filter(|entry| entry["value"] == 0).count(), 10);
-    assert!(values[10..].iter().all(|entry| entry["refused"]["undefined"] == false), "{data}");
+    assert!(
+        values[10..].iter().all(|entry| entry["ok"] == false && entry["error"]["asked"] == entry["name"]),
+        "{data}"
+    );
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod entry;
 mod get;
 #[cfg(test)]
 mod lines;
+mod part;
 mod position;
 mod read;
 mod restore;

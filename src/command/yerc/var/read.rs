@@ -1,13 +1,15 @@
 //! Reads many variables in few requests, and finds out which of a refused run are to blame.
 
-use std::collections::{HashMap, HashSet, VecDeque};
+use std::collections::{HashMap, HashSet};
 
-use crate::command::yerc::link::{Link, Refusal};
+use crate::command::yerc::each::Outcome;
+use crate::command::yerc::link::Link;
+use crate::command::yerc::parts::{Parts, read_in_parts};
 use crate::controller::yerc::variables::{Reference, Value, plan_reads};
 use crate::failure::Failure;
 
 /// What each variable answered.
-pub type Answers = HashMap<Reference, Result<Value, Refusal>>;
+pub type Answers = HashMap<Reference, Outcome<Value>>;
 
 /// More would be a slip of the finger: a refused range is searched for what exists, and that takes its time.
 const MOST: usize = 10_000;
@@ -18,7 +20,7 @@ const MOST: usize = 10_000;
 pub async fn read_all(
     link: &mut Link,
     references: &[Reference],
-    mut progress: impl FnMut(&[Reference], usize),
+    progress: impl FnMut(&[Reference], usize),
 ) -> Result<Answers, Failure> {
     if references.len() > MOST {
         return Err(Failure::usage(format!(
@@ -27,30 +29,11 @@ pub async fn read_all(
         ))
         .hint("a controller has 100 of a kind (128 positions) unless its parameters say more"));
     }
-    let mut steps: VecDeque<_> = plan_reads(references).into();
-    if link.is_dry() {
-        link.ask_all(steps.make_contiguous()).await?;
-    }
-    let mut answers = Answers::with_capacity(references.len());
-    while let Some(step) = steps.pop_front() {
-        progress(step.wanted(), answers.len());
-        match (link.try_ask(&step).await?, step.wanted()) {
-            (Ok(values), _) => answers.extend(values.into_iter().map(|(reference, value)| (reference, Ok(value)))),
-            (Err(refusal), [only]) => {
-                answers.insert(*only, Err(refusal));
-            }
-            (Err(_), wanted) => {
-                let is_position = wanted.first().is_some_and(|reference| reference.kind.is_position());
-                let part = if is_position { 1 } else { wanted.len().div_ceil(2) };
-                for part in wanted.chunks(part).rev() {
-                    for step in plan_reads(part).into_iter().rev() {
-                        steps.push_front(step);
-                    }
-                }
-            }
-        }
-    }
-    Ok(answers)
+    let parts = |run: &[Reference]| {
+        let is_position = run.first().is_some_and(|reference| reference.kind.is_position());
+        if is_position { Parts::Single } else { Parts::Halves }
+    };
+    read_in_parts(link, |references| Ok(plan_reads(references)), references, parts, progress).await
 }
 
 /// The same references, each where it comes first.

@@ -13,13 +13,15 @@ use super::super::Family;
 use super::super::orders::usage;
 use super::super::writes::{Order, write_all};
 use super::entry::{Entry, Reading, position_in};
+use super::part::{self, Word, Words};
 use super::{in_form, listed};
 use crate::command::ValueKind;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
+use crate::controller::text::integer;
 use crate::controller::yerc::payload::PayloadError;
-use crate::controller::yerc::query::{Query, WriteField};
+use crate::controller::yerc::query::{Query, WriteField, WriteVariable};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::variables::{Reference, Value, VariableKind, WriteStep, plan_writes};
 use crate::failure::Failure;
@@ -31,8 +33,9 @@ use crate::output::view::{Cell, Table, View};
     after_help = "Every value is checked before the first is sent; runs of numbers go in one request. A position \
                         is pulse:s=0,l=0,u=0,r=0,b=0,t=0 or base:x=…,y=…,z=…,rx=…,ry=…,rz=… in mm and degrees, with \
                         tool=, user=, form=back+lower+noflip, or @FILE with what `var get P1 --json` printed. BP takes \
-                        base: or pulse:, EX pulse:1=…. P1.tool=2, P1.user=1 and BP5.axis1=-1 write that word alone and \
-                        keep the others; axis words count steps of the wire (pulses, or 0.001 mm and 0.0001 degree)."
+                        base: or pulse:, EX pulse:1=…. P1.tool=2, P1.user=1 and BP5.axis1=-1 change that word and keep \
+                        the others (a P is read, changed and written back whole); axis words count steps of the wire \
+                        (pulses, or 0.001 mm and 0.0001 degree)."
 )]
 pub struct Set {
     /// Such as B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE
@@ -57,8 +60,10 @@ enum Input {
     Text(String),
     /// A position in a JSON file.
     File(PathBuf),
-    /// One word of a position.
+    /// One word of a BP or EX.
     Field(WriteField),
+    /// One word of a P.
+    Word(Word),
 }
 
 impl FromStr for Assignment {
@@ -68,7 +73,7 @@ impl FromStr for Assignment {
         let (name, value) = text.split_once('=').ok_or("a variable, '=' and a value are expected, as in B0=255")?;
         if let Some((name, field)) = name.split_once('.') {
             let reference: Reference = name.parse().map_err(message)?;
-            return Ok(Self { reference, input: Input::Field(field_of(reference, field, value)?) });
+            return Ok(Self { reference, input: field_of(reference, field, value)? });
         }
         let reference: Reference = name.parse().map_err(message)?;
         let kind = reference.kind;
@@ -98,33 +103,36 @@ fn in_range(what: &str, number: u32) -> Result<u32, String> {
     }
 }
 
-/// Attribute and word of a single field (3.3.16 to 3.3.18).
-fn field_of(reference: Reference, field: &str, value: &str) -> Result<WriteField, String> {
+/// A single word (3.3.16 to 3.3.18).
+fn field_of(reference: Reference, field: &str, value: &str) -> Result<Input, String> {
     let kind = reference.kind;
     if !kind.is_position() {
         return Err(format!("{reference} has no parts; only positions (P, BP, EX) have"));
     }
-    // The words before the axes: type, form, tool, user and extended form of a P, the type alone of the others.
-    let before = if kind == VariableKind::P { 5 } else { 1 };
-    let axis =
-        field.strip_prefix("axis").and_then(|number| number.parse::<u8>().ok()).filter(|axis| matches!(axis, 1..=8));
-    let (attribute, word) = match (field, axis) {
-        ("tool" | "user", _) if kind == VariableKind::P => {
-            let number = value.parse().map_err(|_| format!("'{value}' is not a number from 0 to {LAST_TOOL}"))?;
-            (if field == "tool" { 3 } else { 4 }, in_range(field, number)?.to_le_bytes())
+    let is_robot = kind == VariableKind::P;
+    let number = integer(value);
+    let axis = field.strip_prefix("axis").and_then(|number| number.parse::<u8>().ok());
+    match (field, axis.filter(|axis| matches!(axis, 1..=8))) {
+        ("tool" | "user", _) if is_robot => {
+            let number = number.and_then(|number| u32::try_from(number).ok());
+            let number = number.ok_or_else(|| format!("'{value}' is not a number from 0 to {LAST_TOOL}"))?;
+            let number = in_range(field, number)?;
+            Ok(Input::Word(if field == "tool" { Word::Tool(number) } else { Word::User(number) }))
         }
         (_, Some(axis)) => {
-            let steps: i32 = value.parse().map_err(|_| {
+            let steps = number.and_then(|number| i32::try_from(number).ok()).ok_or_else(|| {
                 format!("'{value}' is not a number from {} to {} (steps of the wire)", i32::MIN, i32::MAX)
             })?;
-            (before + axis, steps.to_le_bytes())
+            if is_robot {
+                return Ok(Input::Word(Word::Axis(usize::from(axis) - 1, steps)));
+            }
+            // Before the axes stands the type.
+            let field = WriteField::new(kind, reference.number, 1 + axis, steps.to_le_bytes()).map_err(message)?;
+            Ok(Input::Field(field))
         }
-        _ if kind == VariableKind::P => {
-            return Err(format!("'{field}' is no part to write; there are tool, user, axis1 to axis8"));
-        }
-        _ => return Err(format!("'{field}' is no part to write; there are axis1 to axis8")),
-    };
-    WriteField::new(kind, reference.number, attribute, word).map_err(message)
+        _ if is_robot => Err(format!("'{field}' is no part to write; there are tool, user, axis1 to axis8")),
+        _ => Err(format!("'{field}' is no part to write; there are axis1 to axis8")),
+    }
 }
 
 #[expect(clippy::needless_pass_by_value, reason = "made for map_err")]
@@ -145,6 +153,7 @@ impl Command for Set {
         let Context { link, screen, .. } = context;
         let mut values = Vec::new();
         let mut fields = Vec::new();
+        let mut words = Words::new();
         let mut named: Vec<(Reference, u8)> = Vec::new();
         for assignment in &self.assignments {
             let reference = in_form(assignment.reference, link.model, self.s16);
@@ -152,6 +161,10 @@ impl Command for Set {
                 Input::Field(field) => {
                     fields.push(Change::Field(reference, field.clone()));
                     field.request().attribute
+                }
+                Input::Word(word) => {
+                    words.entry(reference).or_default().push(*word);
+                    word.attribute()
                 }
                 input => {
                     values.push((reference, value_of(reference, input, link)?));
@@ -163,14 +176,36 @@ impl Command for Set {
             }
             named.push((reference, part));
         }
+        let mut parts: Vec<Part> = self.assignments.iter().filter_map(Assignment::part).collect();
+        for (reference, value) in &mut values {
+            // Words of a position that is given whole are a part of it.
+            let Value::Position(position) = value else { continue };
+            for word in words.remove(reference).unwrap_or_default() {
+                word.set(position);
+                parts.push(Part::new(*reference, word, None));
+            }
+        }
         let plain: Vec<(u16, Value)> =
             values.iter().map(|(reference, value)| (reference.number, value.clone())).collect();
         let steps = plan_writes(&plain).map_err(usage)?;
-        let changes: Vec<Change> = steps.into_iter().map(Change::Values).chain(fields).collect();
+        let mut changes: Vec<Change> = steps.into_iter().map(Change::Values).chain(fields).collect();
+        if link.is_dry() && !words.is_empty() {
+            part::foresee_reads(link, &words);
+            for change in &changes {
+                link.foresee(&change.request(), &format!("writes {}", Change::listed(change.items())));
+            }
+            part::foresee_writes(link, &words)?;
+            // All that can be foreseen is noted: this does not return.
+            link.ask_all::<Change>(&[]).await?;
+        }
+        for (reference, old, write) in part::changed(link, &words).await? {
+            let words = words.get(&reference).into_iter().flatten();
+            parts.extend(words.map(|word| Part::new(reference, *word, Some(word.old(&old)))));
+            changes.push(Change::Position(reference, write));
+        }
         write_all(link, screen, &changes).await?;
         let entries = values.into_iter().map(|(reference, value)| Entry::new(reference, &Ok(value), link.encoding));
-        let parts = self.assignments.iter().filter_map(Assignment::part);
-        Ok(Written { written: entries.collect(), parts: parts.collect() })
+        Ok(Written { written: entries.collect(), parts })
     }
 }
 
@@ -179,7 +214,13 @@ impl Assignment {
         let Input::Field(field) = &self.input else { return None };
         let request = field.request();
         let word = request.data.first_chunk().map_or(0, |word| i32::from_le_bytes(*word));
-        Some(Part { name: self.reference.to_string(), attribute: request.attribute, value: word })
+        Some(Part {
+            name: self.reference.to_string(),
+            part: format!("axis{}", request.attribute.saturating_sub(1)),
+            attribute: request.attribute,
+            old: None,
+            value: word.into(),
+        })
     }
 }
 
@@ -209,7 +250,7 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
                 wrong(error.to_owned()).hint(format!("it must be a position of {}", reference.kind.letters()))
             })
         }
-        Input::Field(_) => Err(wrong("a part is no value".to_owned())),
+        Input::Field(_) | Input::Word(_) => Err(wrong("a part is no value".to_owned())),
     }
 }
 
@@ -229,6 +270,7 @@ fn read(path: &PathBuf) -> Result<String, Failure> {
 enum Change {
     Values(WriteStep),
     Field(Reference, WriteField),
+    Position(Reference, WriteVariable),
 }
 
 impl Query for Change {
@@ -238,6 +280,7 @@ impl Query for Change {
         match self {
             Self::Values(step) => step.request(),
             Self::Field(_, field) => field.request(),
+            Self::Position(_, position) => position.request(),
         }
     }
 
@@ -252,7 +295,7 @@ impl Order for Change {
     fn items(&self) -> Vec<Reference> {
         match self {
             Self::Values(step) => step.written().to_vec(),
-            Self::Field(reference, _) => vec![*reference],
+            Self::Field(reference, _) | Self::Position(reference, _) => vec![*reference],
         }
     }
 
@@ -276,9 +319,20 @@ pub struct Written {
 struct Part {
     /// `P1`.
     name: String,
+    /// `tool`, `user` or `axis1`.
+    part: String,
     /// Its place, counted from 1, the type.
     attribute: u8,
-    value: i32,
+    /// What was there; null where that was not read.
+    old: Option<i64>,
+    value: i64,
+}
+
+impl Part {
+    fn new(reference: Reference, word: Word, old: Option<i64>) -> Self {
+        let (name, part) = (reference.to_string(), word.name());
+        Self { name, part, attribute: word.attribute(), old, value: word.value() }
+    }
 }
 
 impl Report for Written {
@@ -290,7 +344,7 @@ impl Report for Written {
             table.row([entry.name().into(), value]);
         }
         for part in &self.parts {
-            table.row([format!("{} word {}", part.name, part.attribute).into(), part.value.into()]);
+            table.row([format!("{}.{}", part.name, part.part).into(), part.value.into()]);
         }
         View::table(table)
     }
@@ -318,6 +372,8 @@ mod tests {
         assert!(error("P1.form=1").contains("tool, user, axis1 to axis8"));
         assert!(error("BP1.tool=1").ends_with("there are axis1 to axis8"));
         assert!(error("EX1.axis9=1").contains("axis1 to axis8"));
+        let tool = "P1.tool=0x2".parse::<Assignment>().map(|it| it.input);
+        assert_eq!(tool, Ok(Input::Word(Word::Tool(2))));
         assert!("S0=".parse::<Assignment>().is_ok());
         assert!("S0=@home".parse::<Assignment>().is_ok_and(|it| it.input == Input::Text("@home".to_owned())));
     }

@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use super::position::{EXTENDED_FORM_BITS, FORM_BITS};
 use super::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, MAX_AXES, Position, PositionKind};
+use crate::controller::text::integer;
 use crate::controller::units::{self, Unit, UnitError};
 use crate::controller::yerc::table::Bit;
 
@@ -239,8 +240,9 @@ impl<'a> Parts<'a> {
             let by_number = key.parse::<usize>().ok().filter(|number| (1..=MAX_AXES).contains(number));
             let axis = self.names.iter().position(|name| *name == key).or(by_number.map(|number| number - 1));
             if let Some(axis) = axis {
-                let parsed =
-                    unit(axis).parse(value).map_err(|error| PositionTextError::Axis { key: key.clone(), error })?;
+                let parsed = unit(axis)
+                    .parse_steps(value)
+                    .map_err(|error| PositionTextError::Axis { key: key.clone(), error })?;
                 if self.axes[axis].replace(parsed).is_some() {
                     return Err(PositionTextError::Twice { key });
                 }
@@ -281,8 +283,8 @@ impl<'a> Parts<'a> {
 
 fn number(key: &'static str, text: Option<&str>) -> Result<u32, PositionTextError> {
     let Some(text) = text else { return Ok(0) };
-    let digits = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    digits.then(|| text.parse().ok()).flatten().ok_or_else(|| PositionTextError::Value {
+    let number = integer(text).filter(|_| text.starts_with(|first: char| first.is_ascii_digit()));
+    number.and_then(|number| u32::try_from(number).ok()).ok_or_else(|| PositionTextError::Value {
         key,
         found: text.to_owned(),
         expected: "a whole number".to_owned(),
@@ -382,6 +384,8 @@ mod tests {
         let position: Position = "pulse:s=1,l=2,3=3,r=4,b=5,t=6".parse().unwrap();
         assert_eq!(position.axes.padded(), [1, 2, 3, 4, 5, 6, 0, 0]);
         assert_eq!(position.to_string(), "pulse:s=1,l=2,u=3,r=4,b=5,t=6,tool=0,user=0");
+        let hexadecimal: Position = "pulse:s=0x1,l=2,u=3,r=4,b=5,t=-0x6,tool=0x10".parse().unwrap();
+        assert_eq!((hexadecimal.axes.padded()[5], hexadecimal.tool), (-6, 16));
     }
 
     #[test]

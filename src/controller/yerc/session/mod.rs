@@ -126,6 +126,11 @@ impl Counters {
     pub fn heard_something(&self) -> bool {
         self.named().iter().any(|&(count, name)| count > 0 && name != "repeated")
     }
+
+    /// Whether something came that is no answer of the protocol to anything asked.
+    pub fn is_garbage(&self) -> bool {
+        [self.garbage, self.truncated, self.oversized, self.foreign].iter().any(|&count| count > 0)
+    }
 }
 
 impl fmt::Display for Counters {

@@ -15,6 +15,14 @@ pub enum UploadEnd {
         /// Blocks it went in.
         blocks: u32,
     },
+    /// The controller took every block, but acknowledged the last one without its number, as `0x80000000`. That is most
+    /// likely the end; only a look at the controller tells.
+    Unnumbered {
+        /// Size of the whole.
+        bytes: u64,
+        /// Blocks it went in.
+        blocks: u32,
+    },
     /// The file has no bytes; nothing was sent. A transfer ends with a block of data that is marked as the last, and
     /// neither manual knows one without data: the controller would be left with an open transfer or half a file.
     Empty,
@@ -70,8 +78,8 @@ pub struct Upload {
     buffer: Vec<u8>,
     source_ended: bool,
     stage: Stage,
-    /// Whether the request was accepted.
-    accepted: bool,
+    /// The block number with which the request was accepted.
+    accepted: Option<u32>,
     last_sent: Vec<u8>,
     /// Number of the block that was sent last, 0 before the first.
     block: u32,
@@ -97,7 +105,7 @@ impl Upload {
             buffer: Vec::new(),
             source_ended: false,
             stage: Stage::Gather,
-            accepted: false,
+            accepted: None,
             last_sent: Vec::new(),
             block: 0,
             sent: 0,
@@ -150,7 +158,7 @@ impl Upload {
         if !self.source_ended && self.buffer.len() <= self.block_size {
             return Step::Feed;
         }
-        if !self.accepted {
+        if self.accepted.is_none() {
             if self.buffer.is_empty() {
                 return self.end(UploadEnd::Empty);
             }
@@ -228,6 +236,13 @@ impl Upload {
     fn take_ack(&mut self, block: u32) {
         // A controller that acknowledges the last block without its mark means the same block all the same.
         let number = block & !LAST_BLOCK;
+        // Where the request was answered so, too, a late copy of that answer would look the same.
+        let is_unnumbered = block == LAST_BLOCK && self.accepted != Some(LAST_BLOCK);
+        if is_unnumbered && self.stage == (Stage::Block { last: true }) {
+            self.taken = self.sent;
+            self.ended = Some(UploadEnd::Unnumbered { bytes: self.sent, blocks: self.block });
+            return;
+        }
         if number > self.block {
             return count(&mut self.inbox.counters.foreign);
         }
@@ -235,7 +250,7 @@ impl Upload {
             return count(&mut self.inbox.counters.duplicated);
         }
         self.busy = None;
-        self.accepted = true;
+        self.accepted = self.accepted.or(Some(block));
         self.taken = self.sent;
         self.ended = (self.stage == Stage::Block { last: true })
             .then_some(UploadEnd::Complete { bytes: self.sent, blocks: self.block });
@@ -435,6 +450,25 @@ mod tests {
             session.handle(ms(330), &answer(5, 0x8000_0002, status));
             assert_eq!(done(&mut session, ms(330)), UploadEnd::Refused { status, sent: 958, taken: 479, repeated });
         }
+    }
+
+    #[test]
+    fn a_last_block_acknowledged_without_its_number_is_an_end_of_its_own() {
+        let to_last_block = |first_ack| {
+            let mut session = start(&[1; 958]);
+            sent(&mut session, ms(0));
+            session.handle(ms(10), &ack(first_ack));
+            sent(&mut session, ms(10));
+            session.handle(ms(20), &ack(LAST_BLOCK));
+            assert!(matches!(session.poll(ms(20)), Step::Wait(_)), "only the last block may be meant");
+            session.handle(ms(20), &ack(1));
+            sent(&mut session, ms(20));
+            session.handle(ms(30), &ack(LAST_BLOCK));
+            session
+        };
+        assert_eq!(done(&mut to_last_block(0), ms(30)), UploadEnd::Unnumbered { bytes: 958, blocks: 2 });
+        // Where the request was answered so, it may be a late copy of that answer.
+        assert!(matches!(to_last_block(LAST_BLOCK).poll(ms(30)), Step::Wait(_)));
     }
 
     #[test]

@@ -5,6 +5,7 @@
 
 use super::motion::{AXES, Family, MAX_ANGULAR_DEG_S, MAX_LINEAR_MM_S, Pose, Pulses, Speed, forward, inverse};
 use super::world::{Refusal, World, code};
+use crate::controller::yerc::Model;
 use crate::controller::yerc::payload::{CartesianMove, MoveLayout, PositionKind, PulseMove, SpeedClass};
 
 /// Instances of the moves.
@@ -21,7 +22,12 @@ const GUARDED_MM_S: f64 = 250.0;
 impl World {
     /// Command 0x8A.
     pub(super) fn move_cartesian(&mut self, instance: u16, data: &[u8]) -> Result<(), Refusal> {
-        if ![MoveLayout::Words25.size(), MoveLayout::Words26.size()].contains(&data.len()) {
+        // Only the FS100 manual prints 25 words, and FS100s are known to take 26.
+        let layouts = match self.model {
+            Model::Fs100 => &[MoveLayout::Words25, MoveLayout::Words26][..],
+            Model::Dx200 => &[MoveLayout::Words26],
+        };
+        if !layouts.iter().any(|layout| layout.size() == data.len()) {
             return Err(Refusal::Added(code::REQUEST_SIZE));
         }
         let order = CartesianMove::parse(data).map_err(|_| Refusal::Added(code::REQUEST_SIZE))?;

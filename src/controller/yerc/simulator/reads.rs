@@ -13,6 +13,8 @@ use crate::controller::yerc::table::Row;
 const FIRST_BASE: u16 = 11;
 const FIRST_STATION: u16 = 21;
 const CARTESIAN: u16 = 100;
+/// Axes of the usual robot.
+const SIX: usize = 6;
 /// The only task that runs.
 const MASTER_TASK: u16 = 1;
 /// Lag of a servo axis: pulses behind for each pulse a second.
@@ -92,15 +94,24 @@ impl World {
             tool: group.tool,
             user: 0,
             extended: ExtendedForm(group.extended_form),
-            axes: fitted(group, &values),
+            axes: self.answered(group, &values),
         })
+    }
+
+    /// The words of a group's axes. Some controllers answer only the axes a group has, some a word for each there could be.
+    fn answered(&self, group: &Group, values: &[i32; AXES]) -> Axes {
+        let is_trimmed = self.trim_axes.unwrap_or(group.family != Family::Robot || group.axes != SIX);
+        if is_trimmed {
+            return Axes::new(&values[..group.axes]).unwrap_or_default();
+        }
+        Axes::full(std::array::from_fn(|axis| if axis < group.axes { values[axis] } else { 0 }))
     }
 
     /// The lag of each axis while it moves.
     fn position_error(&self, instance: u16) -> Result<Axes, Refusal> {
         let (index, _) = self.group(instance)?;
         let lag = self.arm.velocity(index, self.now).map(|speed| whole(speed * SERVO_LAG_S));
-        Ok(fitted(&self.arm.groups[index], &lag))
+        Ok(self.answered(&self.arm.groups[index], &lag))
     }
 
     /// A share for holding the arm up, and one for its speed; the brakes hold it without servo power.
@@ -116,7 +127,7 @@ impl World {
                 + if speed[i] == 0.0 { 0.0 } else { speed[i].signum() * 4.0 };
             if self.switches.servo { whole(holding + moving) } else { 0 }
         });
-        Ok(fitted(group, &torque))
+        Ok(self.answered(group, &torque))
     }
 
     fn management_time(&self, instance: u16) -> Result<ManagementTime, Refusal> {
@@ -171,11 +182,6 @@ fn short(alarm: Option<Vec<u8>>) -> Answer {
     let mut bytes = alarm.ok_or(Refusal::Instance)?;
     bytes.truncate(Alarm::SIZE);
     Ok(bytes)
-}
-
-/// Controllers answer only the axes a group has.
-fn fitted(group: &Group, values: &[i32; AXES]) -> Axes {
-    Axes::new(&values[..group.axes]).unwrap_or_default()
 }
 
 /// `HHHHHH:MM'SS`.

@@ -16,7 +16,7 @@ use super::defaults;
 use super::memory::{Kind, Memory};
 use super::motion::{AXES, Arm, Family, Group};
 use super::playback::Player;
-use super::storage::{Content, Storage, check_name};
+use super::storage::{Content, Storage, check_stored_name};
 use super::world::{Holds, Meters, Mode, Switches, World};
 use crate::controller::Now;
 use crate::controller::entries::{self, At, Event};
@@ -54,6 +54,7 @@ application = "ARC WELDING"
 parameter_version = "12.34"
 groups = ["R1", "B1", "S1"]
 robot_axes = 6                  # or 7
+trim_axes = false               # true: answers have no words for axes that are not fitted (default: robots of 7 axes)
 positions = { R1 = [0, 0, 0, 0, 0, 0], B1 = [0] }
 user_frames = { 1 = [500.0, 0.0, 0.0, 0.0] }  # X, Y, Z in mm, turn about Z in degrees
 job = "TESTJOB"                 # the job to execute
@@ -71,6 +72,7 @@ backup_size = 100000
 transfer_timeout_ms = 5000
 capacity = 268435456            # bytes for all files
 replace_jobs = false            # true: loading replaces a job of the same name
+plain_last_ack = false          # true: the last block of a load is acknowledged as 0x80000000
 stock = true                    # false: no files, variables and history but what is named here
 
 alarm = [{ code = 4315, data = 3, type = 1 }]
@@ -165,6 +167,7 @@ struct Entries {
     groups: Vec<Spanned<String>>,
     /// 6 or 7.
     robot_axes: Spanned<usize>,
+    trim_axes: Option<bool>,
     hours: Hours,
     answer_delay_ms: u64,
     busy: Spanned<f64>,
@@ -173,6 +176,7 @@ struct Entries {
     transfer_timeout_ms: u64,
     capacity: u64,
     replace_jobs: bool,
+    plain_last_ack: bool,
     /// The job to execute.
     job: Option<Spanned<String>>,
     ladder_registers: Vec<Spanned<u16>>,
@@ -213,6 +217,7 @@ impl Default for Entries {
             parameter_version: None,
             groups: ["R1", "B1", "S1"].map(text).to_vec(),
             robot_axes: Spanned::new(0..0, 6),
+            trim_axes: None,
             hours: Hours::default(),
             answer_delay_ms: 0,
             busy: Spanned::new(0..0, 0.0),
@@ -221,6 +226,7 @@ impl Default for Entries {
             transfer_timeout_ms: 5_000,
             capacity: 256 << 20,
             replace_jobs: false,
+            plain_last_ack: false,
             job: None,
             ladder_registers: (540..550).map(|register| Spanned::new(0..0, register)).collect(),
             variables: BTreeMap::new(),
@@ -411,7 +417,8 @@ fn bare_world(entries: &Entries, at: &At<'_>) -> Result<World, String> {
         memory,
         arm: Arm::new(groups(entries, at)?),
         player: Player::default(),
-        files: Storage::new(entries.capacity, entries.replace_jobs),
+        files: Storage::new(entries.capacity, entries.replace_jobs, entries.plain_last_ack),
+        trim_axes: entries.trim_axes,
         meters: Meters {
             control: hours(entries.hours.control),
             servo: hours(entries.hours.servo),
@@ -518,7 +525,7 @@ fn files(
     for spanned in entries {
         let entry = spanned.get_ref();
         let name = sjis(&entry.name);
-        if check_name(&name).is_err() {
+        if check_stored_name(&name).is_err() {
             return Err(at.wrong(spanned, format!("'{}' is no file name a controller has", entry.name)));
         }
         let content = match (&entry.text, &entry.path, entry.size) {

@@ -82,11 +82,13 @@ pub(super) struct Storage {
     pub(super) capacity: u64,
     /// Whether loading replaces a job of the same name; otherwise 4030.
     pub(super) replace_jobs: bool,
+    /// Whether the last block of a load is acknowledged without its number.
+    pub(super) plain_last_ack: bool,
 }
 
 impl Storage {
-    pub(super) fn new(capacity: u64, replace_jobs: bool) -> Self {
-        Self { files: BTreeMap::new(), backup: None, capacity, replace_jobs }
+    pub(super) fn new(capacity: u64, replace_jobs: bool, plain_last_ack: bool) -> Self {
+        Self { files: BTreeMap::new(), backup: None, capacity, replace_jobs, plain_last_ack }
     }
 
     /// Puts a file there at the start; jobs can be deleted later, the rest belongs to the controller.
@@ -144,7 +146,7 @@ impl World {
 
     /// Service 0x16 for anything but the batch backup.
     pub(super) fn read_file(&self, name: &[u8]) -> Result<Found, Refusal> {
-        check_name(name)?;
+        check_stored_name(name)?;
         match (self.files.get(name), self.model) {
             (Some(content), _) if content.size() > 0 => Ok(Found::Content(content.clone())),
             (_, Model::Dx200) => Ok(Found::Nothing(code::NO_DATA)),
@@ -251,6 +253,15 @@ pub(super) fn check_name(name: &[u8]) -> Result<(), Refusal> {
         return refuse(code::JOB_NAME);
     }
     Ok(())
+}
+
+/// A name of a file that is there, or may be: any extension, as there are files that cannot be loaded.
+pub(super) fn check_stored_name(name: &[u8]) -> Result<(), Refusal> {
+    let other = name.iter().rposition(|&byte| byte == b'.').filter(|&point| point > 0 && point + 1 < name.len());
+    match check_name(name) {
+        Err(Refusal::Added(code::PATH)) if other.is_some() && !name.iter().any(|byte| b"/:".contains(byte)) => Ok(()),
+        checked => checked,
+    }
 }
 
 #[cfg(test)]

@@ -346,7 +346,8 @@ fn take_block(
     } else {
         Status::OK
     };
-    transfer.last_frame = frame(transfer.service, request.id, request.block, status, &[]);
+    let block = if last && world.files.plain_last_ack { LAST_BLOCK } else { request.block };
+    transfer.last_frame = frame(transfer.service, request.id, block, status, &[]);
     transfer.sent = now;
     (Some(transfer.last_frame.clone()), true)
 }

@@ -184,6 +184,9 @@ pub(super) struct World {
     pub(super) arm: Arm,
     pub(super) player: Player,
     pub(super) files: Storage,
+    /// Whether positions and the like are answered without the axes that a group does not have; `None`: by all groups
+    /// but robots of six axes.
+    pub(super) trim_axes: Option<bool>,
     /// Counters when `Now` was zero and since.
     pub(super) meters: Meters,
     /// User frames that were taught: number and origin with its turn about Z.

@@ -4,6 +4,7 @@
 //! bridged, since an undefined one refuses the whole answer. A write never touches what was not named.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::hash::Hash;
 
 use super::{Reference, Value, VariableKind};
 use crate::controller::yerc::Model;
@@ -48,6 +49,17 @@ impl<S: Query, P: Query> Either<S, P> {
     }
 }
 
+/// A request of a plan to read several things.
+pub trait PlannedRead: Query<Answer = Vec<(<Self as PlannedRead>::Item, <Self as PlannedRead>::Value)>> {
+    /// What names one of them.
+    type Item: Copy + Eq + Hash;
+    /// What one of them holds.
+    type Value;
+
+    /// What this request answers, in rising order.
+    fn wanted(&self) -> &[Self::Item];
+}
+
 macro_rules! read_step {
     ($(#[$doc:meta])* $name:ident, $item:ty, $value:ty, $single:ty, $plural:ty, $number:expr) => {
         $(#[$doc])*
@@ -58,9 +70,11 @@ macro_rules! read_step {
             wanted: Vec<$item>,
         }
 
-        impl $name {
-            /// What this request answers, in rising order.
-            pub fn wanted(&self) -> &[$item] {
+        impl PlannedRead for $name {
+            type Item = $item;
+            type Value = $value;
+
+            fn wanted(&self) -> &[$item] {
                 &self.wanted
             }
         }
@@ -270,11 +284,14 @@ fn read_blocks(
             count if !even || count == 1 || count % 2 == 0 => Block { first, count },
             count if last < highest => Block { first, count: count + 1 },
             count if first > lowest => Block { first: first - 1, count: count + 1 },
-            // No neighbour to round up with: the last one goes alone.
-            count => {
+            // No neighbour to round up with: the last one goes alone, and the block ends with the one before it.
+            _ => {
                 let alone = wanted.pop().into_iter().collect();
                 blocks.push((Block { first: last, count: 1 }, alone));
-                Block { first, count: count - 1 }
+                match wanted.last().map_or(1, |last| last - first + 1) {
+                    1 => Block { first, count: 1 },
+                    count => Block { first, count: count.next_multiple_of(2) },
+                }
             }
         };
         blocks.push((block, wanted));
@@ -366,6 +383,8 @@ mod tests {
         assert_eq!(shape(&["B0", "B50"]), [(0x302, 0, 52)]);
         assert_eq!(shape(&["B98..B100"]), [(0x302, 97, 4)]);
         assert_eq!(shape(&["B0..B100"]), [(0x7A, 100, 1), (0x302, 0, 100)]);
+        assert_eq!(shape(&["B0", "B300"]), [(0x7A, 300, 1), (0x7A, 0, 1)]);
+        assert_eq!(shape(&["B0", "B2", "B300"]), [(0x7A, 300, 1), (0x302, 0, 4)]);
         assert_eq!(shape(&["P0..P9", "P12"]), [(0x307, 0, 9), (0x7F, 9, 1), (0x7F, 12, 1)]);
         assert_eq!(shape(&["S0..S14"]), [(0x30C, 0, 14), (0x8C, 14, 1)]);
     }

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
+use crate::controller::text::integer;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::table::{Plural, Row};
 
@@ -192,11 +193,9 @@ pub fn parse_numbers(text: &str) -> Result<Vec<u16>, ReferenceError> {
 }
 
 fn parse_number(digits: &str, whole: &str) -> Result<u16, ReferenceError> {
-    let wrong = || ReferenceError::Number { found: whole.to_owned() };
-    if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
-        return Err(wrong());
-    }
-    digits.parse().map_err(|_| wrong())
+    let number = integer(digits).filter(|_| digits.starts_with(|first: char| first.is_ascii_digit()));
+    let number = number.and_then(|number| u16::try_from(number).ok());
+    number.ok_or_else(|| ReferenceError::Number { found: whole.to_owned() })
 }
 
 #[cfg(test)]
@@ -226,5 +225,8 @@ mod tests {
             assert!(parse_references(junk).is_err(), "{junk}");
         }
         assert_eq!(parse_numbers("5..7"), Ok(vec![5, 6, 7]));
+        assert_eq!(parse_numbers("0x0E..0x10"), Ok(vec![14, 15, 16]));
+        assert_eq!("B0x10".parse(), Ok(Reference::new(VariableKind::B, 16)));
+        assert_eq!(parse_references("B0xA..0xC").unwrap().len(), 3);
     }
 }

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::VariableKind;
+use crate::controller::text::integer;
 use crate::controller::yerc::payload::{
     BasePosition, ExternalPosition, PayloadError, Position, PositionTextError, Reader, Text, TextError,
 };
@@ -101,13 +102,15 @@ impl Value {
         let shown = String::from_utf8_lossy(text);
         let number = |expected| ValueError::Number { found: shown.clone().into_owned(), expected };
         Ok(match kind {
-            VariableKind::B => Self::Byte(shown.parse().map_err(|_| number("a number from 0 to 255"))?),
-            VariableKind::I => Self::Integer(shown.parse().map_err(|_| number("a number from -32768 to 32767"))?),
+            VariableKind::B => Self::Byte(whole(&shown).ok_or_else(|| number("a number from 0 to 255"))?),
+            VariableKind::I => Self::Integer(whole(&shown).ok_or_else(|| number("a number from -32768 to 32767"))?),
             VariableKind::D => {
-                Self::Double(shown.parse().map_err(|_| number("a number from -2147483648 to 2147483647"))?)
+                Self::Double(whole(&shown).ok_or_else(|| number("a number from -2147483648 to 2147483647"))?)
             }
             VariableKind::R => {
-                let value = shown.parse().ok().filter(|value: &f32| value.is_finite());
+                // Hexadecimal stands for a whole number, as far as a real holds those.
+                let value = shown.parse().ok().or_else(|| whole::<i16>(&shown).map(f32::from));
+                let value = value.filter(|value: &f32| value.is_finite());
                 Self::Real(value.ok_or_else(|| number("a number that fits 32-bit floating point"))?)
             }
             VariableKind::S16 => Self::Short(Text::new(text)?),
@@ -117,6 +120,11 @@ impl Value {
             VariableKind::Ex => Self::External(shown.parse()?),
         })
     }
+}
+
+/// A whole number of the type, in decimal or hexadecimal.
+fn whole<T: TryFrom<i64>>(text: &str) -> Option<T> {
+    integer(text).and_then(|number| T::try_from(number).ok())
 }
 
 #[cfg(test)]
@@ -135,5 +143,11 @@ mod tests {
             "the text has 17 bytes in the controller's encoding; at most 16 fit"
         );
         assert_eq!(Value::from_text(VariableKind::D, b"-5"), Ok(Value::Double(-5)));
+        assert_eq!(Value::from_text(VariableKind::B, b"0xFF"), Ok(Value::Byte(255)));
+        assert_eq!(Value::from_text(VariableKind::I, b"-0x10"), Ok(Value::Integer(-16)));
+        assert_eq!(Value::from_text(VariableKind::D, b"0x7FFFFFFF"), Ok(Value::Double(i32::MAX)));
+        assert_eq!(Value::from_text(VariableKind::R, b"0x10"), Ok(Value::Real(16.0)));
+        assert_eq!(error(VariableKind::B, "0x100"), "'0x100' is not a number from 0 to 255");
+        assert_eq!(error(VariableKind::I, "0xFFFF"), "'0xFFFF' is not a number from -32768 to 32767");
     }
 }

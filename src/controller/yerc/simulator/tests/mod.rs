@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::*;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::payload::{
-    CartesianMove, ControllerStatus, JobInfo, MoveLayout, Position, PulseMove, StatusBit,
+    AxisNames, CartesianMove, ControllerStatus, JobInfo, MoveLayout, Position, PulseMove, StatusBit,
 };
 
 mod files;
@@ -91,7 +91,9 @@ impl Bench {
     }
 
     fn pose(&mut self, instance: u16) -> Vec<i32> {
-        Position::parse(&self.read(0x75, instance)).unwrap().axes.as_slice().to_vec()
+        let names = AxisNames::parse(&self.read(0x74, instance)).unwrap().names;
+        let fitted = names.iter().filter(|name| !name.is_empty()).count();
+        Position::parse(&self.read(0x75, instance)).unwrap().axes.as_slice()[..fitted].to_vec()
     }
 
     fn job(&mut self) -> JobInfo {

@@ -17,7 +17,19 @@ fn a_straight_move_arrives_in_time_and_exactly() {
     assert!(!bench.status().running());
     assert_eq!(bench.pose(101), [1_000_000, 500_000, 1_200_000, 1_800_000, 0, 0]);
     assert_ne!(bench.pose(1)[0], 0, "pulses have followed");
-    assert_eq!(bench.read(0x76, 1), [0; 24]);
+    assert_eq!(bench.read(0x76, 1), [0; 32]);
+}
+
+#[test]
+fn twenty_five_words_are_those_of_an_fs100() {
+    let mut order = cartesian((0, 10_000), 17, [700_000, -300_000, 900_000, -1_799_999, 100, -900_000]);
+    order.layout = MoveLayout::Words25;
+    let mut bench = Bench::default();
+    assert_eq!(bench.write(0x8A, 1, 1, 0x02, &order.emit()), refused(0xB003));
+    for layout in [MoveLayout::Words25, MoveLayout::Words26] {
+        order.layout = layout;
+        assert_eq!(Bench::new("model = 'fs100'").write(0x8A, 1, 1, 0x02, &order.emit()), Status::OK);
+    }
 }
 
 #[test]
@@ -32,7 +44,6 @@ fn every_kind_of_move_reaches_its_target() {
     bench.wait(10_000);
     assert_eq!(bench.pose(101)[..3], [701_000, -302_000, 903_000]);
     let mut printed = cartesian((1, 15_000), 18, [0, 100_000, 1_000_000, 1_800_000, 0, 0]);
-    printed.layout = MoveLayout::Words25;
     printed.user = 1;
     assert_eq!(bench.write(0x8A, 2, 1, 0x02, &printed.emit()), Status::OK);
     bench.wait(10_000);

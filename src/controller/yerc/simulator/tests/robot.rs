@@ -73,11 +73,18 @@ fn addresses_that_do_not_exist() {
 }
 
 #[test]
-fn only_fitted_axes_are_answered() {
-    let mut bench = Bench::default();
-    let sizes = [(0x74, 1), (0x75, 1), (0x75, 101), (0x76, 1), (0x77, 1), (0x75, 11), (0x75, 21)];
-    let sizes = sizes.map(|(command, instance)| bench.read(command, instance).len());
-    assert_eq!(sizes, [32, 44, 44, 24, 24, 24, 28]);
+fn axes_that_are_not_fitted_may_be_answered_all_the_same() {
+    let asked = [(0x74, 1), (0x75, 1), (0x75, 101), (0x76, 1), (0x77, 1), (0x75, 11), (0x75, 21)];
+    for (state, sizes) in [
+        ("", [32, 52, 52, 32, 32, 24, 28]),
+        ("trim_axes = true", [32, 44, 44, 24, 24, 24, 28]),
+        ("robot_axes = 7", [32, 48, 48, 28, 28, 24, 28]),
+        ("robot_axes = 7\ntrim_axes = false", [32, 52, 52, 32, 32, 52, 52]),
+    ] {
+        let mut bench = Bench::new(state);
+        assert_eq!(asked.map(|(command, instance)| bench.read(command, instance).len()), sizes, "{state}");
+    }
+    let mut bench = Bench::new("trim_axes = true");
     assert_eq!(&bench.read(0x74, 1)[..8], b"S\0\0\0L\0\0\0");
     assert_eq!(bench.ask(0x75, 1, 12, 0x0E, &[]).0, refused(0xA002));
     assert_eq!(bench.ask(0x75, 101, 6, 0x0E, &[]).1, 1_000_000i32.to_le_bytes());

@@ -1,0 +1,89 @@
+//! Which axes a control group has. Controllers may answer a word for every axis there could be; then the axis
+//! configuration (0x74), asked once on a link, tells which of them exist.
+
+use super::link::Link;
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::{Axes, AxisNames, MAX_AXES};
+use crate::controller::yerc::query::{Coordinates, ReadAxes};
+
+/// The axes that exist, a bit each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fitted(u8);
+
+/// Added status while a screen is open on the pendant during which axis names cannot be read (DX 3.3.5).
+const CONVERTING: u32 = 0x2150;
+
+impl Fitted {
+    /// As many as were answered.
+    pub const ALL: Self = Self(u8::MAX);
+
+    /// Those that have a name; all where none has one.
+    fn from_names(names: &AxisNames) -> Self {
+        let mask = names.names.iter().enumerate().fold(0, |mask, (axis, name)| {
+            let is_blank = name.as_bytes().iter().all(u8::is_ascii_whitespace);
+            if is_blank { mask } else { mask | 1 << axis }
+        });
+        if mask == 0 { Self::ALL } else { Self(mask) }
+    }
+
+    /// Whether there is such an axis, counted from 0.
+    pub const fn has(self, axis: usize) -> bool {
+        axis < MAX_AXES && self.0 >> axis & 1 == 1
+    }
+
+    /// The values up to the last axis that exists; 0 for those before it that do not.
+    fn of(self, axes: Axes) -> Axes {
+        let count = (0..axes.as_slice().len()).rev().find(|axis| self.has(*axis)).map_or(0, |last| last + 1);
+        let values = axes.as_slice().iter().enumerate().take(count);
+        let values: Vec<i32> = values.map(|(axis, value)| if self.has(axis) { *value } else { 0 }).collect();
+        Axes::new(&values).unwrap_or(axes)
+    }
+}
+
+impl Link {
+    /// The values of the axes that the group has, of as many as were answered.
+    pub async fn fit(&mut self, group: Group, coordinates: Coordinates, axes: Axes) -> (Axes, Fitted) {
+        if axes.as_slice().len() < MAX_AXES {
+            // No group has eight axes: fewer words are those of the axes that are fitted.
+            return (axes, Fitted::ALL);
+        }
+        let fitted = self.fitted(group, coordinates).await;
+        (fitted.of(axes), fitted)
+    }
+
+    async fn fitted(&mut self, group: Group, coordinates: Coordinates) -> Fitted {
+        let known = self.fitted.iter().find(|known| (known.0, known.1) == (group, coordinates));
+        if let Some((.., fitted)) = known {
+            return *fitted;
+        }
+        let Ok(question) = ReadAxes::new(self.model, group, coordinates) else { return Fitted::ALL };
+        let fitted = match self.try_ask(&question).await {
+            Ok(Ok(names)) => Fitted::from_names(&names),
+            // Asked again next time: the screen may be closed by then.
+            Ok(Err(refusal)) if refusal.status.added == CONVERTING => return Fitted::ALL,
+            Ok(Err(_)) | Err(_) => Fitted::ALL,
+        };
+        self.fitted.push((group, coordinates, fitted));
+        fitted
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::yerc::payload::Text;
+
+    #[test]
+    fn axes_without_a_name_do_not_exist() {
+        let mut names = AxisNames::default();
+        assert_eq!(Fitted::from_names(&names), Fitted::ALL);
+        for (axis, name) in [(0, "S"), (1, "L"), (2, "U"), (5, "T"), (6, "  ")] {
+            names.names[axis] = Text::cut(name.as_bytes());
+        }
+        let fitted = Fitted::from_names(&names);
+        assert!(fitted.has(5) && !fitted.has(3) && !fitted.has(6) && !fitted.has(8));
+        let axes = Axes::full([1, 2, 3, 4, 5, 6, 7, 8]);
+        assert_eq!(fitted.of(axes).as_slice(), [1, 2, 3, 0, 0, 6]);
+        assert_eq!(Fitted::ALL.of(axes), axes);
+    }
+}

@@ -1,0 +1,74 @@
+//! Many things read in few requests; what a run of them is refused for is found by reading it again in parts.
+
+use std::collections::{HashMap, VecDeque};
+
+use super::each::{Denied, Outcome, Round};
+use super::link::Link;
+use crate::controller::yerc::variables::PlannedRead;
+use crate::failure::{Failure, Kind};
+
+/// How the parts of a refused run are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Parts {
+    /// By halves, since numbers end somewhere.
+    Halves,
+    /// One by one, since each may be refused, or since the controller has no request for several.
+    Single,
+}
+
+/// Asks the requests of a plan. A run that the controller refuses is planned and read again in parts, down to the things
+/// that are refused themselves. `parts` tells how a run is parted, `progress` is told what is asked for, and how many
+/// things are known by then. A dry run notes the plan.
+pub async fn read_in_parts<S: PlannedRead>(
+    link: &mut Link,
+    mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
+    wanted: &[S::Item],
+    parts: impl Fn(&[S::Item]) -> Parts,
+    mut progress: impl FnMut(&[S::Item], usize),
+) -> Result<HashMap<S::Item, Outcome<S::Value>>, Failure> {
+    if wanted.is_empty() {
+        return Ok(HashMap::new());
+    }
+    let mut steps: VecDeque<S> = plan(wanted)?.into();
+    link.rehearse(steps.make_contiguous())?;
+    let mut round = Round::default();
+    let mut known: HashMap<S::Item, Outcome<S::Value>> = HashMap::with_capacity(wanted.len());
+    while let Some(step) = steps.pop_front() {
+        let asked = step.wanted();
+        progress(asked, known.len());
+        let denied = match round.ask(link, &step).await? {
+            Ok(values) => {
+                known.extend(values.into_iter().map(|(item, value)| (item, Ok(value))));
+                continue;
+            }
+            Err(denied) => denied,
+        };
+        // Even one thing may have been asked for together with others that nobody wants.
+        let is_alone = asked.len() == 1 && plan(asked)?.iter().all(|alone| alone.request() == step.request());
+        let again = if is_alone { None } else { how(&denied, parts(asked)) };
+        let Some(parts) = again else {
+            known.extend(asked.iter().map(|item| (*item, Err(denied.clone()))));
+            continue;
+        };
+        let size = if parts == Parts::Single { 1 } else { asked.len().div_ceil(2) };
+        for part in asked.chunks(size).rev() {
+            for step in plan(part)?.into_iter().rev() {
+                steps.push_front(step);
+            }
+        }
+    }
+    Ok(known)
+}
+
+/// How a run is read again after this; `None` where that leads nowhere.
+fn how(denied: &Denied, usual: Parts) -> Option<Parts> {
+    /// Added status: "command error", "undefined command".
+    const UNKNOWN: [u32; 2] = [0x1010, 0xA000];
+    match denied {
+        Denied::Refused(refusal) if refusal.status.code == 0x08 || UNKNOWN.contains(&refusal.status.added) => {
+            Some(Parts::Single)
+        }
+        Denied::Refused(_) => Some(usual),
+        Denied::Failed(failure) => (failure.kind == Kind::Malformed).then_some(Parts::Single),
+    }
+}

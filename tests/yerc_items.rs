@@ -1,0 +1,344 @@
+//! The yerc commands, through the built binary, on a controller that refuses or garbles some of what it is asked: each
+//! thing answers for itself.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+use std::net::UdpSocket;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use armctl::controller::yerc::simulator::{Simulator, Start};
+use armctl::controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, LAST_BLOCK, RequestFrame, Status};
+use serde_json::{Value, json};
+
+/// What a request gets instead of the answer of the simulated controller.
+type Spoil = fn(&RequestFrame<'_>) -> Option<Vec<u8>>;
+
+/// A simulated controller on real ports that spoils some answers; it lasts as long as the tests.
+fn controller(state: &str, spoil: Spoil) -> String {
+    let mut simulator = Simulator::new(Start::parse(state, |_| Err(String::new())).unwrap());
+    let sockets = [Division::Robot, Division::File].map(|division| (division, UdpSocket::bind("127.0.0.1:0").unwrap()));
+    let [robot, file] = [0, 1].map(|index: usize| sockets[index].1.local_addr().unwrap().port());
+    thread::spawn(move || {
+        let began = Instant::now();
+        let mut peers = [None, None];
+        let mut buffer = [0; 2048];
+        for (_, socket) in &sockets {
+            socket.set_read_timeout(Some(Duration::from_millis(1))).unwrap();
+        }
+        loop {
+            for (index, (division, socket)) in sockets.iter().enumerate() {
+                if let Ok((len, from)) = socket.recv_from(&mut buffer) {
+                    peers[index] = Some(from);
+                    match RequestFrame::parse(&buffer[..len]).ok().and_then(|request| spoil(&request)) {
+                        Some(answer) => drop(socket.send_to(&answer, from).unwrap()),
+                        None => simulator.receive(began.elapsed(), *division, from.port().into(), &buffer[..len]),
+                    }
+                }
+            }
+            while let Some(out) = simulator.transmit(began.elapsed()) {
+                let index = usize::from(out.division == Division::File);
+                if let Some(peer) = peers[index] {
+                    sockets[index].1.send_to(&out.bytes, peer).unwrap();
+                }
+            }
+        }
+    });
+    format!("udp://127.0.0.1:{robot}?file_port={file}")
+}
+
+fn answer(request: &RequestFrame<'_>, block: u32, status: Status, data: &[u8]) -> Vec<u8> {
+    let RequestFrame { division, id, service, .. } = *request;
+    AnswerFrame { division, ack: true, id, block, service: service | ANSWER_BIT, status, data }.emit()
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "it stands where an answer may be left as it is")]
+fn refused(request: &RequestFrame<'_>, code: u16) -> Option<Vec<u8>> {
+    Some(answer(request, LAST_BLOCK, Status::refused(code), &[]))
+}
+
+/// Exit code, stdout and stderr, both as JSON where they are.
+fn run(folder: &Path, target: &str, words: &str) -> (i32, Value, Value) {
+    let output = Command::new(env!("CARGO_BIN_EXE_armctl"))
+        .args(["-t", target, "--json", "--timeout", "2s", "yerc"])
+        .args(words.split_ascii_whitespace().map(|word| if word == "''" { "" } else { word }))
+        .current_dir(folder)
+        .env_clear()
+        .env("HOME", folder)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let json = |bytes: &[u8]| {
+        serde_json::from_slice(bytes).unwrap_or_else(|_| {
+            let text = String::from_utf8_lossy(bytes);
+            text.lines()
+                .last()
+                .map_or(Value::Null, |line| serde_json::from_str(line).unwrap_or_else(|_| text.clone().into()))
+        })
+    };
+    (output.status.code().unwrap(), json(&output.stdout), json(&output.stderr))
+}
+
+fn at(target: &str, words: &str) -> (i32, Value, Value) {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), target, words)
+}
+
+#[test]
+fn a_refused_alarm_hides_no_other() {
+    let alarms = "alarm = [{ code = 4315 }, { code = 4107 }, { code = 1300 }]";
+    let target = controller(alarms, |request| {
+        let is_slot_2 = matches!((request.command, request.instance), (0x70 | 0x30A, 2) | (0x71 | 0x30B, 1002));
+        if is_slot_2 { refused(request, 0x2010) } else { None }
+    });
+    let (exit, list, _) = at(&target, "alarm list");
+    let error = &list["data"]["alarms"][1]["error"];
+    assert_eq!((exit, &list["ok"], &error["asked"]), (9, &json!(false), &json!("alarm slot 2")), "{list}");
+    assert!(error["message"].as_str().unwrap().contains("0x30A (instance 2)"), "{error}");
+    assert_eq!(list["data"]["alarms"].as_array().unwrap().len(), 3, "{list}");
+    assert_eq!(list["data"]["alarms"][0]["ok"], true);
+    assert_eq!(list["error"]["exit"], 9);
+
+    let (exit, history, _) = at(&target, "alarm history --limit 3");
+    let failed: Vec<&Value> =
+        history["data"]["alarms"].as_array().unwrap().iter().filter(|alarm| alarm["ok"] == false).collect();
+    assert_eq!((exit, failed.len()), (9, 1), "{history}");
+    assert_eq!((&failed[0]["class"], &failed[0]["number"]), (&json!("monitor"), &json!(2)));
+    assert_eq!(failed[0]["error"]["asked"], "monitor alarm 2");
+    assert!(failed[0]["error"]["message"].as_str().unwrap().contains("0x30B (instance 1002)"), "{history}");
+
+    let (exit, nothing, error) = at(&target, "alarm history --class monitor --from 2 --limit 1");
+    assert_eq!((exit, nothing, &error["error"]["code"]), (3, Value::Null, &json!("0x2010")), "{error}");
+}
+
+#[test]
+fn whatever_says_that_there_is_no_30a_leads_to_70() {
+    const WAYS: [(&str, Spoil); 4] = [
+        ("A001", |request| if request.command == 0x30A { refused(request, 0xA001) } else { None }),
+        ("A002", |request| if request.command == 0x30A { refused(request, 0xA002) } else { None }),
+        ("0x28", |request| plain(request, 0x28)),
+        ("0x01", |request| plain(request, 0x01)),
+    ];
+    fn plain(request: &RequestFrame<'_>, code: u8) -> Option<Vec<u8>> {
+        let status = Status { code, added_size: 0, added: 0 };
+        (request.command == 0x30A).then(|| answer(request, LAST_BLOCK, status, &[]))
+    }
+    for (way, spoil) in WAYS {
+        let (exit, list, _) = at(&controller("alarm = [{ code = 4315 }]", spoil), "alarm list");
+        assert_eq!((exit, &list["data"]["alarms"][0]["code"]), (0, &json!(4315)), "{way}: {list}");
+        assert_eq!(list["data"]["with_texts"], false, "{way}");
+    }
+}
+
+#[test]
+fn positions_and_hours_keep_what_was_answered() {
+    let target = controller("", |request| match (request.command, request.instance) {
+        (0x75, 101) | (0x88, 110) => refused(request, 0x2010),
+        _ => None,
+    });
+    let (exit, position, _) = at(&target, "position");
+    assert_eq!((exit, &position["data"]["pulse"]["pulses"]["s"]), (9, &json!(0)), "{position}");
+    assert_eq!(position["data"]["base"]["error"]["asked"], "position of R1 in base coordinates");
+    assert!(position["error"]["message"].as_str().unwrap().contains("0x75 (instance 101)"), "{position}");
+    let (exit, hours, _) = at(&target, "hours");
+    let ok: Vec<&Value> = hours["data"]["times"].as_array().unwrap().iter().map(|time| &time["ok"]).collect();
+    assert_eq!((exit, ok), (9, vec![&json!(true), &json!(true), &json!(false), &json!(true)]), "{hours}");
+    let (exit, ..) = at(&target, "position --coordinates base");
+    assert_eq!(exit, 3);
+}
+
+#[test]
+fn variables_are_named_as_they_were_typed() {
+    let target = controller("", |_| None);
+    let (exit, two, _) = at(&target, "var get B0 B300");
+    assert_eq!((exit, &two["error"]["exit"]), (9, &json!(9)));
+    let message = two["error"]["message"].as_str().unwrap();
+    assert!(message.starts_with("1 of 2 failed: B300: the controller refused 0x7A (instance 300)"), "{message}");
+    assert_eq!((&two["data"]["variables"][0]["ok"], &two["data"]["variables"][1]["ok"]), (&json!(true), &json!(false)));
+    let (exit, three, _) = at(&target, "var get B0 B99 B100");
+    assert_eq!((exit, &three["data"]["variables"][2]["error"]["asked"]), (9, &json!("B100")));
+    let (exit, nothing, error) = at(&target, "var get B300");
+    assert_eq!((exit, nothing), (3, Value::Null));
+    assert!(error["error"]["message"].as_str().unwrap().starts_with("B300: "), "{error}");
+    let (exit, nothing, all) = at(&target, "var get B300 I300");
+    assert_eq!((exit, nothing, &all["error"]["kind"]), (3, Value::Null, &json!("refused")));
+}
+
+#[test]
+fn registers_and_signals_are_read_one_by_one_where_there_is_no_other_way() {
+    let target = controller("registers = { 10 = 4660 }\nio = { 10010 = true }", |request| {
+        match (request.command, request.instance) {
+            (0x300 | 0x301, _) => Some(answer(request, LAST_BLOCK, Status { code: 8, added_size: 0, added: 0 }, &[])),
+            (0x79, 12) => refused(request, 0x2110),
+            _ => None,
+        }
+    });
+    let (exit, registers, _) = at(&target, "register get 10..11");
+    assert_eq!((exit, &registers["data"]["registers"][0]["value"]), (0, &json!(4660)), "{registers}");
+    let (exit, some, _) = at(&target, "register get 0xA..0xC");
+    assert_eq!((exit, &some["data"]["registers"][2]["error"]["asked"]), (9, &json!("register 12")), "{some}");
+    assert!(some["error"]["message"].as_str().unwrap().contains("0x79 (instance 12)"), "{some}");
+    let (exit, signals, _) = at(&target, "io get 10010..10027");
+    assert_eq!((exit, &signals["data"]["signals"][0]["on"]), (0, &json!(true)), "{signals}");
+    let (exit, set, error) = at(&target, "io set 27010=on 27030=on");
+    assert_eq!((exit, &set["data"]["groups"][1]["value"]), (0, &json!(1)), "{set} {error}");
+}
+
+#[test]
+fn what_was_written_before_a_refusal_is_said() {
+    let target = controller("", |request| if request.instance == 20 { refused(request, 0x2110) } else { None });
+    let (exit, _, error) = at(&target, "register set 1=1 20=2 30=3");
+    let message = error["error"]["message"].as_str().unwrap();
+    assert_eq!(exit, 9, "{error}");
+    assert!(message.contains("written: register 1; not written: register 20, 30"), "{message}");
+    assert!(message.contains("0x79 (instance 20)"), "{message}");
+}
+
+#[test]
+fn axes_that_do_not_exist_are_not_shown() {
+    for (state, axes) in
+        [("", 6), ("robot_axes = 7", 7), ("trim_axes = true", 6), ("trim_axes = false\nrobot_axes = 7", 7)]
+    {
+        let target = controller(state, |_| None);
+        for (words, field) in [
+            ("position", "/data/pulse/pulses"),
+            ("torque", "/data/torque_raw"),
+            ("position-error", "/data/error_pulses"),
+        ] {
+            let (exit, data, _) = at(&target, words);
+            let count = data.pointer(field).and_then(Value::as_object).map(serde_json::Map::len);
+            assert_eq!((exit, count), (0, Some(axes)), "{state}: {words}: {data}");
+            assert_eq!(
+                data.pointer("/data/base").is_some_and(|base| base.get("re_deg").is_some()),
+                axes == 7 && words == "position"
+            );
+        }
+    }
+    // Nobody knows better than the controller, if it does not tell.
+    let untold = controller("", |request| if request.command == 0x74 { refused(request, 0x2150) } else { None });
+    let (exit, data, _) = at(&untold, "torque");
+    assert_eq!((exit, data["data"]["torque_raw"].as_object().map(serde_json::Map::len)), (0, Some(8)));
+}
+
+#[test]
+fn a_word_of_a_position_is_read_changed_and_written_whole() {
+    // 0x10 is not listed for P (3.3.16).
+    let target = controller("", |request| {
+        if request.command == 0x7F && request.service == 0x10 { refused(request, 0xA001) } else { None }
+    });
+    let (exit, set, error) = at(&target, "var set P1.tool=0x2 P1.axis1=5");
+    assert_eq!(exit, 0, "{error}");
+    let tool = json!({"name": "P1", "part": "tool", "attribute": 3, "old": 0, "value": 2});
+    assert_eq!(set["data"]["parts"][0], tool, "{set}");
+    let (_, get, _) = at(&target, "var get P1");
+    let position = &get["data"]["variables"][0]["value"];
+    let text = position["text"].as_str().unwrap();
+    assert!(text.starts_with("pulse:s=5,l=-2000,") && text.contains("tool=2"), "{text}");
+    let (exit, _, error) = at(&target, "var set B0=1 P100.tool=2");
+    assert_eq!(exit, 3, "{error}");
+    assert!(error["error"]["message"].as_str().unwrap().contains("nothing was written"), "{error}");
+    let (_, get, _) = at(&target, "var get B0");
+    assert_eq!(get["data"]["variables"][0]["value"], 0);
+}
+
+#[test]
+fn garbage_in_a_transfer_is_malformed() {
+    let target = controller("", |request| {
+        let is_ack = request.division == Division::File && request.ack && request.service == 0x16;
+        is_ack.then(|| vec![0xFF; 40])
+    });
+    let (exit, _, error) = at(&target, "file get TESTJOB.JBI");
+    assert_eq!((exit, &error["error"]["kind"]), (5, &json!("malformed")), "{error}");
+}
+
+#[test]
+fn a_list_bears_what_controllers_put_into_it() {
+    let target = controller("", |request| {
+        let data: &[u8] = match (request.division, request.ack, request.data) {
+            (Division::File, false, b"*.JBI") => b"A.JBI\nB.JBI \r\nC.JBI\rD.JBI\0\0\r\n",
+            (Division::File, false, b"*.DAT") => return Some(answer(request, 1, Status::OK, &[b'A'; 479])),
+            (Division::File, true, _) if request.block == 1 => &[b'A'; 479],
+            _ => return (request.division == Division::File && request.ack).then(Vec::new),
+        };
+        let block = if request.ack { LAST_BLOCK | 2 } else { LAST_BLOCK | 1 };
+        Some(answer(request, block, Status::OK, data))
+    });
+    let (exit, list, error) = at(&target, "file list");
+    let names: Vec<&Value> = list["data"]["files"].as_array().unwrap().iter().map(|file| &file["name"]).collect();
+    assert_eq!(
+        (exit, names),
+        (0, ["A.JBI", "B.JBI", "C.JBI", "D.JBI"].iter().map(|name| json!(name)).collect::<Vec<_>>().iter().collect()),
+        "{error}"
+    );
+    let (exit, _, error) = at(&target, "file list --type dat");
+    assert_eq!(exit, 5, "{error}");
+    assert!(error["error"]["message"].as_str().unwrap().contains("958 bytes"), "{error}");
+}
+
+#[test]
+fn filters_and_names_are_those_of_the_protocol() {
+    let target = controller("[[file]]\nname = 'CELL.XYZ'\ntext = 'x'", |_| None);
+    let folder = tempfile::tempdir().unwrap();
+    for filter in ["''", "*.*"] {
+        let (exit, list, error) = run(folder.path(), &target, &format!("file list --filter {filter}"));
+        assert_eq!(exit, 0, "{filter}: {error}");
+        let has = |name: &str| list["data"]["files"].as_array().unwrap().iter().any(|file| file["name"] == name);
+        assert!(has("TESTJOB.JBI") && !has("CELL.XYZ"), "{filter}: {list}");
+    }
+    let (exit, _, error) = run(folder.path(), &target, "file get CELL.XYZ");
+    assert_eq!(exit, 0, "{error}");
+    let long = format!("{}.ABCDEF", "N".repeat(470));
+    let (exit, _, error) = run(folder.path(), &target, &format!("file get {long} --output -"));
+    assert_eq!(exit, 2, "stdout and --json do not go together: {error}");
+    let (exit, frames, error) =
+        run(folder.path(), &target, &format!("file get {} --dry-run", "N".repeat(200) + ".ABC"));
+    assert_eq!((exit, frames["data"]["frames"].as_array().map(Vec::len)), (0, Some(1)), "{error}");
+}
+
+#[test]
+fn a_job_under_another_name_is_warned_of_and_a_plain_last_ack_is_looked_after() {
+    let target = controller("plain_last_ack = true", |_| None);
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("NEW.JBI"), "/JOB\r\n//NAME NEW\r\nNOP\r\nEND\r\n").unwrap();
+    std::fs::write(folder.path().join("B.JBI"), "/JOB\r\n//NAME OTHER\r\nNOP\r\nEND\r\n").unwrap();
+    let (exit, put, error) = run(folder.path(), &target, "file put NEW.JBI");
+    assert_eq!((exit, &put["data"]["files"][0]["state"]), (0, &json!("done")), "{error}");
+    let output = Command::new(env!("CARGO_BIN_EXE_armctl"))
+        .args(["-t", &target, "yerc", "file", "put", "B.JBI", "--dry-run"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(told.contains("B.JBI says //NAME OTHER but is sent as B"), "{told}");
+
+    let unlisted = controller("plain_last_ack = true", |request| {
+        let is_list = request.division == Division::File && request.service == 0x32;
+        if is_list { refused(request, 0x2110) } else { None }
+    });
+    let (exit, _, error) = run(folder.path(), &unlisted, "file put NEW.JBI");
+    assert_eq!(exit, 6, "{error}");
+}
+
+#[test]
+fn the_date_in_a_header_can_be_left_out() {
+    let target = controller("", |_| None);
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(run(folder.path(), &target, "file get TESTJOB.JBI").0, 0);
+    let path = folder.path().join("TESTJOB.JBI");
+    let job = String::from_utf8(std::fs::read(&path).unwrap()).unwrap();
+    let other = job.replace("///DATE 2026/03/14 08:00", "///DATE 2027/01/01 09:30");
+    assert_ne!(job, other);
+    std::fs::write(&path, other).unwrap();
+    assert_eq!(run(folder.path(), &target, "file diff TESTJOB.JBI").0, 8);
+    let (exit, diff, _) = run(folder.path(), &target, "file diff TESTJOB.JBI --ignore-header");
+    assert_eq!((exit, &diff["data"]["equal"]), (0, &json!(true)), "{diff}");
+    std::fs::write(
+        &path,
+        job.replace("///DATE 2026/03/14 08:00", "///DATE 2027").replace("TIMER T=0.50", "TIMER T=0.60"),
+    )
+    .unwrap();
+    let (exit, diff, _) = run(folder.path(), &target, "file diff TESTJOB.JBI --ignore-header");
+    assert_eq!((exit, diff["data"]["hunks"].as_array().map(Vec::len)), (8, Some(1)), "{diff}");
+}
