@@ -26,7 +26,7 @@ use crate::failure::{Failure, Kind};
 use crate::gate::{Demand, Gate, OnInterrupt};
 use crate::output::Screen;
 use crate::output::envelope::Envelope;
-use crate::output::jq::Filter;
+use crate::output::jq::{Filter, after_a_change};
 use crate::output::redraw::Redraw;
 use crate::output::view::{Table, View};
 use crate::settings::{Robot, Sources};
@@ -174,8 +174,7 @@ impl Run {
         if risk == Risk::Read || failure.kind == Kind::PipeClosed || self.gate.dry_run {
             return failure;
         }
-        let message = format!("it was done, but not reported: {}", failure.message);
-        Failure { message, ..failure }.hint("look before you repeat it")
+        after_a_change(failure)
     }
 
     /// Repeats a reading command over one connection.
@@ -251,7 +250,8 @@ impl Run {
     async fn many<F: Family>(&self, command: &dyn AnyCommand<F>, robots: &[Robot]) -> Result<(), Stopped> {
         if self.gate.dry_run || !self.repeat.is_wanted() {
             let outcomes = at_a_time(robots.iter().map(|robot| self.once(command, robot))).await;
-            self.print_many(command.id(), robots, &outcomes, Place::First)?;
+            let printed = self.print_many(command.id(), robots, &outcomes, Place::First);
+            printed.map_err(|failure| self.unprinted(command.risk(), failure))?;
             return self.verdict(&outcomes);
         }
         let mut links = at_a_time(robots.iter().map(|robot| self.connect(command, robot))).await;

@@ -2,10 +2,12 @@
 //!
 //! stdout carries data only; prompts, progress, hints and logs go to stderr.
 
+pub mod busy;
 pub mod envelope;
 pub mod escape;
 pub mod fullscreen;
 pub mod jq;
+pub mod leave;
 pub mod progress;
 pub mod prompt;
 pub mod redraw;
@@ -116,6 +118,7 @@ impl Screen {
 
     /// Writes data as it is.
     pub fn bytes(&self, bytes: &[u8]) -> Result<(), Failure> {
+        let _busy = busy::busy();
         let mut stdout = io::stdout().lock();
         stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|error| Failure::io("stdout", &error))
     }

@@ -15,6 +15,8 @@ use crate::command::ValueKind;
 use crate::command::run::{Run, Stopped};
 use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
+use crate::files;
+use crate::output::jq::after_a_change;
 use crate::output::view::{Table, View};
 use crate::settings::inventory::{Inventory, is_name};
 use crate::settings::target::{Family, Target};
@@ -164,7 +166,8 @@ impl Add {
             }
             Ok(())
         })?;
-        run.local("robots.add", &Changed { done: "added", name: self.name, target: self.url.url().to_owned(), file })
+        let target = self.url.url().to_owned();
+        told(run.local("robots.add", &Changed { done: "added", name: self.name, target, file }))
     }
 }
 
@@ -180,8 +183,13 @@ impl Remove {
             }
             Ok(())
         })?;
-        run.local("robots.remove", &Changed { done: "removed", name: self.name, target, file })
+        told(run.local("robots.remove", &Changed { done: "removed", name: self.name, target, file }))
     }
+}
+
+/// What was changed is changed, also where that could not be reported.
+fn told(reported: Result<(), Stopped>) -> Result<(), Stopped> {
+    reported.map_err(|stopped| Stopped { failure: after_a_change(stopped.failure), ..stopped })
 }
 
 /// Changes the file and keeps its comments; it is written beside and renamed. What comes back is where it is.
@@ -189,7 +197,7 @@ fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static 
     let path = run.sources.inventory.path.as_deref().ok_or_else(|| {
         Failure::new(Kind::Usage, "there is no home folder to keep robots.toml in").hint("name a file with --config")
     })?;
-    let text = match std::fs::read_to_string(path) {
+    let text = match files::text(path, files::SETTINGS) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
         Err(error) => return Err(Failure::io(path.display(), &error)),

@@ -160,13 +160,10 @@ impl Run {
         };
         let Some(value) = value else { return Ok(()) };
         let Some(filter) = &self.filter else { return self.screen.json(&value) };
-        for value in filter.apply(&value)? {
-            match value {
-                Value::String(text) => self.screen.data(&format!("{}\n", escape::lines(&text)))?,
-                value => self.screen.json(&value)?,
-            }
-        }
-        Ok(())
+        filter.apply(&value, |value| match value {
+            Value::String(text) => self.screen.data(&format!("{}\n", escape::lines(&text))),
+            value => self.screen.json(&value),
+        })
     }
 
     fn show(&self, view: &View, place: Place<'_>) -> Result<(), Failure> {

@@ -1,6 +1,5 @@
 //! `yerc var set`.
 
-use std::io::Read as _;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -23,6 +22,7 @@ use crate::controller::yerc::query::{Query, WriteField};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::variables::{Reference, Value, VariableKind, WriteStep, plan_writes};
 use crate::failure::Failure;
+use crate::files;
 use crate::output::view::{Cell, Table, View};
 
 /// Variables to write.
@@ -217,11 +217,7 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
 const MOST: u64 = 1 << 20;
 
 fn read(path: &PathBuf) -> Result<String, Failure> {
-    let failed = |error| Failure::io(path.display(), &error);
-    let file = std::fs::File::open(path).map_err(failed)?;
-    let mut text = String::new();
-    file.take(MOST).read_to_string(&mut text).map_err(failed)?;
-    Ok(text)
+    files::text(path, MOST).map_err(|error| Failure::io(path.display(), &error))
 }
 
 /// A request of `var set`.
