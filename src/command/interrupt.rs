@@ -135,7 +135,7 @@ async fn listen(mut signals: Signals, ask: Asked) {
             continue;
         }
         if presses.are_enough(how, ask.borrow().is_some(), Instant::now()) {
-            leave::at_once(how);
+            leave::at_once(&format!("{how} again: ended at once; what was under way may go on"));
         }
         seen = busy::under_way();
         // The first one counts, unless it was for one line only.

@@ -237,6 +237,8 @@ pub fn folders_in(folder: &Path) -> Vec<PathBuf> {
 /// Looks into a folder that a backup shall go to: the backup that it holds, if it holds one. Anything else must not be
 /// mixed with a backup.
 pub fn look<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
+    // Of a backup that was killed.
+    files::sweep(folder);
     let mut entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),

@@ -125,6 +125,7 @@ impl Screen {
 
     /// Writes a value as JSON: a line in a pipe or as `jsonl`, indented on a terminal.
     pub fn json(&self, value: &impl Serialize) -> Result<(), Failure> {
+        let _busy = busy::busy();
         let pretty = self.format == Format::Json && self.is_stdout_terminal();
         let mut text = if pretty { escape::json_pretty(value) } else { escape::json_line(value) }
             .map_err(|error| Failure::local(format!("report as JSON: {error}")))?;

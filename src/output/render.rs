@@ -1,27 +1,32 @@
 //! Views as tables for people and as CSV for spreadsheets.
 
+use std::borrow::Cow;
+
 use comfy_table::presets::NOTHING;
 use comfy_table::{Attribute, CellAlignment, Color, ColumnConstraint, ContentArrangement};
 use dialoguer::console::measure_text_width;
 
-use super::escape;
+use super::{busy, escape};
 use super::view::{Cell, Section, Table, Tone, View};
 
 /// The view as text of at most `width` columns.
 pub fn text(view: &View, width: u16, color: bool) -> String {
+    let _busy = busy::busy();
     let parts: Vec<String> = view.sections.iter().map(|section| section_text(section, width, color)).collect();
     parts.join("\n")
 }
 
 /// The view as CSV (RFC 4180): its table, or its fields as one row, after a column that names the robot where there are
-/// several. Lines end in `\n`.
+/// several. Lines end in `\n`. Characters that a terminal would obey are escaped, and texts that a spreadsheet would take
+/// for a formula are marked.
 pub fn csv(view: &View, robot: Option<&str>) -> String {
+    let _busy = busy::busy();
     let mut out = String::new();
     let header = |names: &mut dyn Iterator<Item = &str>| {
         robot.map(|_| "robot".to_owned()).into_iter().chain(names.map(column_id)).collect::<Vec<_>>()
     };
     let line = |cells: &mut dyn Iterator<Item = &Cell>| {
-        robot.map(ToOwned::to_owned).into_iter().chain(cells.map(|cell| cell.text.clone())).collect::<Vec<_>>()
+        robot.map(harmless).into_iter().chain(cells.map(csv_cell)).collect::<Vec<_>>()
     };
     for section in &view.sections {
         match section {
@@ -35,8 +40,13 @@ pub fn csv(view: &View, robot: Option<&str>) -> String {
                     csv_line(&mut out, &line(&mut row.iter()));
                 }
             }
-            Section::Text(text) => out.push_str(text),
-            Section::Lines(lines) => out.extend(lines.iter().flat_map(|line| [line.text.as_str(), "\n"])),
+            Section::Text(text) => out.push_str(&escape::lines(text)),
+            Section::Lines(lines) => {
+                for line in lines {
+                    out.push_str(&escape::line(&line.text));
+                    out.push('\n');
+                }
+            }
         }
     }
     out
@@ -60,9 +70,11 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
         }
         Section::Lines(lines) => return lines.iter().map(|line| painted(line, color) + "\n").collect(),
         Section::Fields(fields) => {
+            let names = fields.iter().map(|(name, _)| measure_text_width(name)).max().unwrap_or_default();
+            let room = room(width, 2, names);
             for (name, cell) in fields {
                 // Values of fields stand on the left: they are of different kinds.
-                let value = styled(&Cell { is_number: false, ..cell.clone() });
+                let value = styled(&Cell { is_number: false, ..cell.clone() }, room);
                 grid.add_row([comfy_table::Cell::new(*name).add_attribute(Attribute::Dim), value]);
             }
         }
@@ -75,8 +87,9 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
                 if is_number { cell.set_alignment(CellAlignment::Right) } else { cell }
             });
             grid.set_header(header.collect::<Vec<_>>());
+            let room = room(width, table.columns.len(), 0);
             for row in &table.rows {
-                grid.add_row(row.iter().map(styled).collect::<Vec<_>>());
+                grid.add_row(row.iter().map(|cell| styled(cell, room)).collect::<Vec<_>>());
             }
         }
     }
@@ -121,8 +134,49 @@ fn records(table: &Table, width: u16, color: bool) -> String {
     rows.collect::<Vec<_>>().join("\n")
 }
 
-fn styled(cell: &Cell) -> comfy_table::Cell {
-    let shown = comfy_table::Cell::new(escape::line(&cell.text));
+/// A word from which on it is broken here, because the layout takes a time for one that grows with its square.
+const GIANT: usize = 4096;
+
+/// Columns that a giant word may fill beside so many columns of a table, of which one is known to have this width.
+fn room(width: u16, columns: usize, known: usize) -> usize {
+    let others = if known > 0 { known } else { columns.saturating_sub(1) * WORD };
+    usize::from(width).saturating_sub(others + usize::from(PADDING) * columns).max(WORD)
+}
+
+/// The text with its giant words in lines of `room` columns.
+fn without_giants(text: Cow<'_, str>, room: usize) -> Cow<'_, str> {
+    if text.len() < GIANT || text.split(' ').all(|word| word.len() < GIANT) {
+        return text;
+    }
+    let mut broken = String::with_capacity(text.len() + text.len() / room + 1);
+    for (index, word) in text.split(' ').enumerate() {
+        if word.len() < GIANT {
+            if index > 0 && !broken.ends_with('\n') {
+                broken.push(' ');
+            }
+            broken.push_str(word);
+            continue;
+        }
+        let mut column = room;
+        for character in word.chars() {
+            let wide = if character.is_ascii() { 1 } else { measure_text_width(character.encode_utf8(&mut [0; 4])) };
+            if column + wide > room {
+                if !broken.is_empty() {
+                    broken.push('\n');
+                }
+                column = 0;
+            }
+            column += wide;
+            broken.push(character);
+        }
+        broken.push('\n');
+    }
+    broken.truncate(broken.trim_end_matches('\n').len());
+    broken.into()
+}
+
+fn styled(cell: &Cell, room: usize) -> comfy_table::Cell {
+    let shown = comfy_table::Cell::new(without_giants(escape::line(&cell.text), room));
     let shown = match cell.tone {
         Tone::Plain => shown,
         Tone::Good => shown.fg(Color::Green),
@@ -153,6 +207,19 @@ fn column_id(name: &str) -> String {
     let words = name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
     let id = words.map(str::to_lowercase).collect::<Vec<_>>().join("_");
     if id.is_empty() { "number".to_owned() } else { id }
+}
+
+/// The text of a cell; numbers are as they are.
+fn csv_cell(cell: &Cell) -> String {
+    if cell.is_number { escape::lines(&cell.text).into_owned() } else { harmless(&cell.text) }
+}
+
+/// A text that does nothing on a terminal, and nothing in a spreadsheet: OWASP's apostrophe before what would be a
+/// formula. Signed numbers are none, nor is the dash that stands for nothing.
+fn harmless(text: &str) -> String {
+    let shown = escape::lines(text);
+    let is_plain = shown == "-" || shown.parse::<f64>().is_ok();
+    if shown.starts_with(['=', '+', '-', '@']) && !is_plain { format!("'{shown}") } else { shown.into_owned() }
 }
 
 fn csv_line(out: &mut String, fields: &[String]) {
@@ -192,7 +259,49 @@ mod tests {
 
     #[test]
     fn csv_quotes_what_needs_it() {
-        assert_eq!(csv(&sample(), None), "name,x_mm\nてすと,1.000\n\"a,\"\"b\"\"\u{1b}[31m\",-20.500\n");
+        assert_eq!(csv(&sample(), None), "name,x_mm\nてすと,1.000\n\"a,\"\"b\"\"\\x1b[31m\",-20.500\n");
+    }
+
+    #[test]
+    fn csv_does_nothing_on_a_terminal_or_in_a_spreadsheet() {
+        let csv = |text: &str| {
+            let mut table = Table::new(&["text"], "");
+            table.row([text.into()]);
+            csv(&View::table(table), None).trim_start_matches("text\n").trim_end_matches('\n').to_owned()
+        };
+        for (text, expected) in [
+            ("=1+2", "'=1+2"),
+            ("+SUM(A1)", "'+SUM(A1)"),
+            ("-2+3", "'-2+3"),
+            ("@HSON", "'@HSON"),
+            ("=HYPERLINK(\"x\",\"y\")", "\"'=HYPERLINK(\"\"x\"\",\"\"y\"\")\""),
+            ("-12.5", "-12.5"),
+            ("+3", "+3"),
+            ("-", "-"),
+            ("a=b", "a=b"),
+            ("\t=1", "\\t=1"),
+            ("\u{1b}]0;title\u{7}", "\\x1b]0;title\\x07"),
+            ("two\nlines", "\"two\nlines\""),
+        ] {
+            assert_eq!(csv(text), expected, "{text:?}");
+        }
+        let text = View::text("a\u{1b}[2Jb\n");
+        assert_eq!(super::csv(&text, Some("=r")), "a\\x1b[2Jb\n");
+        assert!(super::csv(&sample(), Some("=r")).contains("'=r,"));
+    }
+
+    /// With a time that grows with the square of the length this would take hours.
+    #[test]
+    fn a_word_of_megabytes_is_laid_out_in_lines() {
+        let giant = "A".repeat(8 << 20);
+        let mut table = Table::new(&["number", "raw"], "");
+        table.row([Cell::number("1"), format!("before {giant} after").into()]);
+        table.row([Cell::number("2"), "字".repeat(100_000).into()]);
+        for view in [View::table(table), View::fields([("raw", giant.clone().into())])] {
+            let text = text(&view, 80, false);
+            assert!(text.lines().all(|line| measure_text_width(line) <= 80));
+            assert_eq!(text.matches('A').count() - text.matches("RAW").count(), giant.len());
+        }
     }
 
     #[test]

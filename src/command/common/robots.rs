@@ -3,8 +3,6 @@
 pub mod check;
 pub mod discover;
 
-use std::path::Path;
-
 use clap::{Args, Subcommand};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -197,6 +195,8 @@ fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static 
     let path = run.sources.inventory.path.as_deref().ok_or_else(|| {
         Failure::new(Kind::Usage, "there is no home folder to keep robots.toml in").hint("name a file with --config")
     })?;
+    // Others may be changing it: what is read is what is replaced.
+    let _turn = files::turn(path).map_err(|error| Failure::io(path.display(), &error))?;
     let text = match files::text(path, files::SETTINGS) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
@@ -211,20 +211,8 @@ fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static 
     let text = document.to_string();
     // What would not be read again is not written.
     Inventory::parse(&text, &path.display().to_string())?;
-    replace(path, text.as_bytes()).map_err(|error| Failure::io(path.display(), &error))?;
+    files::replace(path, text.as_bytes()).map_err(|error| Failure::io(path.display(), &error))?;
     Ok(path.display().to_string())
-}
-
-fn replace(path: &Path, content: &[u8]) -> std::io::Result<()> {
-    use std::io::Write as _;
-
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder)?;
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    file.write_all(content)?;
-    file.as_file().sync_all()?;
-    file.persist(path)?;
-    Ok(())
 }
 
 fn known<'a>(inventory: &'a Inventory, name: &str) -> Result<&'a crate::settings::inventory::Entry, Failure> {

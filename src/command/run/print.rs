@@ -106,7 +106,8 @@ impl Run {
         }
     }
 
-    pub(super) fn is_for_people(&self) -> bool {
+    /// Whether reports are shown as views: tables, or CSV.
+    pub fn is_for_people(&self) -> bool {
         self.filter.is_none() && matches!(self.screen.format, Format::Table | Format::Csv)
     }
 

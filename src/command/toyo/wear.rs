@@ -128,7 +128,7 @@ impl Diary {
     /// Leaves out what is too old.
     fn shorten(&self, now: u64) -> std::io::Result<()> {
         let text = content(&self.path);
-        let mut beside = tempfile::NamedTempFile::new_in(self.path.parent().unwrap_or(Path::new(".")))?;
+        let mut beside = files::draft_in(&files::folder_of(&self.path))?;
         for line in fresh(&text, now) {
             writeln!(beside, "{line}")?;
         }

@@ -57,7 +57,7 @@ impl Program {
                 Ok(value) => value,
                 Err(error) => {
                     return match error.get_err() {
-                        Ok(error) => Err(shortened(&error.to_string())),
+                        Ok(error) => Err(shortened(&said(error))),
                         // Nothing else leaves a filter than `halt`.
                         Err(halt) => match halt.get_halt() {
                             Ok(0) => Ok(()),
@@ -77,6 +77,14 @@ impl Program {
 /// A definition that lives no longer than others beside it.
 fn as_short_as<'s>(def: Def<&'static str>) -> Def<&'s str> {
     def
+}
+
+/// An error in words; one that the filter itself raises may be any value.
+fn said(error: jaq_core::Error<Val>) -> String {
+    match error.into_val() {
+        Val::TStr(text) => String::from_utf8_lossy(&text).into_owned(),
+        other => other.to_string(),
+    }
 }
 
 fn shortened(text: &str) -> String {
