@@ -110,7 +110,6 @@ impl Failure {
             }
             ErrorKind::InvalidData => failure.hint("this is not the kind of file that is wanted here"),
             ErrorKind::IsADirectory => failure.hint("name a file, not a folder"),
-            ErrorKind::Unsupported => failure.hint("name a regular file: devices, pipes and sockets are not read"),
             ErrorKind::FileTooLarge => failure.hint("check that it is the file that was meant"),
             ErrorKind::NotADirectory => failure.hint("check the path: a part of it is a file, not a folder"),
             ErrorKind::NotFound => failure.hint("check the path; missing folders are not made"),

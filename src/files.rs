@@ -63,7 +63,10 @@ fn regular(found: &std::fs::Metadata) -> io::Result<()> {
     match found.file_type() {
         kind if kind.is_file() => Ok(()),
         kind if kind.is_dir() => Err(ErrorKind::IsADirectory.into()),
-        _ => Err(io::Error::new(ErrorKind::Unsupported, "it is not a regular file")),
+        _ => Err(io::Error::new(
+            ErrorKind::Unsupported,
+            "it is not a regular file; devices, pipes and sockets are not read",
+        )),
     }
 }
 
@@ -227,7 +230,10 @@ mod tests {
         std::fs::write(&path, "12345").unwrap();
         assert_eq!(read(&path, 5).unwrap(), b"12345");
         let error = read(&path, 4).unwrap_err();
-        assert_eq!((error.kind(), error.to_string()), (ErrorKind::FileTooLarge, "it is larger than 4 bytes".to_owned()));
+        assert_eq!(
+            (error.kind(), error.to_string()),
+            (ErrorKind::FileTooLarge, "it is larger than 4 bytes".to_owned())
+        );
         std::fs::write(&path, b"\xff").unwrap();
         assert_eq!(text(&path, 5).unwrap_err().kind(), ErrorKind::InvalidData);
         assert_eq!(read(folder.path(), 5).unwrap_err().kind(), ErrorKind::IsADirectory);

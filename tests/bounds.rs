@@ -132,7 +132,9 @@ fn only_regular_files_of_a_sensible_size_are_read() {
 #[test]
 fn filters_are_bounded() {
     let folder = folder();
-    let status = |filter: &str| run(folder.path(), &["--sim", "yerc", "status", &format!("--jq={filter}")]);
+    // Less than a filter may have otherwise, so that it is soon full.
+    let status =
+        |filter: &str| limited(folder.path(), "-v 300000", &["--sim", "yerc", "status", &format!("--jq={filter}")]);
     let deep = "(".repeat(20_000) + "1" + &")".repeat(20_000);
     for filter in ["def f: 1 + f; f", "def f: [f]; f", "[repeat(1)]", "reduce range(1000000) as $i (0; [.])", &deep] {
         ends(&status(filter), 2, "it needs too much memory, or calls itself too deep");
@@ -170,7 +172,8 @@ fn a_filter_that_fails_after_a_change_is_no_mistake_of_the_line() {
     ends(&run(folder.path(), &["--sim", "yerc", "var", "set", "B0=1", "--jq", ".["]), 2, "does not parse");
 }
 
-/// Whether it ends at one signal, which comes once it computes.
+/// It ends at one signal, which comes once it computes.
+#[cfg(target_os = "linux")]
 fn ends_at_one(folder: &Path, words: &[&str], name: &str) {
     let child = armctl(folder, words).spawn().unwrap();
     // Its filter runs in a process of its own, once there is one.
@@ -180,9 +183,18 @@ fn ends_at_one(folder: &Path, words: &[&str], name: &str) {
         std::thread::yield_now();
     }
     let worker = children().trim().to_owned();
+    // Once it has computed for a while (in ticks of the clock), it does nothing else any more.
+    let ticks = || {
+        let stat = std::fs::read_to_string(format!("/proc/{worker}/stat")).unwrap_or_default();
+        stat.rsplit(')').next().and_then(|rest| rest.split(' ').nth(12)?.parse::<u64>().ok()).unwrap_or_default()
+    };
+    while ticks() < 10 {
+        std::thread::yield_now();
+    }
     signal(&child, name);
     let output = child.wait_with_output().unwrap();
-    assert!(output.status.code().is_none_or(|code| code == 130), "{name}: {:?} {}", output.status, stderr(&output));
+    assert_eq!(output.status.code(), Some(130), "{name}: {}", stderr(&output));
+    assert!(stderr(&output).contains("interrupted"), "{name}: {}", stderr(&output));
     // It goes, too.
     while Path::new(&format!("/proc/{worker}")).exists() {
         std::thread::yield_now();
@@ -193,7 +205,10 @@ fn ends_at_one(folder: &Path, words: &[&str], name: &str) {
 #[test]
 fn a_filter_without_end_holds_up_no_signal() {
     let folder = folder();
-    for name in ["INT", "TERM", "HUP"] {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).unwrap().trim();
+    let is_hangup_ignored = u64::from_str_radix(ignored, 16).unwrap() & 1 == 1;
+    for name in ["INT", "TERM", "HUP"].into_iter().filter(|name| *name != "HUP" || !is_hangup_ignored) {
         for words in [
             &["--sim", "yerc", "status", "--jq", "def f: f; f"][..],
             &["--sim", "yerc", "status", "--until", "def f: f; f"],
@@ -207,7 +222,8 @@ fn a_filter_without_end_holds_up_no_signal() {
 #[test]
 fn a_reader_that_does_not_read_holds_up_no_signal() {
     let folder = folder();
-    let mut child = armctl(folder.path(), &["--sim", "yerc", "status", "--watch", "1ms", "-o", "jsonl"]).spawn().unwrap();
+    let mut child =
+        armctl(folder.path(), &["--sim", "yerc", "status", "--watch", "1ms", "-o", "jsonl"]).spawn().unwrap();
     let mut pipe = child.stdout.take().unwrap();
     let mut first = [0; 1];
     std::io::Read::read_exact(&mut pipe, &mut first).unwrap();
@@ -246,13 +262,14 @@ fn an_inventory_keeps_its_rights_and_its_link() {
     ends(&run(folder.path(), &["--config", "robots.toml", "robots", "add", "cell", "udp://127.0.0.1"]), 0, "");
     assert!(folder.path().join("robots.toml").is_symlink());
     assert_eq!(file.metadata().unwrap().permissions().mode() & 0o777, 0o664);
-    assert!(std::fs::read_to_string(&file).unwrap().starts_with("# ours\n"));
+    assert!(std::fs::read_to_string(&file).unwrap().contains("# ours\n"));
 }
 
 #[test]
 fn a_process_that_may_open_nothing_says_so() {
     let folder = folder();
-    for most in 3..12 {
+    // With fewer, the system cannot load the program.
+    for most in 5..12 {
         let output = limited(folder.path(), &format!("-n {most}"), &["--sim", "yerc", "status"]);
         ends(&output, 1, "ulimit -n");
         assert!(!stderr(&output).contains("panicked"), "{}", stderr(&output));

@@ -82,16 +82,16 @@ fn start() -> std::io::Result<Asked> {
     let ask = Asked::default();
     let (ready, is_ready) = mpsc::channel();
     let passed_on = ask.clone();
-    thread::Builder::new().name("signals".to_owned()).spawn(move || {
-        match tokio::runtime::Builder::new_current_thread().enable_all().build() {
+    thread::Builder::new().name("signals".to_owned()).spawn(
+        move || match tokio::runtime::Builder::new_current_thread().enable_all().build() {
             Ok(runtime) => runtime.block_on(async move {
                 let signals = Signals::new();
                 let _ = ready.send(Ok(()));
                 listen(signals, passed_on).await;
             }),
             Err(error) => _ = ready.send(Err(error)),
-        }
-    })?;
+        },
+    )?;
     is_ready.recv().unwrap_or_else(|_| Err(std::io::Error::other("the thread for them has ended")))?;
     Ok(ask)
 }
@@ -168,8 +168,8 @@ impl Presses {
         }
         if self.last.is_none_or(|last| now.duration_since(last) >= TWICE) {
             self.count += 1;
+            self.last = Some(now);
         }
-        self.last = Some(now);
         self.count > 1
     }
 }
@@ -282,7 +282,8 @@ mod tests {
         let mut presses = Presses::default();
         assert!(!presses.are_enough(KEYS, false, at(0)));
         assert!(!presses.are_enough(KEYS, true, at(50)), "sent twice");
-        assert!(presses.are_enough(TERMINATE, true, at(200)));
+        assert!(!presses.are_enough(KEYS, true, at(99)), "a key that is held down");
+        assert!(presses.are_enough(TERMINATE, true, at(120)));
         // The line was done with, and another one runs.
         assert!(!presses.are_enough(KEYS, false, at(400)));
         assert!(presses.are_enough(KEYS, true, at(600)));

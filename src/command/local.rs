@@ -12,8 +12,8 @@ use tempfile::NamedTempFile;
 
 use crate::controller::text::{EncodeError, Encoding, unhex};
 use crate::failure::Failure;
-pub use crate::files::folder_of;
 use crate::files;
+pub use crate::files::folder_of;
 use crate::output::escape;
 
 /// Longest name that the usual file systems take.

@@ -50,7 +50,13 @@ pub fn save() {
 /// Sets the terminal as it was when it was noted, if it was.
 #[cfg(unix)]
 pub fn restore() {
+    use rustix::termios::{LocalModes, tcgetattr};
+
     if let Some(found) = &*FOUND.lock().unwrap_or_else(PoisonError::into_inner) {
+        // Whoever takes keys one by one has the terminal mark what is pasted, too.
+        if tcgetattr(std::io::stdin()).is_ok_and(|now| !now.local_modes.contains(LocalModes::ICANON)) {
+            Screen::stderr("\x1b[?2004l");
+        }
         // A terminal that is gone needs no settings.
         let _ = rustix::termios::tcsetattr(std::io::stdin(), rustix::termios::OptionalActions::Now, found);
     }

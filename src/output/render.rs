@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 
 use comfy_table::presets::NOTHING;
-use comfy_table::{Attribute, CellAlignment, Color, ColumnConstraint, ContentArrangement};
+use comfy_table::{Attribute, CellAlignment, Color, ColumnConstraint, ContentArrangement, Width};
 use dialoguer::console::measure_text_width;
 
-use super::{busy, escape};
 use super::view::{Cell, Section, Table, Tone, View};
+use super::{busy, escape};
 
 /// The view as text of at most `width` columns.
 pub fn text(view: &View, width: u16, color: bool) -> String {
@@ -53,13 +53,7 @@ pub fn csv(view: &View, robot: Option<&str>) -> String {
 }
 
 fn section_text(section: &Section, width: u16, color: bool) -> String {
-    let mut grid = comfy_table::Table::new();
-    grid.load_style(NOTHING).set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
-    if color {
-        grid.enforce_styling();
-    } else {
-        grid.force_no_tty();
-    }
+    let mut grid = grid(width, color);
     match section {
         Section::Text(text) => {
             let mut text = escape::lines(text).into_owned();
@@ -80,6 +74,7 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
         }
         Section::Table(Table { rows, empty, .. }) if rows.is_empty() => return format!("{empty}\n"),
         Section::Table(table) if least_width(table) > usize::from(width) => return records(table, width, color),
+        Section::Table(table) if table.rows.len() > LONG => return piecewise(table, width, color),
         Section::Table(table) => {
             let header = table.columns.iter().enumerate().map(|(index, name)| {
                 let is_number = table.rows.iter().all(|row| row[index].is_number || row[index].text == "-");
@@ -108,6 +103,72 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
 
 /// Blanks behind a column.
 const PADDING: u16 = 2;
+
+/// Rows from which on a table is laid out piece by piece, because the layout takes much memory for each.
+const LONG: usize = 1000;
+
+/// A long table, all of whose columns are as wide from its first row to its last.
+fn piecewise(table: &Table, width: u16, color: bool) -> String {
+    let widths = widths(table, width.into());
+    let header = |index: usize| {
+        let is_number = table.rows.iter().all(|row| row[index].is_number || row[index].text == "-");
+        let cell = comfy_table::Cell::new(table.columns[index].to_uppercase()).add_attribute(Attribute::Bold);
+        if is_number { cell.set_alignment(CellAlignment::Right) } else { cell }
+    };
+    let mut text = String::new();
+    for (piece, rows) in table.rows.chunks(LONG).enumerate() {
+        let mut grid = grid(width, color);
+        if piece == 0 {
+            grid.set_header((0..table.columns.len()).map(header).collect::<Vec<_>>());
+        }
+        for row in rows {
+            grid.add_row(row.iter().zip(&widths).map(|(cell, width)| styled(cell, *width)).collect::<Vec<_>>());
+        }
+        for (column, width) in grid.column_iter_mut().zip(&widths) {
+            let width = u16::try_from(*width).unwrap_or(u16::MAX).saturating_add(PADDING);
+            column.set_padding((0, PADDING)).set_constraint(ColumnConstraint::Absolute(Width::Fixed(width)));
+        }
+        text.extend(grid.lines().flat_map(|line| [line.trim_end(), "\n"].map(ToOwned::to_owned)));
+    }
+    text
+}
+
+/// Widths of columns: those that need less than their share have what they need, the others share the rest.
+fn widths(table: &Table, width: usize) -> Vec<usize> {
+    let needs = |(index, name): (usize, &&str)| {
+        let cells = table.rows.iter().map(|row| measure_text_width(&escape::line(&row[index].text)));
+        cells.chain([measure_text_width(name)]).max().unwrap_or_default()
+    };
+    let mut widths: Vec<Option<usize>> = vec![None; table.columns.len()];
+    let needs: Vec<usize> = table.columns.iter().enumerate().map(needs).collect();
+    let is_whole = |index: usize| table.rows.iter().any(|row| row[index].is_whole);
+    let mut left = width.saturating_sub(usize::from(PADDING) * widths.len());
+    for index in (0..widths.len()).filter(|index| is_whole(*index)) {
+        widths[index] = Some(needs[index]);
+        left = left.saturating_sub(needs[index]);
+    }
+    loop {
+        let undecided = widths.iter().filter(|width| width.is_none()).count().max(1);
+        let share = left / undecided;
+        let next = (0..widths.len()).find(|index| widths[*index].is_none() && needs[*index] <= share);
+        let Some(index) = next else {
+            return widths.into_iter().map(|width| width.unwrap_or(share.max(1))).collect();
+        };
+        widths[index] = Some(needs[index]);
+        left -= needs[index];
+    }
+}
+
+fn grid(width: u16, color: bool) -> comfy_table::Table {
+    let mut grid = comfy_table::Table::new();
+    grid.load_style(NOTHING).set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
+    if color {
+        grid.enforce_styling();
+    } else {
+        grid.force_no_tty();
+    }
+    grid
+}
 
 /// Longest run of characters that keeps together; what is longer, such as a frame in hex, is broken like nothing else.
 const WORD: usize = 16;
@@ -288,6 +349,21 @@ mod tests {
         let text = View::text("a\u{1b}[2Jb\n");
         assert_eq!(super::csv(&text, Some("=r")), "a\\x1b[2Jb\n");
         assert!(super::csv(&sample(), Some("=r")).contains("'=r,"));
+    }
+
+    #[test]
+    fn a_long_table_looks_like_a_short_one() {
+        let table = |rows: usize| {
+            let mut table = Table::new(&["number", "time", "message"], "");
+            for number in 0..rows {
+                let words = format!("word {}", "of several ".repeat(number % 9));
+                table.row([(number + 100_000).into(), Cell::from("08:00 h").whole(), words.into()]);
+            }
+            text(&View::table(table), 60, false)
+        };
+        let (short, long) = (table(LONG), table(2 * LONG + 10));
+        assert!(long.starts_with(&short), "{}\n{}", &short[..600], &long[..600]);
+        assert!(long.lines().all(|line| line.len() <= 60) && long.lines().count() > short.lines().count());
     }
 
     /// With a time that grows with the square of the length this would take hours.

@@ -14,6 +14,7 @@ use crate::command::run::{Run, Stopped};
 use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
 use crate::files;
+use crate::output::busy::busy;
 use crate::output::jq::after_a_change;
 use crate::output::view::{Table, View};
 use crate::settings::inventory::{Inventory, is_name};
@@ -195,6 +196,7 @@ fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static 
     let path = run.sources.inventory.path.as_deref().ok_or_else(|| {
         Failure::new(Kind::Usage, "there is no home folder to keep robots.toml in").hint("name a file with --config")
     })?;
+    let _busy = busy();
     // Others may be changing it: what is read is what is replaced.
     let _turn = files::turn(path).map_err(|error| Failure::io(path.display(), &error))?;
     let text = match files::text(path, files::SETTINGS) {

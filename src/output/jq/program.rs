@@ -271,8 +271,11 @@ mod tests {
     #[test]
     fn numbers_that_json_has_not_are_written_as_jq_writes_them() {
         let made = |filter: &str| serde_json::to_string(&made(filter, &Value::Null).unwrap()).unwrap();
-        assert_eq!(made("nan, infinite, -infinite"), "[null,1.7976931348623157e308,-1.7976931348623157e308]");
-        assert_eq!(made("[nan], 18446744073709551615, 1e1000"), "[[null],18446744073709551615,1.7976931348623157e308]");
+        assert_eq!(made("nan, infinite, -infinite"), "[null,1.7976931348623157e+308,-1.7976931348623157e+308]");
+        assert_eq!(
+            made("[nan], 18446744073709551615, 1e1000"),
+            "[[null],18446744073709551615,1.7976931348623157e+308]"
+        );
         assert_eq!(made("1, 2.5, -3"), "[1,2.5,-3]");
     }
 

@@ -391,7 +391,11 @@ mod tests {
     fn what_is_no_capture_is_told() {
         assert_eq!(Packets::open(&b""[..]).unwrap_err(), Unknown::Other);
         assert_eq!(Packets::open(&b"YERC"[..]).unwrap_err(), Unknown::Other);
-        assert_eq!(Packets::open(&[0xA1, 0xB2, 0xC3, 0xD4, 0][..]).unwrap_err(), Unknown::Other, "a header that is cut");
+        assert_eq!(
+            Packets::open(&[0xA1, 0xB2, 0xC3, 0xD4, 0][..]).unwrap_err(),
+            Unknown::Other,
+            "a header that is cut"
+        );
         assert_eq!(Packets::open(&[0x1F, 0x8B, 8, 0][..]).unwrap_err(), Unknown::Compressed);
     }
 

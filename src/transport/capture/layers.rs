@@ -209,6 +209,17 @@ mod tests {
     }
 
     #[test]
+    fn a_packet_whose_length_the_card_fills_in_is_no_longer_than_any() {
+        let mut packet = IP.to_vec();
+        (packet[2], packet[3], packet[9]) = (0, 0, TCP);
+        packet.resize(200_000, 0);
+        let Carried::Packet { content: Content::Segment(segment), is_cut: false, .. } = carried(101, &packet) else {
+            panic!("no segment");
+        };
+        assert_eq!(segment.bytes.len(), LONGEST_IP - 40);
+    }
+
+    #[test]
     fn the_rest_is_other() {
         let mut fragment = IP;
         fragment[6] = 0x20;

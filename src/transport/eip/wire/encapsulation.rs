@@ -156,6 +156,18 @@ mod tests {
     }
 
     #[test]
+    fn many_messages_at_once_take_no_more_room_than_they_are() {
+        let mut frames = Frames::default();
+        frames.push(&[0; HEADER_LEN * 10_000]);
+        let messages: Vec<_> = std::iter::from_fn(|| frames.pop()).collect();
+        assert_eq!(messages.len(), 10_000);
+        assert!(messages.iter().all(|message| message.len() == HEADER_LEN && message.capacity() < 2 * HEADER_LEN));
+        frames.push(&[0; HEADER_LEN]);
+        assert_eq!(frames.pop(), Some(vec![0; HEADER_LEN]));
+        assert_eq!((frames.pop(), frames.bytes.len()), (None, HEADER_LEN), "what was handed out is forgotten");
+    }
+
+    #[test]
     fn a_wrong_length_is_named() {
         let mut bytes = Frame::register([0; 8]).emit();
         bytes.pop();

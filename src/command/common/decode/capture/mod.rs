@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
+use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -19,7 +20,9 @@ use crate::command::Report;
 use crate::command::run::{Run, Stopped};
 use crate::failure::{Failure, Kind};
 use crate::files;
+use crate::output::Format;
 use crate::output::busy::busy;
+use crate::output::envelope::ErrorBody;
 use crate::output::view::{Cell, Section, Table, Tone, View};
 use crate::transport::capture::{Carrier, Message, Unknown, read};
 use crate::transport::tap::Direction;
@@ -205,7 +208,28 @@ pub fn tell<L: Listener>(run: &Run, id: &str, path: &Path, selection: &Selection
         let file = files::open(path).map_err(failed)?;
         capture(&path.display().to_string(), file, selection, run.is_for_people(), listener)?
     };
+    // Never as a value in between, which takes many times the memory.
+    if !run.is_for_people() && run.filter.is_none() && run.line.is_none() {
+        let failure = capture.failure();
+        let time = (run.screen.format == Format::Jsonl).then(Timestamp::now);
+        let error = failure.clone().map(ErrorBody::from);
+        run.screen.json(&Whole { time, robot: None, command: id, ok: error.is_none(), data: &capture, error })?;
+        return failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: true }));
+    }
     run.local(id, &capture)
+}
+
+/// An envelope around a report as it is.
+#[derive(Serialize)]
+struct Whole<'a, F> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time: Option<Timestamp>,
+    robot: Option<()>,
+    command: &'a str,
+    ok: bool,
+    data: &'a Capture<F>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<ErrorBody>,
 }
 
 fn capture<L: Listener>(

@@ -126,13 +126,13 @@ impl Talk {
     /// Ends the line of one end.
     fn line(&mut self, by: usize, message: &Message<'_>, is_cut: bool) {
         let bytes = std::mem::take(&mut self.coming[by]);
-        self.kept += bytes.len() + size_of::<Said>();
         let text = String::from_utf8_lossy(&bytes).trim_end_matches(['\r', '\n']).to_owned();
         if self.said.len() >= MOST_FOREIGN && !self.is_ours {
             return;
         }
         if !text.is_empty() {
             self.is_ours = self.is_ours || is_block(&text);
+            self.kept += text.len() + size_of::<Said>();
             self.said.push(Said { number: message.number, time: message.time, by, text, is_cut });
         }
     }
