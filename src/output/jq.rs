@@ -76,13 +76,11 @@ fn answers() -> std::io::Stdout {
 /// A failure to report what was changed is no mistake of the command line, which one would correct and repeat.
 #[must_use]
 pub fn after_a_change(failure: Failure) -> Failure {
-    match failure.kind {
-        Kind::PipeClosed => failure,
-        _ => {
-            let message = format!("it was done, but not reported: {}", failure.message);
-            Failure { kind: Kind::Local, message, ..failure }.hint("look before you repeat it")
-        }
+    if failure.kind == Kind::PipeClosed {
+        return failure;
     }
+    let message = format!("it was done, but not reported: {}", failure.message);
+    Failure { kind: Kind::Local, message, ..failure }.hint("look before you repeat it")
 }
 
 #[cfg(test)]

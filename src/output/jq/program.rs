@@ -174,14 +174,14 @@ fn as_in_jq<'s>(term: Term<&'s str>) -> Term<&'s str> {
     }
 }
 
-fn bound<'s>(operator: BinaryOp<&'s str>) -> BinaryOp<&'s str> {
+fn bound(operator: BinaryOp<&str>) -> BinaryOp<&str> {
     match operator {
         BinaryOp::Pipe(Some(pattern)) => BinaryOp::Pipe(Some(pattern_in_jq(pattern))),
         operator => operator,
     }
 }
 
-fn pattern_in_jq<'s>(pattern: Pattern<&'s str>) -> Pattern<&'s str> {
+fn pattern_in_jq(pattern: Pattern<&str>) -> Pattern<&str> {
     match pattern {
         Pattern::Var(name) => Pattern::Var(name),
         Pattern::Arr(inner) => Pattern::Arr(inner.into_iter().map(pattern_in_jq).collect()),

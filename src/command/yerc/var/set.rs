@@ -1,6 +1,6 @@
 //! `yerc var set`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::Args;
@@ -216,7 +216,7 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
 /// A position takes a kilobyte; this is room for a whole report around it.
 const MOST: u64 = 1 << 20;
 
-fn read(path: &PathBuf) -> Result<String, Failure> {
+fn read(path: &Path) -> Result<String, Failure> {
     files::text(path, MOST).map_err(|error| Failure::io(path.display(), &error))
 }
 

@@ -117,10 +117,8 @@ async fn read_all(id: u64, mut reader: Reader, letterbox: mpsc::Sender<Letter>) 
     loop {
         // Who has said who he is may be silent; anybody else only takes up a place.
         let deadline = Instant::now() + FIRST_WORDS;
-        let frame = match is_named {
-            true => reader.next().await,
-            false => timeout_at(deadline, reader.next()).await.unwrap_or(Ok(None)),
-        };
+        let frame =
+            if is_named { reader.next().await } else { timeout_at(deadline, reader.next()).await.unwrap_or(Ok(None)) };
         // What is no frame is the end, too.
         let frame = frame.unwrap_or(None);
         let is_end = frame.is_none();

@@ -266,11 +266,9 @@ fn capture<L: Listener>(
         damage => damage.map(|damage| damage.to_string()),
     };
     let (links, messages) = linked(messages.list, summary.first);
-    if let Some(frame) = selection.frame {
-        if messages.is_empty() {
-            let message = format!("there is no message of this family in packet {frame} of {name}");
-            return Err(Failure::usage(message).hint("the numbers are in the list, without --frame"));
-        }
+    if let Some(frame) = selection.frame.filter(|_| messages.is_empty()) {
+        let message = format!("there is no message of this family in packet {frame} of {name}");
+        return Err(Failure::usage(message).hint("the numbers are in the list, without --frame"));
     }
     Ok(Capture {
         file: name.to_owned(),

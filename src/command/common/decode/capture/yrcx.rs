@@ -100,7 +100,7 @@ impl Images {
         ];
         if known.iter().any(|known| *known >= MOST) {
             let (all, told) = (self.all, std::mem::take(&mut self.told));
-            *self = Self { all, told, ..Self::default() };
+            *self = Self { told, all, ..Self::default() };
         }
     }
 
