@@ -228,7 +228,9 @@ async fn told(spot: &Spot, frames: &[Control]) -> Vec<Frame> {
 
     let (read, mut write) = crate::transport::session::socket::connect(&spot.socket()).await.unwrap().unwrap();
     let mut bytes = Vec::new();
-    frames.iter().for_each(|control| Frame::Control(control.clone()).emit(&mut bytes));
+    for control in frames {
+        Frame::Control(control.clone()).emit(&mut bytes);
+    }
     write.write_all(&bytes).await.unwrap();
     let mut reader = crate::transport::session::wire::Reader::new(read);
     let mut told = Vec::new();
