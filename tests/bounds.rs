@@ -51,16 +51,17 @@ fn signal(child: &Child, name: &str) {
 
 /// A capture with raw IP packets of TCP from one end to the other, so many bytes in each, their IP length left to the card.
 fn capture(path: &Path, packets: u32, content: &[u8]) {
-    let mut file = std::io::BufWriter::new(std::fs::File::create(path).unwrap());
-    file.write_all(&[&0xA1B2_C3D4_u32.to_be_bytes()[..], &[0, 2, 0, 4], &[0; 12], &[0, 0, 0, 101]].concat()).unwrap();
-    let len = u32::try_from(content.len()).unwrap();
+    let mut file = std::io::BufWriter::new(std::fs::File::create(path).expect("it works here"));
+    file.write_all(&[&0xA1B2_C3D4_u32.to_be_bytes()[..], &[0, 2, 0, 4], &[0; 12], &[0, 0, 0, 101]].concat())
+        .expect("it works here");
+    let len = u32::try_from(content.len()).expect("it works here");
     for number in 0..packets {
         let ip = [&[0x45, 0, 0, 0, 0, 0, 0, 0, 64, 6, 0, 0][..], &[10, 0, 0, 1, 10, 0, 0, 2]].concat();
         let sequence = 1 + number * len;
         let tcp = [&[0x9C, 0x40, 0xAF, 0x12][..], &sequence.to_be_bytes(), &[0; 4], &[0x50, 0x10], &[0; 6]].concat();
         let size = (len + 40).to_be_bytes();
         for part in [&[0; 8][..], &size, &size, &ip, &tcp, content] {
-            file.write_all(part).unwrap();
+            file.write_all(part).expect("it works here");
         }
     }
 }
@@ -70,7 +71,7 @@ fn capture(path: &Path, packets: u32, content: &[u8]) {
 fn many_small_messages_take_no_more_memory_than_they_are() {
     let folder = folder();
     // 2,700 NOP messages of 24 bytes in each packet.
-    capture(&folder.path().join("nop.pcap"), 30, &[0; 24 * 2700]);
+    capture(&folder.path().join("nop.pcap"), 30, &vec![0; 24 * 2700]);
     let output = limited(folder.path(), "-v 500000", &["decode", "yrcx", "nop.pcap"]);
     ends(&output, 0, "");
     assert!(stdout(&output).contains("81000 messages"), "{}", &stdout(&output)[..300]);
@@ -81,7 +82,7 @@ fn many_small_messages_take_no_more_memory_than_they_are() {
 fn a_capture_is_read_in_pieces() {
     let folder = folder();
     // What is of nobody: half a gigabyte, with room for a quarter.
-    capture(&folder.path().join("large.pcap"), 8000, &[b'x'; 65_000]);
+    capture(&folder.path().join("large.pcap"), 8000, &vec![b'x'; 65_000]);
     for family in ["yerc", "yrcx", "toyo"] {
         let output = limited(folder.path(), "-v 250000", &["decode", family, "large.pcap"]);
         ends(&output, 0, "");
@@ -175,7 +176,7 @@ fn a_filter_that_fails_after_a_change_is_no_mistake_of_the_line() {
 /// It ends at one signal, which comes once it computes.
 #[cfg(target_os = "linux")]
 fn ends_at_one(folder: &Path, words: &[&str], name: &str) {
-    let child = armctl(folder, words).spawn().unwrap();
+    let child = armctl(folder, words).spawn().expect("it works here");
     // Its filter runs in a process of its own, once there is one.
     let pid = child.id();
     let children = || std::fs::read_to_string(format!("/proc/{pid}/task/{pid}/children")).unwrap_or_default();
@@ -192,7 +193,7 @@ fn ends_at_one(folder: &Path, words: &[&str], name: &str) {
         std::thread::yield_now();
     }
     signal(&child, name);
-    let output = child.wait_with_output().unwrap();
+    let output = child.wait_with_output().expect("it works here");
     assert_eq!(output.status.code(), Some(130), "{name}: {}", stderr(&output));
     assert!(stderr(&output).contains("interrupted"), "{name}: {}", stderr(&output));
     // It goes, too.
