@@ -23,12 +23,15 @@ use crate::cli::{Cli, Globals, Words};
 use crate::command::run::Stopped;
 use crate::failure::{Failure, Kind};
 use crate::output::envelope::Envelope;
-use crate::output::{ColorChoice, Format, Screen};
+use crate::output::{ColorChoice, Format, Screen, jq};
 use crate::settings::target::Family;
 
 /// Runs a command line, the program's name included, and says how the process ends.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let args: Vec<OsString> = args.into_iter().collect();
+    if jq::worker::is_meant(&args) {
+        return exit(jq::worker::serve());
+    }
     if let Some(answer) = complete::answer(&args) {
         // A shell that does not listen has nothing to be told.
         let _ = Screen::new(Format::Table, ColorChoice::Never, true, 0).data(&answer);
@@ -43,6 +46,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         Err(error) => return exit(refuse(&args, &error, false)),
     };
     let screen = screen(&cli.globals);
+    screen.tells_the_end();
     exit(on_this_thread(run(cli)).map_err(|stopped| tell(&screen, stopped)))
 }
 
@@ -77,6 +81,7 @@ async fn run(cli: Cli) -> Result<(), Stopped> {
 
 /// Runs it on this thread.
 fn on_this_thread(done: impl Future<Output = Result<(), Stopped>>) -> Result<(), Stopped> {
+    has_room()?;
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .build()
@@ -85,6 +90,24 @@ fn on_this_thread(done: impl Future<Output = Result<(), Stopped>>) -> Result<(),
     // A thread that waits for stdin or a name server must not hold up the end.
     runtime.shutdown_background();
     done
+}
+
+/// Files and sockets that a process needs open for the least that it does.
+#[cfg(unix)]
+const ROOM: usize = 20;
+
+/// Whether the process may open what it needs: the runtime and what listens for signals take it for granted.
+#[cfg(unix)]
+fn has_room() -> Result<(), Failure> {
+    let pairs: Result<Vec<_>, _> = (0..ROOM / 2).map(|_| std::os::unix::net::UnixStream::pair()).collect();
+    pairs.map(|_| ()).map_err(|error| {
+        Failure::io("start", &error).hint(format!("at least {ROOM} more open files must be allowed: see `ulimit -n`"))
+    })
+}
+
+#[cfg(not(unix))]
+fn has_room() -> Result<(), Failure> {
+    Ok(())
 }
 
 fn screen(globals: &Globals) -> Screen {

@@ -59,6 +59,12 @@ impl Kind {
     }
 }
 
+/// Ends the process at once, with the exit code of `kind`, whatever other threads do.
+#[expect(clippy::exit, reason = "for those who must not wait for the rest of the process")]
+pub fn end(kind: Kind) -> ! {
+    std::process::exit(kind.exit().into())
+}
+
 /// A failed command: what happened, and what to do about it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Failure {
@@ -107,6 +113,7 @@ impl Failure {
             }
             ErrorKind::InvalidData => failure.hint("this is not the kind of file that is wanted here"),
             ErrorKind::IsADirectory => failure.hint("name a file, not a folder"),
+            ErrorKind::FileTooLarge => failure.hint("check that it is the file that was meant"),
             ErrorKind::NotADirectory => failure.hint("check the path: a part of it is a file, not a folder"),
             ErrorKind::NotFound => failure.hint("check the path; missing folders are not made"),
             _ => failure,

@@ -13,6 +13,7 @@
 //! | [`transport`] | moves bytes or images, knows no meaning |
 //! | [`output`] | the only writer to stdout and stderr; text made harmless for terminals |
 //! | [`failure`] | how a command can fail, and the only place with exit numbers |
+//! | [`files`] | the one way to read local files: regular ones, up to a limit |
 //!
 //! Dependencies run one way: command to controller, transport and output; controller and transport never see each other.
 //! A test holds that.
@@ -22,6 +23,7 @@ pub mod cli;
 pub mod command;
 pub mod controller;
 pub mod failure;
+pub mod files;
 pub mod gate;
 pub mod output;
 pub mod settings;

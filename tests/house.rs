@@ -129,6 +129,11 @@ const LINKS: [&str; 36] = [
 const PRINTING: [&str; 8] = ["stdout()", "stderr()", "println!", "eprintln!", "print!", "eprint!", "Stdout", "Stderr"];
 const EXITING: [&str; 3] = ["process::exit", "process::abort", "ExitCode::from("];
 
+/// Ways to read a file, and the only places that may have them: with a limit, and regular files only. A lock is a file
+/// that is read, but not for what it says; the last one is a test.
+const READING: [&str; 5] = ["fs::read(", "read_to_string(", "File::open(", "File::options(", ".read(true)"];
+const READERS: [&str; 3] = ["files.rs", "transport/session/socket.rs", "command/yerc/var/lines.rs"];
+
 /// Longest source file; a longer one is usually two.
 const LONGEST: usize = 700;
 
@@ -177,6 +182,23 @@ fn only_failure_has_exit_numbers() {
                         wrong.push(format!("src/{}:{}: {word} with a number of its own", source.name, line + 1));
                     }
                 }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn local_files_are_read_in_one_place() {
+    let mut wrong = Vec::new();
+    let is_test = |name: &str| name.contains("test") || READERS.contains(&name);
+    for source in sources().iter().filter(|source| !is_test(&source.name)) {
+        // Some have a condition before their tests.
+        let code = source.code.split("#[cfg(test)]").next().unwrap_or_default();
+        let code = code.split("#[cfg(all(test").next().unwrap_or_default();
+        for (line, text) in code.lines().enumerate() {
+            for word in READING.iter().filter(|word| text.contains(**word)) {
+                wrong.push(format!("src/{}:{}: {word}…) outside files.rs", source.name, line + 1));
             }
         }
     }

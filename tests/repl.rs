@@ -103,7 +103,7 @@ fn ctrl_c_stops_the_motion_and_not_the_prompt() {
 
 #[test]
 fn asked_to_end_it_leaves_the_terminal_as_it_was() {
-    for signal in ["TERM", "HUP"] {
+    for signal in ["TERM", "HUP", "QUIT"] {
         let desk = Desk::new();
         let mut repl = desk.repl("yrcx repl --sim");
         repl.press("half a line");

@@ -343,7 +343,7 @@ fn ctrl_c_stops_first() {
     }
 }
 
-/// The stop is repeated until it is confirmed, whatever the options say, and another Ctrl-C does not end it.
+/// The stop is repeated until it is confirmed, whatever the options say.
 #[test]
 fn a_lost_stop_is_sent_again() {
     let mut lost = 4;
@@ -354,12 +354,32 @@ fn a_lost_stop_is_sent_again() {
     let child = controller.start(&format!("{MOVE} --timeout 300ms --retries 0"));
     controller.wait_for(|asked| asked.command == 0x72);
     interrupt(&child);
-    controller.wait_for(|asked| asked.command == 0x83);
-    interrupt(&child);
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
     assert!(stderr(&output).contains("stopping the robot") && stderr(&output).contains("HOLD is on"));
     assert_eq!(controller.changes().iter().filter(|asked| asked.command == 0x83).count(), 5);
+}
+
+/// A second Ctrl-C, or TERM, ends the process wherever it is: here, while nobody confirms the stop.
+#[test]
+fn a_second_ctrl_c_ends_it_at_once() {
+    for signal in ["INT", "TERM"] {
+        let controller = robot(|asked| (asked.command == 0x83).then_some(Reaction::Silence));
+        let mut child = controller.start(&format!("{MOVE} --timeout 600s"));
+        controller.wait_for(|asked| asked.command == 0x72);
+        interrupt(&child);
+        controller.wait_for(|asked| asked.command == 0x83);
+        // One that comes on the heels of the first counts as the same.
+        while child.try_wait().unwrap().is_none() {
+            // It may have ended meanwhile.
+            let pid = child.id().to_string();
+            let _sent = Command::new("kill").args(["-s", signal, &pid]).stderr(Stdio::null()).status();
+            std::thread::yield_now();
+        }
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+        assert!(stderr(&output).contains("again: ended at once"), "{}", stderr(&output));
+    }
 }
 
 #[test]

@@ -5,7 +5,6 @@
 
 use std::cell::RefCell;
 use std::ffi::OsString;
-use std::io::Read as _;
 use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -22,6 +21,7 @@ use crate::command::interrupt::catch_interrupts;
 use crate::command::line::{Line, Origin};
 use crate::command::run::{Stopped, begin_trace};
 use crate::failure::{Failure, Kind};
+use crate::files;
 use crate::output::{Format, Screen};
 
 /// Envelopes that are written all at once.
@@ -58,12 +58,8 @@ pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
 }
 
 fn read(path: &Path) -> Result<String, Failure> {
-    let bytes = if path.as_os_str() == "-" {
-        let mut bytes = Vec::new();
-        std::io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
-    } else {
-        std::fs::read(path)
-    };
+    let most = files::SETTINGS;
+    let bytes = if path.as_os_str() == "-" { files::stdin(most) } else { files::read(path, most) };
     let bytes = bytes.map_err(|error| Failure::io(path.display(), &error))?;
     let text = String::from_utf8(bytes)
         .map_err(|_| Failure::usage(format!("{}: this is not UTF-8", path.display())).hint("save the file as UTF-8"))?;

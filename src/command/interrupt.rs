@@ -1,26 +1,44 @@
 //! Ctrl-C, and other requests to end, as events instead of a killed process.
+//!
+//! They are heard on a thread of their own, whatever the rest of the process does. The first one is passed on to the
+//! work, which stops what moves. A second one ends the process at once, and so does the first where the work does not
+//! get round to hearing it, because it computes.
 
-use std::cell::OnceCell;
 use std::future::Future;
+use std::sync::{OnceLock, mpsc};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use tokio::sync::watch;
 use tokio::task::coop::unconstrained;
 
 use crate::failure::{Failure, Kind};
+use crate::output::{busy, leave};
 
 /// What asked the process to end, once something has. It stays asked: nothing new begins after that, until [`again`].
 type Asked = watch::Sender<Option<&'static str>>;
 
 const KEYS: &str = "Ctrl-C";
+const TERMINATE: &str = "asked to end (SIGTERM)";
+#[cfg(unix)]
+const HANGUP: &str = "the terminal was closed (SIGHUP)";
+#[cfg(unix)]
+const QUIT: &str = "Ctrl-\\ (SIGQUIT)";
 
-thread_local! {
-    /// One listener for the process, so that a signal between two waits is not lost. Everything runs on one thread.
-    static ASKED: OnceCell<Asked> = const { OnceCell::new() };
-}
+/// Of two requests closer than this the second is the first one again: `timeout`, for one, sends each twice.
+const TWICE: Duration = Duration::from_millis(100);
+/// How long work that computes has to get round to a request.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// One listener for the process, so that a signal between two waits is not lost.
+static ASKED: OnceLock<Result<Asked, String>> = OnceLock::new();
+/// Who waits for [`abandoned`]: while anybody does, Ctrl-\ is his.
+#[cfg(unix)]
+static GUARDS: OnceLock<watch::Sender<u64>> = OnceLock::new();
 
 /// Waits for `work`, or for Ctrl-C or another request to end. Of two that nest, the inner one hears it first.
 pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failure> {
-    let asked = asked().subscribe();
+    let asked = asked()?.subscribe();
     let before = *asked.borrow();
     if let Some(how) = before {
         return Err(Failure::new(Kind::Interrupted, how));
@@ -35,31 +53,47 @@ pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failur
 
 /// From here on a request to end waits for the next [`interruptible`] instead of killing the process.
 pub fn catch_interrupts() {
-    drop(asked());
+    // Where that cannot be, the next one says so.
+    let _ = asked();
 }
 
 /// Ctrl-C has ended one line of several, and the next one may begin. Says what else asked the process to end.
 pub fn again() -> Option<&'static str> {
-    let asked = asked();
+    let asked = asked().ok()?;
     asked.send_if_modified(|how| how.take_if(|how| *how == KEYS).is_some());
     *asked.borrow()
 }
 
 /// Waits for a request to end that is no Ctrl-C.
 pub async fn asked_to_end() -> &'static str {
-    wait(asked().subscribe(), |how| how != KEYS).await
+    match asked() {
+        Ok(asked) => wait(asked.subscribe(), |how| how != KEYS).await,
+        Err(_) => std::future::pending().await,
+    }
 }
 
-fn asked() -> Asked {
-    ASKED.with(|asked| {
-        let listen = || {
-            let ask = Asked::default();
-            // Listens at once: work may send an order the first time it is polled.
-            tokio::spawn(listen(ask.clone()));
-            ask
-        };
-        asked.get_or_init(listen).clone()
-    })
+fn asked() -> Result<&'static Asked, Failure> {
+    let asked = ASKED.get_or_init(|| start().map_err(|error| crate::failure::plain(&error)));
+    asked.as_ref().map_err(|why| Failure::local(format!("no signals can be heard: {why}")))
+}
+
+/// Starts the thread. When this returns it listens: work may send an order the first time it is polled.
+fn start() -> std::io::Result<Asked> {
+    let ask = Asked::default();
+    let (ready, is_ready) = mpsc::channel();
+    let passed_on = ask.clone();
+    thread::Builder::new().name("signals".to_owned()).spawn(
+        move || match tokio::runtime::Builder::new_current_thread().enable_all().build() {
+            Ok(runtime) => runtime.block_on(async move {
+                let signals = Signals::new();
+                let _ = ready.send(Ok(()));
+                listen(signals, passed_on).await;
+            }),
+            Err(error) => _ = ready.send(Err(error)),
+        },
+    )?;
+    is_ready.recv().unwrap_or_else(|_| Err(std::io::Error::other("the thread for them has ended")))?;
+    Ok(ask)
 }
 
 /// Waits for a request to end that counts.
@@ -68,6 +102,75 @@ async fn wait(mut asked: watch::Receiver<Option<&'static str>>, counts: impl Fn(
     match how {
         Some(how) => how,
         None => std::future::pending().await,
+    }
+}
+
+/// Passes on every request to end.
+async fn listen(mut signals: Signals, ask: Asked) {
+    let mut presses = Presses::default();
+    // The work that was under way when it was looked last, while a request waits.
+    let mut seen = None;
+    loop {
+        let is_waiting = ask.borrow().is_some();
+        let how = tokio::select! {
+            how = signals.next() => how,
+            () = tokio::time::sleep(PATIENCE), if is_waiting => {
+                let now = busy::under_way();
+                if now.is_some() && now == seen {
+                    let how = *ask.borrow();
+                    leave::at_once(how.unwrap_or(KEYS));
+                }
+                seen = now;
+                continue;
+            }
+        };
+        #[cfg(unix)]
+        if how == QUIT {
+            // Heard here alone, so that nobody who was told of it can be gone when it is looked who there is.
+            let guards = guards();
+            if guards.receiver_count() == 0 {
+                leave::at_once(how);
+            }
+            guards.send_modify(|count| *count += 1);
+            continue;
+        }
+        if presses.are_enough(how, ask.borrow().is_some(), Instant::now()) {
+            leave::at_once(&format!("{how} again: ended at once; what was under way may go on"));
+        }
+        seen = busy::under_way();
+        // The first one counts, unless it was for one line only.
+        ask.send_if_modified(|asked| {
+            let is_first = asked.is_none_or(|asked| asked == KEYS);
+            if is_first {
+                *asked = Some(how);
+            }
+            is_first
+        });
+    }
+}
+
+/// How often somebody has asked since the work heard of it.
+#[derive(Debug, Default)]
+struct Presses {
+    count: u32,
+    last: Option<Instant>,
+}
+
+impl Presses {
+    /// Whether one more is the second; `is_waiting` says whether the one before was not done with. What comes as the
+    /// terminal goes away does not count: it comes by itself, and often more than once.
+    fn are_enough(&mut self, how: &str, is_waiting: bool, now: Instant) -> bool {
+        if !is_waiting {
+            *self = Self::default();
+        }
+        if how != KEYS && how != TERMINATE {
+            return false;
+        }
+        if self.last.is_none_or(|last| now.duration_since(last) >= TWICE) {
+            self.count += 1;
+            self.last = Some(now);
+        }
+        self.count > 1
     }
 }
 
@@ -80,14 +183,20 @@ pub fn abandoned() -> impl Future<Output = &'static str> {
     /// SIGTSTP.
     const SUSPEND: i32 = if cfg!(target_os = "linux") { 20 } else { 18 };
 
+    let mut quit = guards().subscribe();
+    catch_interrupts();
     let mut suspend = signal(SignalKind::from_raw(SUSPEND)).ok();
-    let mut quit = signal(SignalKind::quit()).ok();
     async move {
         tokio::select! {
             () = heard(&mut suspend) => "Ctrl-Z",
-            () = heard(&mut quit) => "Ctrl-\\",
+            Ok(()) = quit.changed() => "Ctrl-\\",
         }
     }
+}
+
+#[cfg(unix)]
+fn guards() -> &'static watch::Sender<u64> {
+    GUARDS.get_or_init(watch::Sender::default)
 }
 
 /// There are no such keys.
@@ -104,29 +213,34 @@ async fn heard(signal: &mut Option<tokio::signal::unix::Signal>) {
     }
 }
 
-/// Passes on every request to end; those that come from this call on count, also before it is polled.
+/// Every request to end; those that come once this was made count, also before they are waited for.
 #[cfg(unix)]
-fn listen(ask: Asked) -> impl Future<Output = ()> {
-    use tokio::signal::unix::{SignalKind, signal};
+struct Signals {
+    keys: Option<tokio::signal::unix::Signal>,
+    terminate: Option<tokio::signal::unix::Signal>,
+    hangup: Option<tokio::signal::unix::Signal>,
+    quit: Option<tokio::signal::unix::Signal>,
+}
 
-    let mut keys = signal(SignalKind::interrupt()).ok();
-    let mut terminate = signal(SignalKind::terminate()).ok();
-    let mut hangup = if hangup_is_ignored() { None } else { signal(SignalKind::hangup()).ok() };
-    async move {
-        loop {
-            let how = tokio::select! {
-                () = heard(&mut keys) => KEYS,
-                () = heard(&mut terminate) => "asked to end (SIGTERM)",
-                () = heard(&mut hangup) => "the terminal was closed (SIGHUP)",
-            };
-            // The first one counts, unless it was for one line only.
-            ask.send_if_modified(|asked| {
-                let is_first = asked.is_none_or(|asked| asked == KEYS);
-                if is_first {
-                    *asked = Some(how);
-                }
-                is_first
-            });
+#[cfg(unix)]
+impl Signals {
+    fn new() -> Self {
+        use tokio::signal::unix::{SignalKind, signal};
+
+        Self {
+            keys: signal(SignalKind::interrupt()).ok(),
+            terminate: signal(SignalKind::terminate()).ok(),
+            hangup: if hangup_is_ignored() { None } else { signal(SignalKind::hangup()).ok() },
+            quit: signal(SignalKind::quit()).ok(),
+        }
+    }
+
+    async fn next(&mut self) -> &'static str {
+        tokio::select! {
+            () = heard(&mut self.keys) => KEYS,
+            () = heard(&mut self.terminate) => TERMINATE,
+            () = heard(&mut self.hangup) => HANGUP,
+            () = heard(&mut self.quit) => QUIT,
         }
     }
 }
@@ -134,14 +248,56 @@ fn listen(ask: Asked) -> impl Future<Output = ()> {
 /// Whether the process shall outlive its terminal, as under `nohup`. Where that cannot be told, it is left alone.
 #[cfg(unix)]
 fn hangup_is_ignored() -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let status = crate::files::text(std::path::Path::new("/proc/self/status"), crate::files::SETTINGS);
+    let status = status.unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_none_or(|mask| mask & 1 != 0)
 }
 
 #[cfg(not(unix))]
-async fn listen(ask: Asked) {
-    while tokio::signal::ctrl_c().await.is_ok() {
-        ask.send_replace(Some(KEYS));
+struct Signals;
+
+#[cfg(not(unix))]
+impl Signals {
+    fn new() -> Self {
+        Self
+    }
+
+    async fn next(&mut self) -> &'static str {
+        match tokio::signal::ctrl_c().await {
+            Ok(()) => KEYS,
+            Err(_) => std::future::pending().await,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_second_request_is_enough_but_not_an_echo_of_the_first() {
+        let start = Instant::now();
+        let at = |millis| start + Duration::from_millis(millis);
+        let mut presses = Presses::default();
+        assert!(!presses.are_enough(KEYS, false, at(0)));
+        assert!(!presses.are_enough(KEYS, true, at(50)), "sent twice");
+        assert!(!presses.are_enough(KEYS, true, at(99)), "a key that is held down");
+        assert!(presses.are_enough(TERMINATE, true, at(120)));
+        // The line was done with, and another one runs.
+        assert!(!presses.are_enough(KEYS, false, at(400)));
+        assert!(presses.are_enough(KEYS, true, at(600)));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_terminal_that_goes_away_may_say_so_more_than_once() {
+        let start = Instant::now();
+        let at = |millis| start + Duration::from_millis(millis);
+        let mut presses = Presses::default();
+        assert!(!presses.are_enough(HANGUP, false, at(0)));
+        assert!(!presses.are_enough(HANGUP, true, at(200)));
+        assert!(!presses.are_enough(TERMINATE, true, at(400)));
+        assert!(presses.are_enough(TERMINATE, true, at(600)));
     }
 }

@@ -12,6 +12,8 @@ use tempfile::NamedTempFile;
 
 use crate::controller::text::{EncodeError, Encoding, unhex};
 use crate::failure::Failure;
+use crate::files;
+pub use crate::files::folder_of;
 use crate::output::escape;
 
 /// Longest name that the usual file systems take.
@@ -130,7 +132,7 @@ impl Target {
     /// Begins to write; until [`Draft::commit`] nothing is where the file shall be.
     pub fn begin(&self) -> Result<Draft, Failure> {
         let folder = folder_of(&self.path);
-        let file = draft_in(&folder).map_err(|error| Failure::io(folder.display(), &error))?;
+        let file = files::draft_in(&folder).map_err(|error| Failure::io(folder.display(), &error))?;
         Ok(Draft { file: BufWriter::with_capacity(BUFFER, file), target: self.clone() })
     }
 }
@@ -173,14 +175,6 @@ impl Draft {
     }
 }
 
-/// The folder of a path, `.` for a bare name.
-pub fn folder_of(path: &Path) -> PathBuf {
-    match path.parent() {
-        Some(parent) if parent != Path::new("") => parent.to_owned(),
-        _ => PathBuf::from("."),
-    }
-}
-
 /// The place of robot `name` within what the operator named, where several robots answer: a folder of its own.
 pub fn own_folder(folder: &Path, name: &str, several: bool) -> PathBuf {
     if several { folder.join(local_name(Encoding::Utf8, name.as_bytes())) } else { folder.to_owned() }
@@ -194,15 +188,6 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
 fn exists(path: &Path) -> Failure {
     Failure::local(format!("{} exists and was kept", path.display()))
         .hint("--force replaces it; or choose another place")
-}
-
-/// A temporary file that later has the rights of any new file, not those of a secret.
-fn draft_in(folder: &Path) -> std::io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".armctl-").suffix(".part");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
 }
 
 /// A character of a name, or a byte that is none.

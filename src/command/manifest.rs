@@ -16,6 +16,7 @@ use sha2::{Digest as _, Sha256};
 use super::local::{Target, is_plain_file_name};
 use crate::controller::text::{hex, unhex};
 use crate::failure::{Failure, Kind};
+use crate::files;
 use crate::output::escape;
 use crate::settings::Robot;
 use crate::settings::target::Family;
@@ -192,19 +193,14 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
     }
 
     let path = folder.join(MANIFEST);
-    let mut text = String::new();
-    let file = match fs::File::open(&path) {
-        Ok(file) => file,
+    let text = match files::text(&path, MAX_LIST) {
+        Ok(text) => text,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(Failure::io(path.display(), &error)),
     };
-    let size = file.take(MAX_LIST).read_to_string(&mut text).map_err(|error| Failure::io(path.display(), &error))?;
     let wrong = |why: String| {
         Failure::local(format!("{}: {why}", path.display())).hint("this is no whole list of a backup; make a new one")
     };
-    if size as u64 == MAX_LIST {
-        return Err(wrong("too large".to_owned()));
-    }
     match serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))? {
         Head { format, .. } if format != FORMAT => {
             return Err(wrong(format!("it says to be of '{format}', not '{FORMAT}'")));
@@ -241,6 +237,8 @@ pub fn folders_in(folder: &Path) -> Vec<PathBuf> {
 /// Looks into a folder that a backup shall go to: the backup that it holds, if it holds one. Anything else must not be
 /// mixed with a backup.
 pub fn look<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
+    // Of a backup that was killed.
+    files::sweep(folder);
     let mut entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -354,7 +352,7 @@ impl Saved {
             Err(Failure::local(format!("{}: {why}", path.display()))
                 .hint("the file is not what was backed up; take it from another copy of the backup, or leave it out"))
         };
-        let mut file = match fs::File::open(&path) {
+        let mut file = match files::open(&path) {
             Ok(file) => file,
             Err(error) if error.kind() == ErrorKind::NotFound => return damaged("it is missing".to_owned()),
             Err(error) => return Err(Failure::io(path.display(), &error)),

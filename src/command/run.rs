@@ -24,7 +24,7 @@ use crate::failure::{Failure, Kind};
 use crate::gate::{Confirmation, Gate, Grant, Intent, OnInterrupt};
 use crate::output::Screen;
 use crate::output::envelope::Envelope;
-use crate::output::jq::Filter;
+use crate::output::jq::{Filter, after_a_change};
 use crate::output::redraw::Redraw;
 use crate::settings::{Robot, Sessions, Sources};
 
@@ -195,8 +195,7 @@ impl Run {
         if risk == Risk::Read || failure.kind == Kind::PipeClosed || self.gate.dry_run {
             return failure;
         }
-        let message = format!("succeeded, but the report could not be written: {}", failure.message);
-        Failure { message, ..failure }.hint("look before you repeat it")
+        after_a_change(failure)
     }
 
     /// Repeats a reading command over one connection.
@@ -273,7 +272,8 @@ impl Run {
     async fn many<F: Family>(&self, command: &dyn AnyCommand<F>, robots: &[Robot]) -> Result<(), Stopped> {
         if self.gate.dry_run || !self.repeat.is_wanted() {
             let outcomes = at_a_time(robots.iter().map(|robot| self.once(command, robot))).await;
-            self.print_many(command.id(), robots, &outcomes, Place::First)?;
+            let printed = self.print_many(command.id(), robots, &outcomes, Place::First);
+            printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
             return self.verdict(&outcomes);
         }
         let mut links = at_a_time(robots.iter().map(|robot| self.connect(command, robot))).await;

@@ -158,10 +158,11 @@ fn take() -> io::Result<()> {
 }
 
 /// Leaves the terminal as it was found; what it does not take any more cannot be helped.
-fn restore() {
+pub fn restore() {
     if IS_TAKEN.swap(false, Ordering::Relaxed) {
-        let _shown = execute!(io::stdout(), ResetColor, LeaveAlternateScreen, Show);
+        // First what no other thread can hold up.
         let _cooked = disable_raw_mode();
+        let _shown = execute!(io::stdout(), ResetColor, LeaveAlternateScreen, Show);
         let _flushed = io::stdout().flush();
     }
 }

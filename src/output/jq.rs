@@ -1,73 +1,86 @@
 //! `--jq` and `--until`: jq filters over the envelope.
 
-use jaq_core::load::{Arena, File, Loader, parse};
-use jaq_core::{Compiler, Ctx, Vars, data, unwrap_valr};
-use jaq_json::Val;
+mod program;
+pub mod worker;
+
 use serde_json::Value;
 
-use crate::failure::Failure;
+use super::busy;
+use crate::failure::{Failure, Kind};
 
-/// What jq has and the library has not.
-const DEFS: &str = r#"
-def row(f): if isarray then . else error("\(type) is no row: an array is expected") end
-  | map(if . == null then "" elif isstring then f elif isarray or isobject then error("\(type) is no cell of a row")
-        else tostring end);
-def @csv: row("\"" + gsub("\""; "\"\"") + "\"") | join(",");
-def @tsv: row(gsub("\\\\"; "\\\\") | gsub("\t"; "\\t") | gsub("\n"; "\\n") | gsub("\r"; "\\r")) | join("\t");
-"#;
+use self::worker::Trouble;
 
-/// A compiled filter.
+/// A filter that compiles.
+#[derive(Debug)]
 pub struct Filter {
     text: String,
-    program: jaq_core::Filter<data::JustLut<Val>>,
-}
-
-impl std::fmt::Debug for Filter {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_tuple("Filter").field(&self.text).finish()
-    }
 }
 
 impl Filter {
     /// Compiles a filter; a mistake in it is a usage failure.
     pub fn new(text: &str) -> Result<Self, Failure> {
-        let wrong = |what: &str| {
-            Failure::usage(format!("jq filter '{text}': {what}"))
-                .hint("filters see the whole envelope: try '.data', or leave --jq away to see it")
-        };
-        let ours = parse(DEFS, |parser| parser.defs()).ok_or_else(|| wrong("the definitions do not parse"))?;
-        let defs = jaq_core::defs().chain(jaq_std::defs()).chain(jaq_json::defs()).chain(ours);
-        let funs = jaq_core::funs().chain(jaq_std::funs()).chain(jaq_json::funs());
-        let arena = Arena::default();
-        let modules =
-            Loader::new(defs).load(&arena, File { code: text, path: () }).map_err(|_| wrong("it does not parse"))?;
-        let program = Compiler::default().with_funs(funs).compile(modules).map_err(|errors| {
-            let name = errors.iter().flat_map(|(_, errors)| errors).map(|(name, _)| *name).next();
-            wrong(&format!("'{}' is not defined", name.unwrap_or("something")))
-        })?;
-        Ok(Self { text: text.to_owned(), program })
+        let filter = Self { text: text.to_owned() };
+        filter.ask(None, |_| Ok(())).map(|()| filter)
     }
 
-    /// Every value that the filter makes of `input`.
-    pub fn apply(&self, input: &Value) -> Result<Vec<Value>, Failure> {
-        let wrong = |what: String| {
-            Failure::usage(format!("jq filter '{}': {what}", self.text)).hint("--json shows what the filter is given")
-        };
-        let input: Val = serde_json::from_value(input.clone()).map_err(|error| wrong(error.to_string()))?;
-        let context = Ctx::<data::JustLut<Val>>::new(&self.program.lut, Vars::new([]));
-        let results = self.program.id.run((context, input)).map(unwrap_valr);
-        results
-            .map(|result| {
-                let value = result.map_err(|error| wrong(error.to_string()))?;
-                serde_json::from_str(&value.to_string()).map_err(|error| wrong(error.to_string()))
-            })
-            .collect()
+    /// Hands over every value that the filter makes of `input`, as they come.
+    pub fn apply(&self, input: &Value, take: impl FnMut(Value) -> Result<(), Failure>) -> Result<(), Failure> {
+        self.ask(Some(input), take)
     }
 
     /// Whether the last value the filter makes is neither `false` nor `null`.
     pub fn is_true(&self, input: &Value) -> Result<bool, Failure> {
-        Ok(self.apply(input)?.last().is_some_and(|value| !matches!(value, Value::Null | Value::Bool(false))))
+        let mut last = Value::Null;
+        self.apply(input, |value| {
+            last = value;
+            Ok(())
+        })?;
+        Ok(!matches!(last, Value::Null | Value::Bool(false)))
     }
+
+    fn ask(&self, input: Option<&Value>, mut take: impl FnMut(Value) -> Result<(), Failure>) -> Result<(), Failure> {
+        let _busy = busy::busy();
+        let mut taken = Ok(());
+        let asked = ask(&self.text, input, |value| {
+            taken = take(value);
+            taken.is_ok()
+        });
+        taken?;
+        asked.map_err(|trouble| match trouble {
+            Trouble::Mistake(why) => Failure::usage(format!("jq filter '{}': {why}", self.text))
+                .hint("filters see the whole envelope: try '.data', or leave --jq away to see it"),
+            Trouble::Failed(why) => Failure::usage(format!("jq filter '{}': {why}", self.text))
+                .hint("--json shows what the filter is given"),
+        })
+    }
+}
+
+/// In the process for filters.
+#[cfg(not(test))]
+use worker::ask;
+
+/// In this process: that of tests is no armctl.
+#[cfg(test)]
+fn ask(filter: &str, input: Option<&Value>, take: impl FnMut(Value) -> bool) -> Result<(), Trouble> {
+    let program = program::Program::new(filter).map_err(Trouble::Mistake)?;
+    let Some(input) = input else { return Ok(()) };
+    let input = serde_json::from_value(input.clone()).map_err(|error| Trouble::Failed(error.to_string()))?;
+    program.run(input, take).map_err(Trouble::Failed)
+}
+
+/// Where the process for filters writes its answers.
+fn answers() -> std::io::Stdout {
+    std::io::stdout()
+}
+
+/// A failure to report what was changed is no mistake of the command line, which one would correct and repeat.
+#[must_use]
+pub fn after_a_change(failure: Failure) -> Failure {
+    if failure.kind == Kind::PipeClosed {
+        return failure;
+    }
+    let message = format!("succeeded, but the report could not be written: {}", failure.message);
+    Failure { kind: Kind::Local, message, ..failure }.hint("look before you repeat it")
 }
 
 #[cfg(test)]
@@ -76,23 +89,32 @@ mod tests {
 
     use super::*;
 
+    fn made(filter: &str, input: &Value) -> Result<Vec<Value>, Failure> {
+        let mut values = Vec::new();
+        Filter::new(filter)?.apply(input, |value| {
+            values.push(value);
+            Ok(())
+        })?;
+        Ok(values)
+    }
+
     #[test]
     fn values_come_out_as_jq_makes_them() {
-        let filter = Filter::new(".data | .axes[] | select(. > 1)").unwrap();
-        assert_eq!(filter.apply(&json!({"data": {"axes": [1, 2, 3.5]}})).unwrap(), [json!(2), json!(3.5)]);
+        let made = made(".data | .axes[] | select(. > 1)", &json!({"data": {"axes": [1, 2, 3.5]}}));
+        assert_eq!(made.unwrap(), [json!(2), json!(3.5)]);
     }
 
     #[test]
     fn mistakes_are_usage_failures() {
         assert!(Filter::new(".data[").unwrap_err().message.contains("does not parse"));
         assert!(Filter::new("nonsense").unwrap_err().message.contains("'nonsense' is not defined"));
-        assert!(Filter::new(".a.b").unwrap().apply(&json!({"a": 1})).is_err());
+        assert!(made(".a.b", &json!({"a": 1})).is_err());
     }
 
     #[test]
     fn rows_are_written_as_jq_writes_them() {
         let rows = json!([[1, 2.5, null, "say \"hi\"", true], ["tab\tand\nline \\"]]);
-        let made = |filter: &str| Filter::new(filter).unwrap().apply(&rows);
+        let made = |filter: &str| made(filter, &rows);
         assert_eq!(made(".[0] | @csv").unwrap(), [json!("1,2.5,,\"say \"\"hi\"\"\",true")]);
         assert_eq!(made(".[1] | @tsv").unwrap(), [json!("tab\\tand\\nline \\\\")]);
         assert!(made("@csv").unwrap_err().message.contains("array is no cell"));
@@ -104,5 +126,15 @@ mod tests {
         for (filter, expected) in [(".ok", true), (".no", false), ("0", true), ("false", false), ("empty", false)] {
             assert_eq!(Filter::new(filter).unwrap().is_true(&json!({"ok": true})).unwrap(), expected, "{filter}");
         }
+    }
+
+    #[test]
+    fn values_come_as_they_are_made_and_no_more_than_are_taken() {
+        let mut count = 0;
+        let stopped = Filter::new("repeat(1)").unwrap().apply(&Value::Null, |_| {
+            count += 1;
+            if count < 3 { Ok(()) } else { Err(Failure::local("enough")) }
+        });
+        assert_eq!((stopped.unwrap_err().message.as_str(), count), ("enough", 3));
     }
 }

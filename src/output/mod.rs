@@ -2,10 +2,12 @@
 //!
 //! stdout carries data only; prompts, progress, hints and logs go to stderr.
 
+pub mod busy;
 pub mod envelope;
 pub mod escape;
 pub mod fullscreen;
 pub mod jq;
+pub mod leave;
 pub mod progress;
 pub mod prompt;
 pub mod redraw;
@@ -127,12 +129,14 @@ impl Screen {
 
     /// Writes data as it is.
     pub fn bytes(&self, bytes: &[u8]) -> Result<(), Failure> {
+        let _busy = busy::busy();
         let mut stdout = io::stdout().lock();
         stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|error| Failure::io("stdout", &error))
     }
 
     /// Writes a value as JSON: a line in a pipe or as `jsonl`, indented on a terminal.
     pub fn json(&self, value: &impl Serialize) -> Result<(), Failure> {
+        let _busy = busy::busy();
         let pretty = self.format == Format::Json && self.is_stdout_terminal();
         let mut text = if pretty { escape::json_pretty(value) } else { escape::json_line(value) }
             .map_err(|error| Failure::local(format!("report as JSON: {error}")))?;

@@ -1,6 +1,8 @@
 //! Questions to a person, on stderr.
 
 use std::io::BufRead as _;
+#[cfg(unix)]
+use std::sync::{Mutex, PoisonError};
 
 use super::Screen;
 use crate::failure::{Failure, Kind};
@@ -34,6 +36,39 @@ impl Screen {
         Ok(answer)
     }
 }
+
+/// The settings of the terminal that lines are typed at.
+#[cfg(unix)]
+static FOUND: Mutex<Option<rustix::termios::Termios>> = Mutex::new(None);
+
+/// Takes note of how the terminal is set, before an editor of lines changes it.
+#[cfg(unix)]
+pub fn save() {
+    *FOUND.lock().unwrap_or_else(PoisonError::into_inner) = rustix::termios::tcgetattr(std::io::stdin()).ok();
+}
+
+/// Sets the terminal as it was when it was noted, if it was.
+#[cfg(unix)]
+pub fn restore() {
+    use rustix::termios::{LocalModes, tcgetattr};
+
+    if let Some(found) = &*FOUND.lock().unwrap_or_else(PoisonError::into_inner) {
+        // Whoever takes keys one by one has the terminal mark what is pasted, too.
+        if tcgetattr(std::io::stdin()).is_ok_and(|now| !now.local_modes.contains(LocalModes::ICANON)) {
+            Screen::stderr("\x1b[?2004l");
+        }
+        // A terminal that is gone needs no settings.
+        let _ = rustix::termios::tcsetattr(std::io::stdin(), rustix::termios::OptionalActions::Now, found);
+    }
+}
+
+/// The editor has its own way here.
+#[cfg(not(unix))]
+pub fn save() {}
+
+/// There is nothing to restore.
+#[cfg(not(unix))]
+pub fn restore() {}
 
 fn is_yes(answer: &[u8]) -> bool {
     let answer = answer.trim_ascii();

@@ -1,27 +1,32 @@
 //! Views as tables for people and as CSV for spreadsheets.
 
+use std::borrow::Cow;
+
 use comfy_table::presets::NOTHING;
-use comfy_table::{Attribute, CellAlignment, Color, ColumnConstraint, ContentArrangement};
+use comfy_table::{Attribute, CellAlignment, Color, ColumnConstraint, ContentArrangement, Width};
 use dialoguer::console::measure_text_width;
 
-use super::escape;
 use super::view::{Cell, Section, Table, Tone, View};
+use super::{busy, escape};
 
 /// The view as text of at most `width` columns.
 pub fn text(view: &View, width: u16, color: bool) -> String {
+    let _busy = busy::busy();
     let parts: Vec<String> = view.sections.iter().map(|section| section_text(section, width, color)).collect();
     parts.join("\n")
 }
 
 /// The view as CSV (RFC 4180): its table, or its fields as one row, after a column that names the robot where there are
-/// several. Lines end in `\n`.
+/// several. Lines end in `\n`. Characters that a terminal would obey are escaped, and texts that a spreadsheet would take
+/// for a formula are marked.
 pub fn csv(view: &View, robot: Option<&str>) -> String {
+    let _busy = busy::busy();
     let mut out = String::new();
     let header = |names: &mut dyn Iterator<Item = &str>| {
         robot.map(|_| "robot".to_owned()).into_iter().chain(names.map(column_id)).collect::<Vec<_>>()
     };
     let line = |cells: &mut dyn Iterator<Item = &Cell>| {
-        robot.map(ToOwned::to_owned).into_iter().chain(cells.map(|cell| cell.text.clone())).collect::<Vec<_>>()
+        robot.map(harmless).into_iter().chain(cells.map(csv_cell)).collect::<Vec<_>>()
     };
     for section in &view.sections {
         match section {
@@ -35,21 +40,20 @@ pub fn csv(view: &View, robot: Option<&str>) -> String {
                     csv_line(&mut out, &line(&mut row.iter()));
                 }
             }
-            Section::Text(text) => out.push_str(text),
-            Section::Lines(lines) => out.extend(lines.iter().flat_map(|line| [line.text.as_str(), "\n"])),
+            Section::Text(text) => out.push_str(&escape::lines(text)),
+            Section::Lines(lines) => {
+                for line in lines {
+                    out.push_str(&escape::line(&line.text));
+                    out.push('\n');
+                }
+            }
         }
     }
     out
 }
 
 fn section_text(section: &Section, width: u16, color: bool) -> String {
-    let mut grid = comfy_table::Table::new();
-    grid.load_style(NOTHING).set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
-    if color {
-        grid.enforce_styling();
-    } else {
-        grid.force_no_tty();
-    }
+    let mut grid = grid(width, color);
     match section {
         Section::Text(text) => {
             let mut text = escape::lines(text).into_owned();
@@ -60,14 +64,17 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
         }
         Section::Lines(lines) => return lines.iter().map(|line| painted(line, color) + "\n").collect(),
         Section::Fields(fields) => {
+            let names = fields.iter().map(|(name, _)| measure_text_width(name)).max().unwrap_or_default();
+            let room = room(width, 2, names);
             for (name, cell) in fields {
                 // Values of fields stand on the left: they are of different kinds.
-                let value = styled(&Cell { is_number: false, ..cell.clone() });
+                let value = styled(&Cell { is_number: false, ..cell.clone() }, room);
                 grid.add_row([comfy_table::Cell::new(*name).add_attribute(Attribute::Dim), value]);
             }
         }
         Section::Table(Table { rows, empty, .. }) if rows.is_empty() => return format!("{empty}\n"),
         Section::Table(table) if least_width(table) > usize::from(width) => return records(table, width, color),
+        Section::Table(table) if table.rows.len() > LONG => return piecewise(table, width, color),
         Section::Table(table) => {
             let header = table.columns.iter().enumerate().map(|(index, name)| {
                 let is_number = table.rows.iter().all(|row| row[index].is_number || row[index].text == "-");
@@ -75,8 +82,9 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
                 if is_number { cell.set_alignment(CellAlignment::Right) } else { cell }
             });
             grid.set_header(header.collect::<Vec<_>>());
+            let room = room(width, table.columns.len(), 0);
             for row in &table.rows {
-                grid.add_row(row.iter().map(styled).collect::<Vec<_>>());
+                grid.add_row(row.iter().map(|cell| styled(cell, room)).collect::<Vec<_>>());
             }
         }
     }
@@ -95,6 +103,72 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
 
 /// Blanks behind a column.
 const PADDING: u16 = 2;
+
+/// Rows from which on a table is laid out piece by piece, because the layout takes much memory for each.
+const LONG: usize = 1000;
+
+/// A long table, all of whose columns are as wide from its first row to its last.
+fn piecewise(table: &Table, width: u16, color: bool) -> String {
+    let widths = widths(table, width.into());
+    let header = |index: usize| {
+        let is_number = table.rows.iter().all(|row| row[index].is_number || row[index].text == "-");
+        let cell = comfy_table::Cell::new(table.columns[index].to_uppercase()).add_attribute(Attribute::Bold);
+        if is_number { cell.set_alignment(CellAlignment::Right) } else { cell }
+    };
+    let mut text = String::new();
+    for (piece, rows) in table.rows.chunks(LONG).enumerate() {
+        let mut grid = grid(width, color);
+        if piece == 0 {
+            grid.set_header((0..table.columns.len()).map(header).collect::<Vec<_>>());
+        }
+        for row in rows {
+            grid.add_row(row.iter().zip(&widths).map(|(cell, width)| styled(cell, *width)).collect::<Vec<_>>());
+        }
+        for (column, width) in grid.column_iter_mut().zip(&widths) {
+            let width = u16::try_from(*width).unwrap_or(u16::MAX).saturating_add(PADDING);
+            column.set_padding((0, PADDING)).set_constraint(ColumnConstraint::Absolute(Width::Fixed(width)));
+        }
+        text.extend(grid.lines().flat_map(|line| [line.trim_end(), "\n"].map(ToOwned::to_owned)));
+    }
+    text
+}
+
+/// Widths of columns: those that need less than their share have what they need, the others share the rest.
+fn widths(table: &Table, width: usize) -> Vec<usize> {
+    let needs = |(index, name): (usize, &&str)| {
+        let cells = table.rows.iter().map(|row| measure_text_width(&escape::line(&row[index].text)));
+        cells.chain([measure_text_width(name)]).max().unwrap_or_default()
+    };
+    let mut widths: Vec<Option<usize>> = vec![None; table.columns.len()];
+    let needs: Vec<usize> = table.columns.iter().enumerate().map(needs).collect();
+    let is_whole = |index: usize| table.rows.iter().any(|row| row[index].is_whole);
+    let mut left = width.saturating_sub(usize::from(PADDING) * widths.len());
+    for index in (0..widths.len()).filter(|index| is_whole(*index)) {
+        widths[index] = Some(needs[index]);
+        left = left.saturating_sub(needs[index]);
+    }
+    loop {
+        let undecided = widths.iter().filter(|width| width.is_none()).count().max(1);
+        let share = left / undecided;
+        let next = (0..widths.len()).find(|index| widths[*index].is_none() && needs[*index] <= share);
+        let Some(index) = next else {
+            return widths.into_iter().map(|width| width.unwrap_or(share.max(1))).collect();
+        };
+        widths[index] = Some(needs[index]);
+        left -= needs[index];
+    }
+}
+
+fn grid(width: u16, color: bool) -> comfy_table::Table {
+    let mut grid = comfy_table::Table::new();
+    grid.load_style(NOTHING).set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
+    if color {
+        grid.enforce_styling();
+    } else {
+        grid.force_no_tty();
+    }
+    grid
+}
 
 /// Longest run of characters that keeps together; what is longer, such as a frame in hex, is broken like nothing else.
 const WORD: usize = 16;
@@ -121,8 +195,49 @@ fn records(table: &Table, width: u16, color: bool) -> String {
     rows.collect::<Vec<_>>().join("\n")
 }
 
-fn styled(cell: &Cell) -> comfy_table::Cell {
-    let shown = comfy_table::Cell::new(escape::line(&cell.text));
+/// A word from which on it is broken here, because the layout takes a time for one that grows with its square.
+const GIANT: usize = 4096;
+
+/// Columns that a giant word may fill beside so many columns of a table, of which one is known to have this width.
+fn room(width: u16, columns: usize, known: usize) -> usize {
+    let others = if known > 0 { known } else { columns.saturating_sub(1) * WORD };
+    usize::from(width).saturating_sub(others + usize::from(PADDING) * columns).max(WORD)
+}
+
+/// The text with its giant words in lines of `room` columns.
+fn without_giants(text: Cow<'_, str>, room: usize) -> Cow<'_, str> {
+    if text.len() < GIANT || text.split(' ').all(|word| word.len() < GIANT) {
+        return text;
+    }
+    let mut broken = String::with_capacity(text.len() + text.len() / room + 1);
+    for (index, word) in text.split(' ').enumerate() {
+        if word.len() < GIANT {
+            if index > 0 && !broken.ends_with('\n') {
+                broken.push(' ');
+            }
+            broken.push_str(word);
+            continue;
+        }
+        let mut column = room;
+        for character in word.chars() {
+            let wide = if character.is_ascii() { 1 } else { measure_text_width(character.encode_utf8(&mut [0; 4])) };
+            if column + wide > room {
+                if !broken.is_empty() {
+                    broken.push('\n');
+                }
+                column = 0;
+            }
+            column += wide;
+            broken.push(character);
+        }
+        broken.push('\n');
+    }
+    broken.truncate(broken.trim_end_matches('\n').len());
+    broken.into()
+}
+
+fn styled(cell: &Cell, room: usize) -> comfy_table::Cell {
+    let shown = comfy_table::Cell::new(without_giants(escape::line(&cell.text), room));
     let shown = match cell.tone {
         Tone::Plain => shown,
         Tone::Good => shown.fg(Color::Green),
@@ -153,6 +268,19 @@ fn column_id(name: &str) -> String {
     let words = name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
     let id = words.map(str::to_lowercase).collect::<Vec<_>>().join("_");
     if id.is_empty() { "number".to_owned() } else { id }
+}
+
+/// The text of a cell; numbers are as they are.
+fn csv_cell(cell: &Cell) -> String {
+    if cell.is_number { escape::lines(&cell.text).into_owned() } else { harmless(&cell.text) }
+}
+
+/// A text that does nothing on a terminal, and nothing in a spreadsheet: OWASP's apostrophe before what would be a
+/// formula. Signed numbers are none, nor is the dash that stands for nothing.
+fn harmless(text: &str) -> String {
+    let shown = escape::lines(text);
+    let is_plain = shown == "-" || shown.parse::<f64>().is_ok();
+    if shown.starts_with(['=', '+', '-', '@']) && !is_plain { format!("'{shown}") } else { shown.into_owned() }
 }
 
 fn csv_line(out: &mut String, fields: &[String]) {
@@ -192,7 +320,64 @@ mod tests {
 
     #[test]
     fn csv_quotes_what_needs_it() {
-        assert_eq!(csv(&sample(), None), "name,x_mm\nてすと,1.000\n\"a,\"\"b\"\"\u{1b}[31m\",-20.500\n");
+        assert_eq!(csv(&sample(), None), "name,x_mm\nてすと,1.000\n\"a,\"\"b\"\"\\x1b[31m\",-20.500\n");
+    }
+
+    #[test]
+    fn csv_does_nothing_on_a_terminal_or_in_a_spreadsheet() {
+        let csv = |text: &str| {
+            let mut table = Table::new(&["text"], "");
+            table.row([text.into()]);
+            csv(&View::table(table), None).trim_start_matches("text\n").trim_end_matches('\n').to_owned()
+        };
+        for (text, expected) in [
+            ("=1+2", "'=1+2"),
+            ("+SUM(A1)", "'+SUM(A1)"),
+            ("-2+3", "'-2+3"),
+            ("@HSON", "'@HSON"),
+            ("=HYPERLINK(\"x\",\"y\")", "\"'=HYPERLINK(\"\"x\"\",\"\"y\"\")\""),
+            ("-12.5", "-12.5"),
+            ("+3", "+3"),
+            ("-", "-"),
+            ("a=b", "a=b"),
+            ("\t=1", "\\t=1"),
+            ("\u{1b}]0;title\u{7}", "\\x1b]0;title\\x07"),
+            ("two\nlines", "\"two\nlines\""),
+        ] {
+            assert_eq!(csv(text), expected, "{text:?}");
+        }
+        let text = View::text("a\u{1b}[2Jb\n");
+        assert_eq!(super::csv(&text, Some("=r")), "a\\x1b[2Jb\n");
+        assert!(super::csv(&sample(), Some("=r")).contains("'=r,"));
+    }
+
+    #[test]
+    fn a_long_table_looks_like_a_short_one() {
+        let table = |rows: usize| {
+            let mut table = Table::new(&["number", "time", "message"], "");
+            for number in 0..rows {
+                let words = format!("word {}", "of several ".repeat(number % 9));
+                table.row([(number + 100_000).into(), Cell::from("08:00 h").whole(), words.into()]);
+            }
+            text(&View::table(table), 60, false)
+        };
+        let (short, long) = (table(LONG), table(2 * LONG + 10));
+        assert!(long.starts_with(&short), "{}\n{}", &short[..600], &long[..600]);
+        assert!(long.lines().all(|line| line.len() <= 60) && long.lines().count() > short.lines().count());
+    }
+
+    /// With a time that grows with the square of the length this would take hours.
+    #[test]
+    fn a_word_of_megabytes_is_laid_out_in_lines() {
+        let giant = "A".repeat(8 << 20);
+        let mut table = Table::new(&["number", "raw"], "");
+        table.row([Cell::number("1"), format!("before {giant} after").into()]);
+        table.row([Cell::number("2"), "字".repeat(100_000).into()]);
+        for view in [View::table(table), View::fields([("raw", giant.clone().into())])] {
+            let text = text(&view, 80, false);
+            assert!(text.lines().all(|line| measure_text_width(line) <= 80));
+            assert_eq!(text.matches('A').count() - text.matches("RAW").count(), giant.len());
+        }
     }
 
     #[test]

@@ -28,6 +28,7 @@ use crate::controller::nearest::nearest;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
 use crate::failure::{Failure, plain};
+use crate::files;
 
 /// Name of the file in the platform's configuration folder, below `armctl/`.
 const FILE_NAME: &str = "robots.toml";
@@ -111,7 +112,7 @@ impl Inventory {
     /// Reads the file. One that is missing from its usual place counts as empty.
     pub fn load(location: &Location) -> Result<Self, Failure> {
         let Some(path) = location.path() else { return Ok(Self::default()) };
-        let text = match std::fs::read_to_string(path) {
+        let text = match files::text(path, files::SETTINGS) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound && matches!(location, Location::Usual(_)) => {
                 return Ok(Self { path: Some(path.to_owned()), ..Self::default() });

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use serialport::{SerialPortType, UsbPortInfo};
 
+use crate::files;
+
 /// A serial port.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PortInfo {
@@ -79,10 +81,13 @@ fn kind(kind: SerialPortType) -> PortKind {
     }
 }
 
+/// The kernel writes pages.
+const LONGEST_TYPE: u64 = 4096;
+
 /// Linux has names for ports that a board could have; type 0 says that nothing is there.
 fn has_hardware(name: &str) -> bool {
     let Some(name) = Path::new(name).file_name() else { return true };
-    let kind = std::fs::read_to_string(Path::new(TERMINALS).join(name).join("type"));
+    let kind = files::text(&Path::new(TERMINALS).join(name).join("type"), LONGEST_TYPE);
     kind.map_or(true, |kind| kind.trim() != "0")
 }
 

@@ -89,7 +89,13 @@ fn a_single_robot_has_the_screen_for_itself() {
 fn the_terminal_is_as_before_on_every_way_out() {
     let desk = simulated();
     // A key, or a signal.
-    let ends = [("Ctrl-C", None), ("Ctrl-C", Some("INT")), ("SIGTERM", Some("TERM")), ("SIGHUP", Some("HUP"))];
+    let ends = [
+        ("Ctrl-C", None),
+        ("Ctrl-C", Some("INT")),
+        ("SIGTERM", Some("TERM")),
+        ("SIGHUP", Some("HUP")),
+        ("SIGQUIT", Some("QUIT")),
+    ];
     for (said, signal) in ends {
         let mut top = desk.top(&[]);
         top.shows("3 answer");

@@ -4,24 +4,21 @@ use std::time::Duration;
 
 use tokio::time::sleep;
 
+use crate::output::prompt;
+
 /// How often it is looked whether the editor has the terminal.
 const TRIES: u32 = 40;
 const PAUSE: Duration = Duration::from_millis(5);
 
-/// The settings of the terminal that lines are typed at.
+/// The terminal that lines are typed at.
 #[derive(Debug)]
-pub struct Terminal {
-    #[cfg(unix)]
-    found: Option<rustix::termios::Termios>,
-}
+pub struct Terminal(());
 
 impl Terminal {
     /// Takes note of the settings.
     pub fn save() -> Self {
-        Self {
-            #[cfg(unix)]
-            found: rustix::termios::tcgetattr(std::io::stdin()).ok(),
-        }
+        prompt::save();
+        Self(())
     }
 
     /// Sets it as it was, while the editor reads a line, or is about to: it takes the terminal first.
@@ -32,7 +29,7 @@ impl Terminal {
             }
             sleep(PAUSE).await;
         }
-        self.restore();
+        prompt::restore();
     }
 
     /// Whether keys come one by one.
@@ -43,19 +40,8 @@ impl Terminal {
         now.map_or(true, |now| !now.local_modes.contains(rustix::termios::LocalModes::ICANON))
     }
 
-    #[cfg(unix)]
-    fn restore(&self) {
-        if let Some(found) = &self.found {
-            let _ = rustix::termios::tcsetattr(std::io::stdin(), rustix::termios::OptionalActions::Drain, found);
-        }
-    }
-
     #[cfg(not(unix))]
     fn is_taken() -> bool {
         true
     }
-
-    #[cfg(not(unix))]
-    #[expect(clippy::unused_self, reason = "as where there is something to restore")]
-    fn restore(&self) {}
 }

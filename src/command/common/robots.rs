@@ -3,8 +3,6 @@
 pub mod check;
 pub mod discover;
 
-use std::path::Path;
-
 use clap::{Args, Subcommand};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -15,6 +13,9 @@ use crate::command::ValueKind;
 use crate::command::run::{Run, Stopped};
 use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
+use crate::files;
+use crate::output::busy::busy;
+use crate::output::jq::after_a_change;
 use crate::output::view::{Table, View};
 use crate::settings::inventory::{Inventory, is_name};
 use crate::settings::target::{Family, Target};
@@ -171,7 +172,8 @@ impl Add {
             }
             Ok(())
         })?;
-        run.local("robots.add", &Changed { done: "added", name: self.name, target: self.url.url().to_owned(), file })
+        let target = self.url.url().to_owned();
+        told(run.local("robots.add", &Changed { done: "added", name: self.name, target, file }))
     }
 }
 
@@ -187,8 +189,13 @@ impl Remove {
             }
             Ok(())
         })?;
-        run.local("robots.remove", &Changed { done: "removed", name: self.name, target, file })
+        told(run.local("robots.remove", &Changed { done: "removed", name: self.name, target, file }))
     }
+}
+
+/// What was changed is changed, also where that could not be reported.
+fn told(reported: Result<(), Stopped>) -> Result<(), Stopped> {
+    reported.map_err(|stopped| Stopped { failure: after_a_change(stopped.failure), ..stopped })
 }
 
 /// Changes the file and keeps its comments; it is written beside and renamed. What comes back is where it is.
@@ -196,7 +203,10 @@ fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static 
     let path = run.sources.inventory.path.as_deref().ok_or_else(|| {
         Failure::new(Kind::Usage, "there is no home folder to keep robots.toml in").hint("name a file with --config")
     })?;
-    let text = match std::fs::read_to_string(path) {
+    let _busy = busy();
+    // Others may be changing it: what is read is what is replaced.
+    let _turn = files::turn(path).map_err(|error| Failure::io(path.display(), &error))?;
+    let text = match files::text(path, files::SETTINGS) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
         Err(error) => return Err(Failure::io(path.display(), &error)),
@@ -210,20 +220,8 @@ fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static 
     let text = document.to_string();
     // What would not be read again is not written.
     Inventory::parse(&text, &path.display().to_string())?;
-    replace(path, text.as_bytes()).map_err(|error| Failure::io(path.display(), &error))?;
+    files::replace(path, text.as_bytes()).map_err(|error| Failure::io(path.display(), &error))?;
     Ok(path.display().to_string())
-}
-
-fn replace(path: &Path, content: &[u8]) -> std::io::Result<()> {
-    use std::io::Write as _;
-
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder)?;
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    file.write_all(content)?;
-    file.as_file().sync_all()?;
-    file.persist(path)?;
-    Ok(())
 }
 
 fn known<'a>(inventory: &'a Inventory, name: &str) -> Result<&'a crate::settings::inventory::Entry, Failure> {

@@ -106,7 +106,8 @@ impl Run {
         }
     }
 
-    pub(super) fn is_for_people(&self) -> bool {
+    /// Whether reports are shown as views: tables, or CSV.
+    pub fn is_for_people(&self) -> bool {
         self.filter.is_none() && matches!(self.screen.format, Format::Table | Format::Csv)
     }
 
@@ -160,13 +161,10 @@ impl Run {
         };
         let Some(value) = value else { return Ok(()) };
         let Some(filter) = &self.filter else { return self.screen.json(&value) };
-        for value in filter.apply(&value)? {
-            match value {
-                Value::String(text) => self.screen.data(&format!("{}\n", escape::lines(&text)))?,
-                value => self.screen.json(&value)?,
-            }
-        }
-        Ok(())
+        filter.apply(&value, |value| match value {
+            Value::String(text) => self.screen.data(&format!("{}\n", escape::lines(&text))),
+            value => self.screen.json(&value),
+        })
     }
 
     fn show(&self, view: &View, place: Place<'_>) -> Result<(), Failure> {

@@ -1,30 +1,26 @@
 //! Files that an operator hands over, or wants.
 
-use std::fs::File;
-use std::io::Read as _;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use crate::command::local::Target;
 use crate::controller::toyo::findings::Finding;
 use crate::failure::Failure;
+use crate::files;
 
 /// Most that is read of a file: all that a controller can hold is smaller.
 const MOST: u64 = 16 << 20;
 
 /// The bytes of a file, or of stdin for `-`.
 pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    let mut bytes = Vec::new();
-    let failed = |error| Failure::io(shown(path), &error);
-    if path == Path::new("-") {
-        std::io::stdin().lock().take(MOST).read_to_end(&mut bytes).map_err(failed)?;
-    } else {
-        File::open(path).map_err(failed)?.take(MOST).read_to_end(&mut bytes).map_err(failed)?;
-    }
-    if bytes.len() as u64 == MOST {
-        return Err(Failure::usage(format!("{} is larger than all that a controller can hold", shown(path)))
-            .hint("check that it is the file that was meant"));
-    }
-    Ok(bytes)
+    let read = if path == Path::new("-") { files::stdin(MOST) } else { files::read(path, MOST) };
+    read.map_err(|error| match error.kind() {
+        ErrorKind::FileTooLarge => {
+            Failure::usage(format!("{} is larger than all that a controller can hold", shown(path)))
+                .hint("check that it is the file that was meant")
+        }
+        _ => Failure::io(shown(path), &error),
+    })
 }
 
 /// How a file is called in reports.

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use crate::controller::toyo::simulator::{Simulator, Start};
 use crate::failure::Failure;
+use crate::files;
 use crate::transport::fault::LineFaultSpec;
 use crate::transport::sim::Peer;
 
@@ -25,7 +26,7 @@ pub fn start(file: Option<&Path>, axes: Option<u8>, faults: Option<&LineFaultSpe
 }
 
 fn load(path: &Path) -> Result<Start, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|error| Failure::io(path.display(), &error))?;
+    let text = files::text(path, files::SETTINGS).map_err(|error| Failure::io(path.display(), &error))?;
     Start::parse(&text).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))
             .hint("`armctl help simulator` shows the form of the file")

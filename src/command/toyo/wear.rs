@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use crate::command::local::state_folder;
+use crate::files;
 
 /// Writes of one cell over one link that are no accident any more.
 const LOOP: u32 = 3;
@@ -21,6 +22,8 @@ const LOOP_OF_COMMANDS: u32 = 10;
 const WINDOW: Duration = Duration::from_secs(600);
 /// A diary that is longer is written anew, without what is too old.
 const SIZE: u64 = 64 * 1024;
+/// What is larger is none that was written here.
+const MOST: u64 = 16 << 20;
 
 /// How often each cell was written.
 #[derive(Debug, Default)]
@@ -125,7 +128,7 @@ impl Diary {
     /// Leaves out what is too old.
     fn shorten(&self, now: u64) -> std::io::Result<()> {
         let text = content(&self.path);
-        let mut beside = tempfile::NamedTempFile::new_in(self.path.parent().unwrap_or(Path::new(".")))?;
+        let mut beside = files::draft_in(&files::folder_of(&self.path))?;
         for line in fresh(&text, now) {
             writeln!(beside, "{line}")?;
         }
@@ -136,7 +139,7 @@ impl Diary {
 
 /// The diary as text; one that is not there, or is none, is empty.
 fn content(path: &Path) -> String {
-    fs::read_to_string(path).unwrap_or_default()
+    files::text(path, MOST).unwrap_or_default()
 }
 
 /// The lines within the window.

@@ -7,6 +7,7 @@ use crate::controller::yerc::Model;
 use crate::controller::yerc::simulator::{Simulator, Start};
 use crate::controller::yerc::wire::Division;
 use crate::failure::Failure;
+use crate::files;
 use crate::transport::fault::FaultSpec;
 use crate::transport::server::Service;
 use crate::transport::sim::Peer;
@@ -32,13 +33,16 @@ pub fn start(file: Option<&Path>, model: Model, faults: Option<&FaultSpec>) -> R
     })
 }
 
+/// More than a controller has room for.
+const MOST: u64 = 256 << 20;
+
 fn load(path: &Path) -> Result<Start, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|error| Failure::io(path.display(), &error))?;
+    let text = files::text(path, files::SETTINGS).map_err(|error| Failure::io(path.display(), &error))?;
     // Files that the state names lie beside it.
     let folder = path.parent().unwrap_or(Path::new(""));
     let read = |name: &str| {
         let path = folder.join(name);
-        std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))
+        files::read(&path, MOST).map_err(|error| format!("{}: {error}", path.display()))
     };
     Start::parse(&text, read).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))

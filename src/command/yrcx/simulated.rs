@@ -8,6 +8,7 @@ use std::time::Duration;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
+use crate::files;
 use crate::settings::target::Sim;
 use crate::transport::eip::PORT;
 use crate::transport::eip::adapter::server::{Listen, Server};
@@ -43,7 +44,7 @@ pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
 /// The start state: a file's, or the built-in one.
 pub fn start(file: Option<&Path>) -> Result<Start, Failure> {
     let Some(path) = file else { return Ok(Start::default()) };
-    let text = std::fs::read_to_string(path).map_err(|error| Failure::io(path.display(), &error))?;
+    let text = files::text(path, files::SETTINGS).map_err(|error| Failure::io(path.display(), &error))?;
     Start::parse(&text).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))
             .hint("`armctl help simulator` shows the form of the file")

@@ -1,5 +1,6 @@
 //! Packets of a pcap or pcapng file (draft-ietf-opsawg-pcap, draft-ietf-opsawg-pcapng).
 
+use std::io::Read;
 use std::time::Duration;
 
 use thiserror::Error;
@@ -40,6 +41,9 @@ pub enum Unknown {
     /// Nothing known.
     #[error("it is no pcap or pcapng file")]
     Other,
+    /// Reading has failed.
+    #[error("it cannot be read")]
+    Unreadable,
 }
 
 const SECTION_HEADER: u32 = 0x0A0D_0D0A;
@@ -58,6 +62,8 @@ const FILE_HEADER: usize = 24;
 const PACKET_HEADER: usize = 16;
 /// More than any packet has; what says more is no length.
 const MOST: usize = 16 << 20;
+/// Interfaces of a section; each is kept.
+const MOST_INTERFACES: usize = 1 << 16;
 
 /// Numbers in the byte order of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -133,11 +139,49 @@ enum Format {
     Blocks(Vec<Interface>),
 }
 
+/// What is read at a time.
+const PIECE: usize = 1 << 16;
+
+/// A file, of which only as much is in memory as one packet needs.
+#[derive(Debug)]
+struct Window<R> {
+    file: R,
+    bytes: Vec<u8>,
+    /// Where the bytes that nobody is done with begin.
+    start: usize,
+    /// How many bytes of the file came before those.
+    passed: usize,
+}
+
+impl<R: Read> Window<R> {
+    /// The bytes from here on: so many, or all there are.
+    fn look(&mut self, len: usize) -> std::io::Result<&[u8]> {
+        if self.bytes.len() - self.start < len {
+            self.bytes.drain(..self.start);
+            self.start = 0;
+            let missing = (len - self.bytes.len()).max(PIECE);
+            let missing = u64::try_from(missing).unwrap_or(u64::MAX);
+            (&mut self.file).take(missing).read_to_end(&mut self.bytes)?;
+        }
+        let rest = &self.bytes[self.start..];
+        Ok(&rest[..rest.len().min(len)])
+    }
+
+    /// The bytes from here on that were looked at.
+    fn seen(&self) -> &[u8] {
+        &self.bytes[self.start..]
+    }
+
+    fn pass(&mut self, len: usize) {
+        self.start += len;
+        self.passed += len;
+    }
+}
+
 /// The packets of a file, up to its end or to the damage.
 #[derive(Debug)]
-pub struct Packets<'a> {
-    file: &'a [u8],
-    at: usize,
+pub struct Packets<R> {
+    file: Window<R>,
     order: Order,
     format: Format,
     number: u64,
@@ -146,14 +190,26 @@ pub struct Packets<'a> {
     is_over: bool,
 }
 
-impl<'a> Packets<'a> {
-    /// Begins with a file that was loaded.
-    pub fn open(file: &'a [u8]) -> Result<Self, Unknown> {
-        let magic = file.first_chunk::<4>().map(|bytes| u32::from_be_bytes(*bytes)).ok_or(Unknown::Other)?;
+/// A packet without its bytes, which lie so far from here.
+struct Found {
+    interface: Interface,
+    time: Option<Duration>,
+    bytes: std::ops::Range<usize>,
+    original: usize,
+}
+
+const UNREADABLE: &str = "the file cannot be read any further";
+
+impl<R: Read> Packets<R> {
+    /// Begins with a file.
+    pub fn open(file: R) -> Result<Self, Unknown> {
+        let mut file = Window { file, bytes: Vec::new(), start: 0, passed: 0 };
+        let head = file.look(FILE_HEADER).map_err(|_| Unknown::Unreadable)?;
+        let magic = head.first_chunk::<4>().map(|bytes| u32::from_be_bytes(*bytes)).ok_or(Unknown::Other)?;
         let classic = |order: Order, clock| {
-            let most = order.size(file, 16)?;
+            let most = order.size(head, 16)?;
             // Above the link type, a word may say that packets end with a checksum.
-            let link_type = u16::try_from(order.word(file, 20)? & 0xFFFF).ok()?;
+            let link_type = u16::try_from(order.word(head, 20)? & 0xFFFF).ok()?;
             Some((order, Format::Classic(Interface { link_type, most, clock }), FILE_HEADER))
         };
         let opened = match magic {
@@ -166,114 +222,137 @@ impl<'a> Packets<'a> {
             _ => None,
         };
         let (order, format, at) = opened.ok_or(Unknown::Other)?;
-        Ok(Self { file, at, order, format, number: 0, section: 0, time: Duration::ZERO, is_over: false })
+        file.pass(at);
+        Ok(Self { file, order, format, number: 0, section: 0, time: Duration::ZERO, is_over: false })
     }
 
-    fn rest(&self) -> &'a [u8] {
-        self.file.get(self.at..).unwrap_or_default()
-    }
-
-    fn damage(&self, problem: &'static str) -> Damage {
-        Damage { offset: self.at, problem }
-    }
-
-    fn packet(&mut self, interface: Interface, time: Option<Duration>, bytes: &'a [u8], original: usize) -> Packet<'a> {
+    /// The next packet; `None` at the end, and after damage.
+    pub fn next(&mut self) -> Option<Result<Packet<'_>, Damage>> {
+        // What was found, and how long the record is that it is in.
+        let found = loop {
+            if self.is_over {
+                return None;
+            }
+            let found = match self.format {
+                _ if self.file.look(1).is_ok_and(<[u8]>::is_empty) => return None,
+                Format::Classic(interface) => self.record(interface).map(|(found, len)| (Some(found), len)),
+                Format::Blocks(_) => self.block(),
+            };
+            match found {
+                Ok((Some(found), len)) => break (found, len),
+                Ok((None, len)) => self.file.pass(len),
+                Err(problem) => {
+                    self.is_over = true;
+                    return Some(Err(Damage { offset: self.file.passed, problem }));
+                }
+            }
+        };
+        let (Found { interface, time, bytes, original }, len) = found;
         self.number += 1;
         self.time = time.unwrap_or(self.time);
         let (number, section, time) = (self.number, self.section, self.time);
-        Packet { number, section, time, link_type: interface.link_type, bytes, is_cut: bytes.len() < original }
+        let before = self.file.start;
+        self.file.pass(len);
+        // What was passed stays until the next look.
+        let bytes = self.file.bytes.get(before + bytes.start..before + bytes.end).unwrap_or_default();
+        let is_cut = bytes.len() < original;
+        Some(Ok(Packet { number, section, time, link_type: interface.link_type, bytes, is_cut }))
     }
 
-    /// The next packet of a pcap file.
-    fn record(&mut self, interface: Interface) -> Result<Packet<'a>, Damage> {
-        let (rest, order) = (self.rest(), self.order);
+    /// The next packet of a pcap file, and how long its record is.
+    fn record(&mut self, interface: Interface) -> Result<(Found, usize), &'static str> {
+        let order = self.order;
+        let head = self.file.look(PACKET_HEADER).map_err(|_| UNREADABLE)?;
         let header = || {
-            let seconds = u64::from(order.word(rest, 0)?);
-            let parts = u64::from(order.word(rest, 4)?);
-            Some((seconds, parts, order.size(rest, 8)?, order.size(rest, 12)?))
+            let seconds = u64::from(order.word(head, 0)?);
+            let parts = u64::from(order.word(head, 4)?);
+            Some((seconds, parts, order.size(head, 8)?, order.size(head, 12)?))
         };
-        let (seconds, parts, len, original) =
-            header().ok_or_else(|| self.damage("the file ends inside the header of a packet"))?;
+        let (seconds, parts, len, original) = header().ok_or("the file ends inside the header of a packet")?;
         if len > MOST {
-            return Err(self.damage("a packet of an impossible length"));
+            return Err("a packet of an impossible length");
         }
-        let bytes = rest.get(PACKET_HEADER..PACKET_HEADER + len);
-        let bytes = bytes.ok_or_else(|| self.damage("the file ends inside a packet"))?;
-        let time = Clock { offset: seconds, ..interface.clock }.time(parts);
-        self.at += PACKET_HEADER + len;
-        Ok(self.packet(interface, Some(time), bytes, original))
+        let whole = PACKET_HEADER + len;
+        if self.file.look(whole).map_err(|_| UNREADABLE)?.len() < whole {
+            return Err("the file ends inside a packet");
+        }
+        let time = Some(Clock { offset: seconds, ..interface.clock }.time(parts));
+        Ok((Found { interface, time, bytes: PACKET_HEADER..whole, original }, whole))
     }
 
-    /// The packet of the next block of a pcapng file, if it has one.
-    fn block(&mut self) -> Result<Option<Packet<'a>>, Damage> {
-        let rest = self.rest();
+    /// The packet of the next block of a pcapng file, if it has one, and how long the block is.
+    fn block(&mut self) -> Result<(Option<Found>, usize), &'static str> {
         let short = "the file ends inside a block";
-        let kind = self.order.word(rest, 0).ok_or_else(|| self.damage(short))?;
+        let head = self.file.look(12).map_err(|_| UNREADABLE)?;
+        let kind = self.order.word(head, 0).ok_or(short)?;
         if kind == SECTION_HEADER {
             // The same in both byte orders, which this block decides.
-            let magic = Order::Big.word(rest, 8).ok_or_else(|| self.damage(short))?;
+            let magic = Order::Big.word(head, 8).ok_or(short)?;
             self.order = match magic {
                 BYTE_ORDER_MAGIC => Order::Big,
                 _ if magic.swap_bytes() == BYTE_ORDER_MAGIC => Order::Little,
-                _ => return Err(self.damage("a section without a byte order")),
+                _ => return Err("a section without a byte order"),
             };
         }
         let order = self.order;
-        let len = order.size(rest, 4).ok_or_else(|| self.damage(short))?;
+        let len = order.size(head, 4).ok_or(short)?;
         if len < 12 || len % 4 != 0 || len > MOST {
-            return Err(self.damage("a block of an impossible length"));
+            return Err("a block of an impossible length");
         }
-        let block = rest.get(..len).ok_or_else(|| self.damage(short))?;
+        let block = self.file.look(len).map_err(|_| UNREADABLE)?;
+        if block.len() < len {
+            return Err(short);
+        }
         if order.size(block, len - 4) != Some(len) {
-            return Err(self.damage("a block whose two lengths differ"));
+            return Err("a block whose two lengths differ");
         }
         let body = &block[8..len - 4];
-        let found = match kind {
-            SECTION_HEADER if order.short(body, 4) != Some(1) => {
-                return Err(self.damage("a section of an unknown version"));
-            }
+        match kind {
+            SECTION_HEADER if order.short(body, 4) != Some(1) => return Err("a section of an unknown version"),
             SECTION_HEADER => {
                 self.section += 1;
                 self.format = Format::Blocks(Vec::new());
-                None
             }
             INTERFACE => {
-                let interface = interface(order, body).ok_or_else(|| self.damage("an interface that is too short"))?;
+                let interface = interface(order, body).ok_or("an interface that is too short")?;
                 if let Format::Blocks(interfaces) = &mut self.format {
+                    if interfaces.len() >= MOST_INTERFACES {
+                        return Err("more interfaces than a machine has");
+                    }
                     interfaces.push(interface);
                 }
-                None
             }
-            ENHANCED_PACKET | OLD_PACKET | SIMPLE_PACKET => Some(self.packet_of(kind, body)?),
-            _ => None,
-        };
-        self.at += len;
-        Ok(found)
+            ENHANCED_PACKET | OLD_PACKET | SIMPLE_PACKET => return Ok((Some(self.packet_of(kind, len)?), len)),
+            _ => {}
+        }
+        Ok((None, len))
     }
 
-    /// The packet in the body of a block.
-    fn packet_of(&mut self, kind: u32, body: &'a [u8]) -> Result<Packet<'a>, Damage> {
+    /// The packet in the block of this length that was looked at.
+    fn packet_of(&self, kind: u32, len: usize) -> Result<Found, &'static str> {
+        let body = &self.file.seen()[8..len - 4];
         let order = self.order;
-        let Format::Blocks(interfaces) = &self.format else { return Err(self.damage("a block outside a section")) };
+        let Format::Blocks(interfaces) = &self.format else { return Err("a block outside a section") };
         let number = match kind {
             ENHANCED_PACKET => order.size(body, 0),
             OLD_PACKET => order.short(body, 0).map(usize::from),
             _ => Some(0),
         };
         let interface = number.and_then(|number| interfaces.get(number).copied());
-        let interface = interface.ok_or_else(|| self.damage("a packet of an interface that is not there"))?;
+        let interface = interface.ok_or("a packet of an interface that is not there")?;
+        // Where it begins in the body, and how much of it is there.
         let parts = || {
             if kind == SIMPLE_PACKET {
                 let original = order.size(body, 0)?;
                 let most = if interface.most == 0 { usize::MAX } else { interface.most };
-                return Some((None, body.get(4..4 + original.min(most).min(MOST))?, original));
+                return Some((None, 4, original.min(most).min(MOST), original));
             }
             let count = u64::from(order.word(body, 4)?) << 32 | u64::from(order.word(body, 8)?);
-            let len = order.size(body, 12)?.min(MOST);
-            Some((Some(interface.clock.time(count)), body.get(20..20 + len)?, order.size(body, 16)?))
+            Some((Some(interface.clock.time(count)), 20, order.size(body, 12)?.min(MOST), order.size(body, 16)?))
         };
-        let (time, bytes, original) = parts().ok_or_else(|| self.damage("a packet that is longer than its block"))?;
-        Ok(self.packet(interface, time, bytes, original))
+        let whole = parts().filter(|(_, start, len, _)| start + len <= body.len());
+        let (time, start, len, original) = whole.ok_or("a packet that is longer than its block")?;
+        Ok(Found { interface, time, bytes: 8 + start..8 + start + len, original })
     }
 }
 
@@ -294,24 +373,6 @@ fn interface(order: Order, body: &[u8]) -> Option<Interface> {
     Some(Interface { link_type, most, clock: Clock::new(resolution, offset) })
 }
 
-impl<'a> Iterator for Packets<'a> {
-    type Item = Result<Packet<'a>, Damage>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        while !self.is_over && !self.rest().is_empty() {
-            let found = match self.format {
-                Format::Classic(interface) => self.record(interface).map(Some),
-                Format::Blocks(_) => self.block(),
-            };
-            self.is_over = found.is_err();
-            if let Some(found) = found.transpose() {
-                return Some(found);
-            }
-        }
-        None
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -328,10 +389,41 @@ mod tests {
 
     #[test]
     fn what_is_no_capture_is_told() {
-        assert_eq!(Packets::open(b"").unwrap_err(), Unknown::Other);
-        assert_eq!(Packets::open(b"YERC").unwrap_err(), Unknown::Other);
-        assert_eq!(Packets::open(&[0xA1, 0xB2, 0xC3, 0xD4, 0]).unwrap_err(), Unknown::Other, "a header that is cut");
-        assert_eq!(Packets::open(&[0x1F, 0x8B, 8, 0]).unwrap_err(), Unknown::Compressed);
+        assert_eq!(Packets::open(&b""[..]).unwrap_err(), Unknown::Other);
+        assert_eq!(Packets::open(&b"YERC"[..]).unwrap_err(), Unknown::Other);
+        assert_eq!(
+            Packets::open(&[0xA1, 0xB2, 0xC3, 0xD4, 0][..]).unwrap_err(),
+            Unknown::Other,
+            "a header that is cut"
+        );
+        assert_eq!(Packets::open(&[0x1F, 0x8B, 8, 0][..]).unwrap_err(), Unknown::Compressed);
+    }
+
+    /// Gives a file in pieces of a few bytes, and never again.
+    struct Drops<'a>(&'a [u8]);
+
+    impl Read for Drops<'_> {
+        fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+            let len = buffer.len().min(7).min(self.0.len());
+            let (now, later) = self.0.split_at(len);
+            buffer[..len].copy_from_slice(now);
+            self.0 = later;
+            Ok(len)
+        }
+    }
+
+    #[test]
+    fn of_a_long_file_only_a_window_is_in_memory() {
+        let header = [&0xA1B2_C3D4_u32.to_be_bytes()[..], &[0; 16], &[0, 0, 0, 101]].concat();
+        let record = |byte: u8| [&[0; 8][..], &1000_u32.to_be_bytes(), &1000_u32.to_be_bytes(), &[byte; 1000]].concat();
+        let file = [header, (0..=u8::MAX).cycle().take(1000).flat_map(record).collect()].concat();
+        let mut packets = Packets::open(Drops(&file)).unwrap();
+        for byte in (0..=u8::MAX).cycle().take(1000) {
+            let packet = packets.next().unwrap().unwrap();
+            assert_eq!((packet.bytes, packet.is_cut), (&[byte; 1000][..], false));
+            assert!(packets.file.bytes.capacity() <= 4 * PIECE);
+        }
+        assert_eq!(packets.next(), None);
     }
 
     #[test]
@@ -345,8 +437,9 @@ mod tests {
             (28, "the file ends inside a block"),
         ] {
             let file = block(len);
-            let found: Vec<_> = Packets::open(&file).unwrap().collect();
-            assert_eq!(found, [Err(Damage { offset: 0, problem })]);
+            let mut packets = Packets::open(&file[..]).unwrap();
+            assert_eq!(packets.next(), Some(Err(Damage { offset: 0, problem })));
+            assert_eq!(packets.next(), None);
         }
     }
 }

@@ -60,6 +60,8 @@ const TAGS: [u16; 3] = [0x8100, 0x88A8, 0x9100];
 /// Extension headers of IPv6 that say their length: hop by hop, routing, destination.
 const EXTENSIONS: [u8; 3] = [0, 43, 60];
 const FRAGMENT: u8 = 44;
+/// A length has 16 bits.
+const LONGEST_IP: usize = 0xFFFF;
 
 /// Looks into a packet of a link type.
 pub fn carried(link_type: u16, packet: &[u8]) -> Carried<'_> {
@@ -111,9 +113,9 @@ fn ip(packet: &[u8]) -> Option<Carried<'_>> {
 
 fn ipv4(packet: &[u8]) -> Option<Carried<'_>> {
     let header = usize::from(packet.first()? & 0x0F) * 4;
-    // A length of 0 is left to the card to fill in.
+    // A length of 0 is left to the card to fill in, which sends no packet that is longer than any.
     let len = match usize::from(short(packet, 2)?) {
-        0 => packet.len(),
+        0 => packet.len().min(LONGEST_IP),
         len => len,
     };
     let address = |at: usize| Some(IpAddr::V4(Ipv4Addr::from(*packet.get(at..)?.first_chunk::<4>()?)));
@@ -128,7 +130,7 @@ fn ipv4(packet: &[u8]) -> Option<Carried<'_>> {
 
 fn ipv6(packet: &[u8]) -> Option<Carried<'_>> {
     let len = match usize::from(short(packet, 4)?) {
-        0 => packet.len(),
+        0 => packet.len().min(LONGEST_IP),
         len => len + 40,
     };
     let address = |at: usize| Some(IpAddr::V6(Ipv6Addr::from(*packet.get(at..)?.first_chunk::<16>()?)));
@@ -204,6 +206,17 @@ mod tests {
         let cut = &IP[..29];
         expected = carried(101, cut);
         assert!(matches!(expected, Carried::Packet { content: Content::Datagram(b"h"), is_cut: true, .. }));
+    }
+
+    #[test]
+    fn a_packet_whose_length_the_card_fills_in_is_no_longer_than_any() {
+        let mut packet = IP.to_vec();
+        (packet[2], packet[3], packet[9]) = (0, 0, TCP);
+        packet.resize(200_000, 0);
+        let Carried::Packet { content: Content::Segment(segment), is_cut: false, .. } = carried(101, &packet) else {
+            panic!("no segment");
+        };
+        assert_eq!(segment.bytes.len(), LONGEST_IP - 40);
     }
 
     #[test]

@@ -8,6 +8,7 @@ mod file;
 mod layers;
 mod stream;
 
+use std::io::Read;
 use std::net::SocketAddr;
 use std::time::Duration;
 
@@ -88,12 +89,13 @@ pub struct Summary {
     pub damage: Option<Damage>,
 }
 
-/// Reads a file that was loaded, and hands over what was said in it. Messages of a TCP stream that overtook each other
+/// Reads a file piece by piece, and hands over what was said in it. Messages of a TCP stream that overtook each other
 /// come when they are in order, so after later ones of other streams.
-pub fn read(file: &[u8], mut hear: impl FnMut(&Message<'_>)) -> Result<Summary, Unknown> {
+pub fn read(file: impl Read, mut hear: impl FnMut(&Message<'_>)) -> Result<Summary, Unknown> {
     let mut summary = Summary::default();
     let mut streams = Streams::default();
-    for packet in Packets::open(file)? {
+    let mut packets = Packets::open(file)?;
+    while let Some(packet) = packets.next() {
         let packet = match packet {
             Ok(packet) => packet,
             Err(damage) => {

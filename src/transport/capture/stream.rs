@@ -29,11 +29,17 @@ pub struct Arrived<'a> {
 /// Segments of a direction that wait for one before them; with more, what is missing counts as lost.
 const MOST_WAITING: usize = 64;
 
+/// Streams, and bytes that wait in them; with more, all that is missing counts as lost, and each stream begins anew.
+const MOST_STREAMS: usize = 1 << 16;
+const MOST_HELD: usize = 32 << 20;
+
 /// All directions of all streams.
 #[derive(Debug, Default)]
 pub struct Streams {
     streams: HashMap<Place, Stream>,
     repeated: u64,
+    /// Bytes that wait in all of them.
+    held: usize,
 }
 
 /// One direction.
@@ -46,11 +52,24 @@ struct Stream {
     waiting: BTreeMap<u64, (Stamp, Vec<u8>)>,
     /// Bytes that were handed over or given up: places are counted by them, because numbers wrap.
     passed: u64,
+    /// Bytes that wait.
+    held: usize,
 }
 
 impl Streams {
     /// Takes a segment, and hands over what is in order then.
     pub fn take(&mut self, place: Place, segment: &Segment<'_>, stamp: Stamp, give: &mut impl FnMut(&Arrived<'_>)) {
+        if self.held > MOST_HELD || self.streams.len() >= MOST_STREAMS {
+            self.finish(give);
+            self.streams.clear();
+            self.held = 0;
+        }
+        let held = self.streams.get(&place).map_or(0, |stream| stream.held);
+        self.arrive(place, segment, stamp, give);
+        self.held = self.held + self.streams.get(&place).map_or(0, |stream| stream.held) - held;
+    }
+
+    fn arrive(&mut self, place: Place, segment: &Segment<'_>, stamp: Stamp, give: &mut impl FnMut(&Arrived<'_>)) {
         let stream = self.streams.entry(place).or_default();
         if segment.opens {
             stream.skip(place, give);
@@ -71,7 +90,10 @@ impl Streams {
             self.repeated += stream.drain(place, give);
         } else {
             let at = stream.passed + u64::from(ahead);
-            stream.waiting.entry(at).or_insert((stamp, segment.bytes.to_vec()));
+            stream.waiting.entry(at).or_insert_with(|| {
+                stream.held += segment.bytes.len();
+                (stamp, segment.bytes.to_vec())
+            });
             if stream.waiting.len() > MOST_WAITING {
                 stream.jump(place, give);
                 self.repeated += stream.drain(place, give);
@@ -109,6 +131,7 @@ impl Stream {
             && *first.key() <= self.passed
         {
             let (at, (stamp, bytes)) = first.remove_entry();
+            self.held -= bytes.len();
             let known = usize::try_from(self.passed - at).unwrap_or(usize::MAX);
             match bytes.get(known..).filter(|new| !new.is_empty()) {
                 Some(new) => self.give((place, stamp), 0, new, give),
@@ -121,6 +144,7 @@ impl Stream {
     /// Gives up on what is missing before the first that waits.
     fn jump(&mut self, place: Place, give: &mut impl FnMut(&Arrived<'_>)) {
         if let Some((at, (stamp, bytes))) = self.waiting.pop_first() {
+            self.held -= bytes.len();
             let lost = u32::try_from(at.saturating_sub(self.passed)).unwrap_or(u32::MAX);
             self.give((place, stamp), lost, &bytes, give);
         }
@@ -168,6 +192,25 @@ mod tests {
             arrived(&[(near_wrap, b"abcd"), (3, b"gh"), (1, b"ef"), (near_wrap, b"abcd"), (1, b"efgh"), (3, b"ghi")]);
         assert_eq!(all, rows(&[(1, 0, "abcd"), (3, 0, "ef"), (2, 0, "gh"), (6, 0, "i")]));
         assert_eq!(repeated, 2);
+    }
+
+    #[test]
+    fn what_waits_is_bounded() {
+        let mut streams = Streams::default();
+        let mut all = 0;
+        let bytes = vec![0; 60_000];
+        for number in 0..3000u32 {
+            let place = (usize::try_from(number).unwrap(), place().1, place().2);
+            // The first opens the stream, and the second, after a gap, waits.
+            for (sequence, bytes) in [(1, &bytes[..1]), (9, &bytes[..])] {
+                let segment = Segment { sequence, opens: false, bytes };
+                let stamp = (number.into(), Duration::ZERO, false);
+                streams.take(place, &segment, stamp, &mut |arrived| all += arrived.bytes.len());
+                assert!(streams.held <= MOST_HELD + bytes.len());
+            }
+        }
+        streams.finish(&mut |arrived| all += arrived.bytes.len());
+        assert_eq!(all, 3000 * 60_001, "nothing is lost for that");
     }
 
     #[test]

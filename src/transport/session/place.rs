@@ -8,6 +8,10 @@ use thiserror::Error;
 
 use super::socket::{self, Lock};
 use super::wire::Info;
+use crate::files;
+
+/// Most that a lock file says about its owner.
+const LONGEST_LOCK: u64 = 1 << 16;
 
 /// Why there is no place for sessions.
 #[derive(Debug, Error)]
@@ -126,7 +130,7 @@ impl Spot {
 
     /// Who has it, or had it.
     pub fn owner(&self) -> Option<Info> {
-        serde_json::from_slice(&std::fs::read(self.lock()).ok()?).ok()
+        serde_json::from_slice(&files::read(&self.lock(), LONGEST_LOCK).ok()?).ok()
     }
 
     /// Removes what a dead session left; nothing if a living process has it.

@@ -13,6 +13,7 @@ use crate::command::lines::{Change, Hunk, MOST_TEXT, TextDifference, unified};
 use crate::command::manifest::{Entry, Manifest, Saved};
 use crate::controller::text::Encoding;
 use crate::failure::{Failure, Kind};
+use crate::files;
 use crate::output::escape;
 use crate::output::view::{Cell, Section, Table, Tone, View};
 
@@ -260,7 +261,7 @@ fn copy<'e>(side: &Side, entry: &'e Entry) -> Result<&'e Saved, Failure> {
 fn read(folder: &Path, copy: &Saved) -> Result<Vec<u8>, Failure> {
     let path = folder.join(&copy.file);
     let failed = |error: &std::io::Error| Failure::io(path.display(), error);
-    let file = std::fs::File::open(&path).map_err(|error| failed(&error))?;
+    let file = files::open(&path).map_err(|error| failed(&error))?;
     let mut bytes = Vec::new();
     file.take(MOST_TEXT as u64 + 1).read_to_end(&mut bytes).map_err(|error| failed(&error))?;
     Ok(bytes)

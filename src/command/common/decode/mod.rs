@@ -5,8 +5,6 @@ pub mod toyo;
 pub mod yerc;
 pub mod yrcx;
 
-use std::io::Read as _;
-
 use clap::Subcommand;
 
 use self::toyo::Toyo;
@@ -14,6 +12,7 @@ use self::yerc::Yerc;
 use self::yrcx::Yrcx;
 use crate::command::run::{Run, Stopped};
 use crate::failure::Failure;
+use crate::files;
 
 /// Families whose traffic is known.
 #[derive(Debug, Subcommand)]
@@ -41,8 +40,6 @@ const MOST: u64 = 16 << 20;
 
 /// What stands on stdin; bytes that are no text are replaced, and then told as such.
 fn stdin() -> Result<String, Failure> {
-    let mut bytes = Vec::new();
-    let read = std::io::stdin().lock().take(MOST).read_to_end(&mut bytes);
-    read.map_err(|error| Failure::io("stdin", &error))?;
+    let bytes = files::stdin(MOST).map_err(|error| Failure::io("stdin", &error))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

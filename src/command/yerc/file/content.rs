@@ -2,10 +2,11 @@
 //! right on request.
 
 use std::fs::File;
-use std::io::{Read as _, Seek as _};
+use std::io::{ErrorKind, Read as _, Seek as _};
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
+use crate::files;
 
 /// A few blocks at a time.
 const PIECE: usize = 1 << 13;
@@ -44,12 +45,14 @@ impl Content {
     /// Opens a file that is only looked at.
     pub fn open_any(path: &Path) -> Result<Self, Failure> {
         let failed = |error: &std::io::Error| Failure::io(path.display(), error);
-        let found = path.metadata().map_err(|error| failed(&error))?;
-        if !found.is_file() {
-            return Err(Failure::usage(format!("{} is no file", path.display())).hint("name the files one by one"));
-        }
-        let file = File::open(path).map_err(|error| failed(&error))?;
-        Ok(Self { file, path: path.to_owned(), len: found.len(), fixes: false, job_name: None })
+        let file = match files::open(path) {
+            Err(error) if matches!(error.kind(), ErrorKind::IsADirectory | ErrorKind::Unsupported) => {
+                return Err(Failure::usage(format!("{} is no file", path.display())).hint("name the files one by one"));
+            }
+            opened => opened.map_err(|error| failed(&error))?,
+        };
+        let len = file.metadata().map_err(|error| failed(&error))?.len();
+        Ok(Self { file, path: path.to_owned(), len, fixes: false, job_name: None })
     }
 
     /// Where it is.

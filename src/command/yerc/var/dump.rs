@@ -19,6 +19,7 @@ use super::{in_form, listed, parse_kind};
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::variables::{Reference, VariableKind};
 use crate::failure::Failure;
+use crate::files;
 use crate::output::escape;
 use crate::output::view::View;
 
@@ -129,17 +130,8 @@ impl Dump {
         if dry {
             return Ok(None);
         }
-        let folder = self.file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".armctl-");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt as _;
-
-            // As any new file: what the user's umask leaves of it.
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        builder.tempfile_in(folder).map(Some).map_err(|error| Failure::io(folder.display(), &error))
+        let folder = files::folder_of(&self.file);
+        files::draft_in(&folder).map(Some).map_err(|error| Failure::io(folder.display(), &error))
     }
 
     fn keep(&self, mut place: NamedTempFile, text: &str) -> Result<(), Failure> {

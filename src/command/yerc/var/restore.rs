@@ -1,7 +1,6 @@
 //! `yerc var restore`.
 
 use std::collections::HashMap;
-use std::io::Read as _;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -21,6 +20,7 @@ use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::variables::{Reference, Value, VariableKind, WriteStep, plan_writes};
 use crate::failure::Failure;
+use crate::files;
 use crate::output::view::View;
 
 /// What to write back.
@@ -99,11 +99,7 @@ impl Restore {
     }
 
     fn read(&self) -> Result<String, Failure> {
-        let failed = |error| Failure::io(self.file.display(), &error);
-        let file = std::fs::File::open(&self.file).map_err(failed)?;
-        let mut text = String::new();
-        file.take(MOST).read_to_string(&mut text).map_err(failed)?;
-        Ok(text)
+        files::text(&self.file, MOST).map_err(|error| Failure::io(self.file.display(), &error))
     }
 }
 

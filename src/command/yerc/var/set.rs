@@ -1,7 +1,6 @@
 //! `yerc var set`.
 
-use std::io::Read as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::Args;
@@ -25,6 +24,7 @@ use crate::controller::yerc::query::{Query, WriteField, WriteVariable};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::variables::{Reference, Value, VariableKind, WriteStep, plan_writes};
 use crate::failure::Failure;
+use crate::files;
 use crate::output::view::{Cell, Table, View};
 
 /// Variables to write.
@@ -257,12 +257,8 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
 /// A position takes a kilobyte; this is room for a whole report around it.
 const MOST: u64 = 1 << 20;
 
-fn read(path: &PathBuf) -> Result<String, Failure> {
-    let failed = |error| Failure::io(path.display(), &error);
-    let file = std::fs::File::open(path).map_err(failed)?;
-    let mut text = String::new();
-    file.take(MOST).read_to_string(&mut text).map_err(failed)?;
-    Ok(text)
+fn read(path: &Path) -> Result<String, Failure> {
+    files::text(path, MOST).map_err(|error| Failure::io(path.display(), &error))
 }
 
 /// A request of `var set`.

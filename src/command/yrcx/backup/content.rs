@@ -20,6 +20,7 @@ use crate::controller::yrcx::table::parameter::PARAMETERS;
 use crate::controller::yrcx::table::{Command, Field};
 use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::Failure;
+use crate::files;
 use crate::output::Screen;
 use crate::output::progress::Progress;
 use crate::settings::target::Family;
@@ -454,7 +455,7 @@ impl Store {
 /// Reads and checks the file of a part: what is to be written.
 pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
     let path = folder.join(part.file());
-    let text = std::fs::read_to_string(&path).map_err(|error| Failure::io(path.display(), &error))?;
+    let text = files::text(&path, files::SETTINGS).map_err(|error| Failure::io(path.display(), &error))?;
     let wrong = |why: String| Failure::usage(format!("{}: {why}", path.display())).hint("make a new backup");
     let columns = match (part, part.records()) {
         (_, Some(records)) => records.names(),

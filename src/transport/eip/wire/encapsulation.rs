@@ -94,28 +94,33 @@ impl<'a> Frame<'a> {
 #[derive(Debug, Clone, Default)]
 pub struct Frames {
     bytes: Vec<u8>,
+    /// How many of them were handed out already.
+    done: usize,
 }
 
 impl Frames {
     /// Takes what arrived.
     pub fn push(&mut self, bytes: &[u8]) {
+        // Only now, so that each byte moves once however many messages came together.
+        self.bytes.drain(..self.done);
+        self.done = 0;
         self.bytes.extend_from_slice(bytes);
     }
 
     /// The next message that is all there, header and data.
     pub fn pop(&mut self) -> Option<Vec<u8>> {
-        let header = self.bytes.get(..HEADER_LEN)?;
+        let rest = self.bytes.get(self.done..)?;
+        let header = rest.get(..HEADER_LEN)?;
         let len = HEADER_LEN + usize::from(u16::from_le_bytes([header[2], header[3]]));
-        if self.bytes.len() < len {
-            return None;
-        }
-        let rest = self.bytes.split_off(len);
-        Some(std::mem::replace(&mut self.bytes, rest))
+        let message = rest.get(..len)?.to_vec();
+        self.done += len;
+        Some(message)
     }
 
     /// Forgets what is there, as for a new connection.
     pub fn clear(&mut self) {
         self.bytes.clear();
+        self.done = 0;
     }
 }
 
@@ -148,6 +153,18 @@ mod tests {
             }
             assert_eq!(found, [one.clone(), two.clone()], "in parts of {size}");
         }
+    }
+
+    #[test]
+    fn many_messages_at_once_take_no_more_room_than_they_are() {
+        let mut frames = Frames::default();
+        frames.push(&[0; HEADER_LEN * 10_000]);
+        let messages: Vec<_> = std::iter::from_fn(|| frames.pop()).collect();
+        assert_eq!(messages.len(), 10_000);
+        assert!(messages.iter().all(|message| message.len() == HEADER_LEN && message.capacity() < 2 * HEADER_LEN));
+        frames.push(&[0; HEADER_LEN]);
+        assert_eq!(frames.pop(), Some(vec![0; HEADER_LEN]));
+        assert_eq!((frames.pop(), frames.bytes.len()), (None, HEADER_LEN), "what was handed out is forgotten");
     }
 
     #[test]

@@ -16,6 +16,8 @@ pub type Letter = (u64, Option<Frame>);
 
 /// Frames that may wait for a client that does not read. More, and it is given up.
 const MOST_WAITING: usize = 1024;
+/// How long a client may be silent before it has said who it is.
+const FIRST_WORDS: Duration = Duration::from_secs(3);
 /// How long the last words to a client may take.
 const LAST_WORDS: Duration = Duration::from_millis(300);
 
@@ -111,10 +113,16 @@ pub fn milliseconds(since: Instant) -> u64 {
 }
 
 async fn read_all(id: u64, mut reader: Reader, letterbox: mpsc::Sender<Letter>) {
+    let mut is_named = false;
     loop {
+        // Who has said who he is may be silent; anybody else only takes up a place.
+        let deadline = Instant::now() + FIRST_WORDS;
+        let frame =
+            if is_named { reader.next().await } else { timeout_at(deadline, reader.next()).await.unwrap_or(Ok(None)) };
         // What is no frame is the end, too.
-        let frame = reader.next().await.unwrap_or(None);
+        let frame = frame.unwrap_or(None);
         let is_end = frame.is_none();
+        is_named = is_named || matches!(frame, Some(Frame::Control(Control::Hello(_))));
         if letterbox.send((id, frame)).await.is_err() || is_end {
             return;
         }

@@ -219,12 +219,21 @@ impl Host {
             leftover: self.leftover(),
             images: self.held.images().map(|images| images.welcome()),
         };
+        let refused = if hello.version != VERSION {
+            let host = std::process::id();
+            Some(format!("the session is of another version of armctl (process {host}): close it, and open it again"))
+        } else if hello.key != self.key {
+            Some("the session is for another device".to_owned())
+        } else {
+            None
+        };
         let Some(client) = self.clients.get_mut(&id) else { return };
-        if hello.key != self.key {
-            client.tell(Control::Refused("the session is for another device".to_owned()));
+        if let Some(why) = refused {
+            // What it is told still leaves.
+            client.tell(Control::Refused(why));
+            self.gone(id);
             return;
         }
-        // One of another version sees it here, and goes.
         client.named(hello.pid, short(&hello.command));
         client.tell(Control::Welcome(Box::new(welcome)));
     }

@@ -222,3 +222,67 @@ async fn a_client_for_another_device_is_sent_away() {
     let refused = served(&mut host, attach_at(&spot, "other", "wrong")).await;
     assert!(refused.unwrap_err().to_string().contains("another device"));
 }
+
+/// What the host says to a client that sends these frames, up to the end of the connection.
+async fn told(spot: &Spot, frames: &[Control]) -> Vec<Frame> {
+    use tokio::io::AsyncWriteExt as _;
+
+    let (read, mut write) = crate::transport::session::socket::connect(&spot.socket()).await.unwrap().unwrap();
+    let mut bytes = Vec::new();
+    for control in frames {
+        Frame::Control(control.clone()).emit(&mut bytes);
+    }
+    write.write_all(&bytes).await.unwrap();
+    let mut reader = crate::transport::session::wire::Reader::new(read);
+    let mut told = Vec::new();
+    while let Ok(Some(frame)) = reader.next().await {
+        told.push(frame);
+    }
+    told
+}
+
+#[tokio::test(start_paused = true)]
+async fn who_does_not_say_who_he_is_takes_up_no_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut host, spot) = host(folder.path(), images());
+    served(&mut host, async {
+        let silent: Vec<_> = (0..MOST_CLIENTS).map(|_| told(&spot, &[])).collect();
+        let asking = told(&spot, &[Control::Ask]);
+        // The first ones are let in, and let go again; then there is room.
+        let (all, _) = futures_util::join!(join_all(silent), async {
+            tokio::time::sleep(Duration::from_secs(1)).await;
+            asking.await
+        });
+        assert!(all.iter().all(Vec::is_empty));
+        client(&spot, "new").await;
+        let asked = told(&spot, &[Control::Ask]).await;
+        assert!(matches!(asked[..], [Frame::Control(Control::Status(_))]), "{asked:?}");
+    })
+    .await;
+    assert!(host.clients.len() <= 1);
+}
+
+#[tokio::test(start_paused = true)]
+async fn who_has_said_who_he_is_may_be_silent() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut host, spot) = host(folder.path(), images());
+    served(&mut host, async {
+        let mut link = ImageLink::in_session(client(&spot, "patient").await);
+        tokio::time::sleep(Duration::from_secs(3600)).await;
+        shows(&mut link, &[0, 0, 0x01]).await;
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn a_client_of_another_version_is_refused_with_a_word() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut host, spot) = host(folder.path(), images());
+    served(&mut host, async {
+        let hello = Hello { version: VERSION + 1, key: "key".to_owned(), pid: 1, command: "armctl".to_owned() };
+        let told = told(&spot, &[Control::Hello(hello)]).await;
+        let [Frame::Control(Control::Refused(why))] = &told[..] else { panic!("{told:?}") };
+        assert!(why.contains("another version"), "{why}");
+    })
+    .await;
+}

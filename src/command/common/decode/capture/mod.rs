@@ -6,19 +6,23 @@ pub mod yerc;
 pub mod yrcx;
 
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::Read as _;
+use std::io::Read;
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
+use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
 use crate::command::run::{Run, Stopped};
 use crate::failure::{Failure, Kind};
+use crate::files;
+use crate::output::Format;
+use crate::output::busy::busy;
+use crate::output::envelope::ErrorBody;
 use crate::output::view::{Cell, Section, Table, Tone, View};
 use crate::transport::capture::{Carrier, Message, Unknown, read};
 use crate::transport::tap::Direction;
@@ -76,6 +80,8 @@ pub trait Listener {
     type Field: Field;
     /// Takes what was said, of whatever family.
     fn hear(&mut self, message: &Message<'_>);
+    /// What has been heard so far.
+    fn told(&mut self) -> &mut Told<Self::Field>;
     /// Everything that was heard, and in how many packets.
     fn finish(self) -> Told<Self::Field>;
 }
@@ -84,7 +90,7 @@ pub trait Listener {
 #[derive(Debug)]
 pub struct Told<F> {
     /// In any order.
-    pub messages: Vec<Heard<F>>,
+    pub messages: Kept<F>,
     /// Packets that belong to the family.
     pub packets: u64,
     /// What else there is to say.
@@ -93,7 +99,73 @@ pub struct Told<F> {
 
 impl<F> Default for Told<F> {
     fn default() -> Self {
-        Self { messages: Vec::new(), packets: 0, notes: Vec::new() }
+        Self { messages: Kept::default(), packets: 0, notes: Vec::new() }
+    }
+}
+
+/// Messages that are kept until the end of the file: those that are wanted, as far as there is room.
+#[derive(Debug)]
+pub struct Kept<F> {
+    list: Vec<Heard<F>>,
+    wanted: Wanted,
+    weight: usize,
+    /// There were more than there is room for.
+    is_full: bool,
+}
+
+/// What of the messages is needed.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Wanted {
+    /// Those of one packet.
+    frame: Option<u64>,
+    /// In a line each, without their parts.
+    in_short: bool,
+}
+
+/// Room for messages in bytes, whatever the size of the file.
+const ROOM: usize = 256 << 20;
+
+impl<F> Default for Kept<F> {
+    fn default() -> Self {
+        Self { list: Vec::new(), wanted: Wanted::default(), weight: 0, is_full: false }
+    }
+}
+
+impl<F> Kept<F> {
+    /// Keeps a message, if it is wanted.
+    pub fn push(&mut self, mut heard: Heard<F>) {
+        if self.is_full || self.wanted.frame.is_some_and(|frame| frame != heard.number) {
+            return;
+        }
+        if self.wanted.in_short {
+            (heard.fields, heard.raw, heard.section) = (Vec::new(), String::new(), None);
+        }
+        self.weigh(heard.weight());
+        if !self.is_full {
+            self.list.push(heard);
+        }
+    }
+
+    /// Counts what is kept elsewhere to the same end.
+    pub fn weigh(&mut self, bytes: usize) {
+        self.weight = self.weight.saturating_add(bytes);
+        self.is_full = self.is_full || self.weight > ROOM;
+    }
+
+    /// Whether there is no room any more.
+    pub fn is_full(&self) -> bool {
+        self.is_full
+    }
+}
+
+impl<F> Heard<F> {
+    /// Bytes of memory that it takes, as good as.
+    fn weight(&self) -> usize {
+        /// Names and meanings of a field, with what it takes to keep them.
+        const FIELD: usize = 100;
+
+        let texts = [self.text.len(), self.raw.len(), self.link.0.len(), self.link.1.len()].iter().sum::<usize>();
+        size_of::<Self>() + texts + self.fields.len() * (size_of::<F>() + FIELD)
     }
 }
 
@@ -128,21 +200,47 @@ pub trait Field: Serialize + JsonSchema + Sized {
     fn table(fields: &[Self]) -> Table;
 }
 
-/// Most of a file that is loaded.
-const MOST: u64 = 1 << 30;
-
 /// Reads a file and reports it.
 pub fn tell<L: Listener>(run: &Run, id: &str, path: &Path, selection: &Selection, listener: L) -> Result<(), Stopped> {
-    let file = load(path)?;
-    run.local(id, &capture(&path.display().to_string(), &file, selection, listener)?)
+    let failed = |error: std::io::Error| Failure::io(path.display(), &error);
+    let capture = {
+        let _busy = busy();
+        let file = files::open(path).map_err(failed)?;
+        capture(&path.display().to_string(), file, selection, run.is_for_people(), listener)?
+    };
+    // Never as a value in between, which takes many times the memory.
+    if !run.is_for_people() && run.filter.is_none() && run.line.is_none() {
+        let failure = capture.failure();
+        let time = (run.screen.format == Format::Jsonl).then(Timestamp::now);
+        let error = failure.clone().map(ErrorBody::from);
+        run.screen.json(&Whole { time, robot: None, command: id, ok: error.is_none(), data: &capture, error })?;
+        return failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: true }));
+    }
+    run.local(id, &capture)
+}
+
+/// An envelope around a report as it is.
+#[derive(Serialize)]
+struct Whole<'a, F> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time: Option<Timestamp>,
+    robot: Option<()>,
+    command: &'a str,
+    ok: bool,
+    data: &'a Capture<F>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<ErrorBody>,
 }
 
 fn capture<L: Listener>(
     name: &str,
-    file: &[u8],
+    file: impl Read,
     selection: &Selection,
+    in_short: bool,
     mut listener: L,
 ) -> Result<Capture<L::Field>, Failure> {
+    let frame = selection.frame;
+    listener.told().messages.wanted = Wanted { frame, in_short: in_short && frame.is_none() };
     let summary = read(file, |message| {
         if selection.admits(&message.carrier) {
             listener.hear(message);
@@ -151,6 +249,7 @@ fn capture<L: Listener>(
     let summary = summary.map_err(|error| {
         let hint = match error {
             Unknown::Compressed => "unpack it first: gunzip, or unzstd",
+            Unknown::Unreadable => "check the disk that it is on",
             Unknown::Other => "tcpdump, Wireshark and --trace write such files",
         };
         Failure::local(format!("{name}: {error}")).hint(hint)
@@ -162,13 +261,14 @@ fn capture<L: Listener>(
     if summary.repeated > 0 {
         notes.push(format!("{} left out", counted(summary.repeated, "repeated TCP segment")));
     }
-    let (links, mut messages) = linked(messages, summary.first);
-    if let Some(frame) = selection.frame {
-        messages.retain(|message| message.number == frame);
-        if messages.is_empty() {
-            let message = format!("there is no message of this family in packet {frame} of {name}");
-            return Err(Failure::usage(message).hint("the numbers are in the list, without --frame"));
-        }
+    let damage = match summary.damage {
+        _ if messages.is_full => Some(FULL.to_owned()),
+        damage => damage.map(|damage| damage.to_string()),
+    };
+    let (links, messages) = linked(messages.list, summary.first);
+    if let Some(frame) = selection.frame.filter(|_| messages.is_empty()) {
+        let message = format!("there is no message of this family in packet {frame} of {name}");
+        return Err(Failure::usage(message).hint("the numbers are in the list, without --frame"));
     }
     Ok(Capture {
         file: name.to_owned(),
@@ -177,21 +277,10 @@ fn capture<L: Listener>(
         links,
         messages,
         notes,
-        damage: summary.damage.map(|damage| damage.to_string()),
+        damage,
         is_detailed: selection.frame.is_some(),
         is_filtered: selection.host.is_some() || selection.port.is_some(),
     })
-}
-
-fn load(path: &Path) -> Result<Vec<u8>, Failure> {
-    let failed = |error: std::io::Error| Failure::io(path.display(), &error);
-    let mut bytes = Vec::new();
-    File::open(path).map_err(failed)?.take(MOST + 1).read_to_end(&mut bytes).map_err(failed)?;
-    if u64::try_from(bytes.len()).unwrap_or(u64::MAX) > MOST {
-        let failure = Failure::local(format!("{}: it is larger than 1 GiB", path.display()));
-        return Err(failure.hint("cut it into pieces, as `editcap -c` does"));
-    }
-    Ok(bytes)
 }
 
 /// Messages in the order of packets, with the links they belong to.
@@ -357,6 +446,10 @@ impl<F: Field> Report for Capture<F> {
     }
 
     fn failure(&self) -> Option<Failure> {
+        if self.damage.as_deref() == Some(FULL) {
+            let failure = Failure::local(format!("{}: {FULL}", self.file));
+            return Some(failure.hint("choose with --host, --port or --frame, or cut the file, as `editcap -c` does"));
+        }
         if let Some(damage) = &self.damage {
             let failure = Failure::local(format!("{}: {damage}", self.file));
             return Some(failure.hint("what came before is told; a capture that was broken off ends like this"));
@@ -369,6 +462,20 @@ impl<F: Field> Report for Capture<F> {
             _ => format!("{damaged} of {all} messages are damaged; the first, in packet {number}: {problem}"),
         };
         Some(Failure::new(Kind::Malformed, message).hint("--frame NUMBER explains one as far as it goes"))
+    }
+}
+
+/// Why not all messages are told.
+const FULL: &str = "it has more messages than there is room for; the first ones are told";
+
+/// Says what else there is to say, as far as anybody reads it.
+fn note(notes: &mut Vec<String>, text: String) {
+    const MOST: usize = 1000;
+
+    match notes.len() {
+        MOST => notes.push("more of the same kind is not told".to_owned()),
+        len if len < MOST => notes.push(text),
+        _ => {}
     }
 }
 
@@ -399,9 +506,9 @@ mod tests {
             Some((capture.messages.len(), capture.other_packets))
         }
         [
-            count(capture("file", file, selection, yerc::Frames::default())),
-            count(capture("file", file, selection, toyo::Lines::default())),
-            count(capture("file", file, selection, yrcx::Images::new(true))),
+            count(capture("file", file, selection, false, yerc::Frames::default())),
+            count(capture("file", file, selection, false, toyo::Lines::default())),
+            count(capture("file", file, selection, false, yrcx::Images::new(true))),
         ]
     }
 

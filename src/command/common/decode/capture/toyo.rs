@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 use std::time::Duration;
 
 use super::super::toyo::{FieldRow, field_table};
-use super::{Field, Heard, Listener, Told, cut};
+use super::{Field, Heard, Listener, Told, cut, note};
 use crate::controller::toyo::describe::{Sender, describe, summary};
 use crate::controller::toyo::request::Request;
 use crate::output::view::Table;
@@ -16,6 +16,7 @@ use crate::transport::tap::Direction;
 #[derive(Debug, Default)]
 pub struct Lines {
     talks: BTreeMap<Place, Talk>,
+    told: Told<FieldRow>,
 }
 
 /// Where a conversation takes place.
@@ -37,6 +38,8 @@ struct Talk {
     notes: Vec<String>,
     /// Whether any line can only be of this communication.
     is_ours: bool,
+    /// Bytes that the lines take.
+    kept: usize,
 }
 
 /// A line.
@@ -50,6 +53,8 @@ struct Said {
     is_cut: bool,
 }
 
+/// Bytes that a conversation takes beside its lines.
+const TALK: usize = 1024;
 /// Longest piece without a line end; the longest block is shorter.
 const MOST: usize = 512;
 /// Lines without a block after which a stream is something else, which need not be kept.
@@ -67,8 +72,15 @@ impl Listener for Lines {
                 (Place::Line(section), usize::from(direction == Direction::Received))
             }
         };
-        let talk = self.talks.entry(place).or_default();
+        if self.told.messages.is_full() {
+            return;
+        }
+        let talk = self.talks.entry(place).or_insert_with(|| {
+            self.told.messages.weigh(TALK);
+            Talk::default()
+        });
         talk.packets += 1;
+        let kept = talk.kept;
         let (mut begins, mut lost) = (false, 0);
         if let Carrier::Stream { begins: anew, lost: missing, .. } = message.carrier {
             (begins, lost) = (anew, missing);
@@ -77,7 +89,8 @@ impl Listener for Lines {
             talk.coming = [Vec::new(), Vec::new()];
         }
         if lost > 0 {
-            talk.notes.push(format!("{lost} characters before packet {} are not in the capture", message.number));
+            let notes = &mut talk.notes;
+            note(notes, format!("{lost} characters before packet {} are not in the capture", message.number));
             talk.line(by, message, message.is_cut);
         }
         for byte in message.bytes {
@@ -89,10 +102,15 @@ impl Listener for Lines {
         if message.is_cut {
             talk.line(by, message, true);
         }
+        self.told.messages.weigh(talk.kept - kept);
+    }
+
+    fn told(&mut self) -> &mut Told<FieldRow> {
+        &mut self.told
     }
 
     fn finish(self) -> Told<FieldRow> {
-        let mut told = Told::default();
+        let mut told = self.told;
         for (place, talk) in self.talks {
             if !talk.is_ours {
                 continue;
@@ -114,6 +132,7 @@ impl Talk {
         }
         if !text.is_empty() {
             self.is_ours = self.is_ours || is_block(&text);
+            self.kept += text.len() + size_of::<Said>();
             self.said.push(Said { number: message.number, time: message.time, by, text, is_cut });
         }
     }

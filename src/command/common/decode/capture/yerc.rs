@@ -13,6 +13,9 @@ use crate::output::view::Table;
 use crate::transport::capture::{Carrier, Message};
 use crate::transport::tap::Direction;
 
+/// Requests that are remembered until they are answered: of more peers than a plant has.
+const MOST_ASKED: usize = 1 << 16;
+
 /// Datagrams that begin like a frame.
 #[derive(Debug, Default)]
 pub struct Frames {
@@ -49,6 +52,11 @@ impl Listener for Frames {
             && let Ok(frame) = RequestFrame::parse(bytes)
             && !frame.ack
         {
+            if self.asked.len() >= MOST_ASKED {
+                // Not of a plant; what follows is told without the requests before.
+                self.asked.clear();
+                self.clients.clear();
+            }
             self.clients.insert(client);
             self.asked.insert(key, (message.number, Request::from(frame)));
         }
@@ -67,6 +75,10 @@ impl Listener for Frames {
             fields: description.fields.into_iter().map(FieldRow::from).collect(),
             problem: if message.is_cut { Some(cut()) } else { description.problem },
         });
+    }
+
+    fn told(&mut self) -> &mut Told<FieldRow> {
+        &mut self.told
     }
 
     fn finish(self) -> Told<FieldRow> {

@@ -5,7 +5,7 @@ use std::net::{IpAddr, SocketAddr};
 
 use super::super::yrcx::{FieldRow, field_table};
 use super::cip::{explain, may_be_message};
-use super::{Field, Heard, Listener, Told, cut};
+use super::{Field, Heard, Listener, Told, cut, note};
 use crate::controller::text::hex;
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::changes::{Change, changes};
@@ -67,24 +67,40 @@ impl Images {
         if begins || lost > 0 {
             self.streams.remove(&ends);
         }
+        self.forget_if_many();
         if lost > 0 && self.streams.contains_key(&(ends.1, ends.0)) {
-            self.told.notes.push(format!("{lost} bytes before packet {} are not in the capture", message.number));
+            note(&mut self.told.notes, format!("{lost} bytes before packet {} are not in the capture", message.number));
         }
         let fresh = || may_be_message(message.bytes).then(Frames::default);
         let Some(frames) = self.streams.entry(ends).or_insert_with(fresh) else { return };
+        let mut frames = std::mem::take(frames);
         frames.push(message.bytes);
-        let mut whole = Vec::new();
-        while let Some(bytes) = frames.pop() {
-            whole.push(bytes);
-        }
         self.told.packets += 1;
-        for bytes in whole {
-            if may_be_message(&bytes) {
-                self.encapsulated(message, ends, &bytes);
-            } else {
+        while let Some(bytes) = frames.pop() {
+            if !may_be_message(&bytes) {
                 self.streams.insert(ends, None);
                 return;
             }
+            self.encapsulated(message, ends, &bytes);
+        }
+        self.streams.insert(ends, Some(frames));
+    }
+
+    /// No plant has so many connections; what follows is told without what was before.
+    fn forget_if_many(&mut self) {
+        const MOST: usize = 1 << 16;
+
+        let known = [
+            self.streams.len(),
+            self.asked.len(),
+            self.forth.len(),
+            self.back.len(),
+            self.flows.len(),
+            self.talks.len(),
+        ];
+        if known.iter().any(|known| *known >= MOST) {
+            let (all, told) = (self.all, std::mem::take(&mut self.told));
+            *self = Self { told, all, ..Self::default() };
         }
     }
 
@@ -119,6 +135,7 @@ impl Images {
 
     /// A cyclic datagram, if it is one.
     fn cyclic(&mut self, message: &Message<'_>, from: SocketAddr, to: SocketAddr) {
+        self.forget_if_many();
         let Ok(cyclic) = Cyclic::parse(message.bytes) else { return };
         let client = self.back.get(&(from.ip(), cyclic.id)).copied();
         let is_forth = self.forth.contains(&(to.ip(), cyclic.id));
@@ -241,6 +258,7 @@ impl Listener for Images {
             Carrier::Stream { from, to, begins, lost } => self.stream(message, (from, to), begins, lost),
             Carrier::Datagram { from, to } if from.port() == PORT || to.port() == PORT => {
                 if may_be_message(message.bytes) {
+                    self.forget_if_many();
                     self.told.packets += 1;
                     self.encapsulated(message, (from, to), message.bytes);
                 }
@@ -256,11 +274,15 @@ impl Listener for Images {
         }
     }
 
+    fn told(&mut self) -> &mut Told<FieldRow> {
+        &mut self.told
+    }
+
     fn finish(mut self) -> Told<FieldRow> {
         let mut lost: Vec<_> = self.flows.into_iter().filter(|(_, flow)| flow.lost > 0).collect();
         lost.sort_by_key(|(place, _)| *place);
         for ((from, to, _), flow) in lost {
-            self.told.notes.push(format!("{} cyclic packets from {from} to {to} are missing", flow.lost));
+            note(&mut self.told.notes, format!("{} cyclic packets from {from} to {to} are missing", flow.lost));
         }
         self.told
     }

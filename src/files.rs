@@ -1,0 +1,289 @@
+//! The one way to read local files: only regular ones, and never more than there is room for. A device or a pipe may be
+//! endless, or never say anything; a file that is too large is none that was meant. And the one way to replace them:
+//! from drafts beside them, which no run leaves behind for good.
+
+use std::collections::HashSet;
+use std::fs::File;
+use std::io::{self, ErrorKind, Read, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use tempfile::NamedTempFile;
+
+/// Room for settings and lists that people write: inventories, files of commands, states of simulators.
+pub const SETTINGS: u64 = 16 << 20;
+
+/// Opens a regular file to be read.
+///
+/// # Errors
+/// `IsADirectory` for a folder, `Unsupported` for anything else that is no regular file.
+pub fn open(path: &Path) -> io::Result<File> {
+    // Looked at before: to open a device or a pipe may already do something, or wait.
+    regular(&path.metadata()?)?;
+    let file = waiting_for_nobody(path)?;
+    // What is at a path may have become something else since.
+    regular(&file.metadata()?)?;
+    Ok(file)
+}
+
+/// The bytes of a regular file of at most so many.
+///
+/// # Errors
+/// As [`open`]; `FileTooLarge` if there are more.
+pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    bounded(open(path)?, most)
+}
+
+/// The text of a regular file of at most so many bytes.
+///
+/// # Errors
+/// As [`read`]; `InvalidData` if it is not UTF-8.
+pub fn text(path: &Path, most: u64) -> io::Result<String> {
+    String::from_utf8(read(path, most)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "this is not UTF-8"))
+}
+
+/// What stands on stdin, whatever that is, up to so many bytes.
+///
+/// # Errors
+/// `FileTooLarge` if there are more.
+pub fn stdin(most: u64) -> io::Result<Vec<u8>> {
+    bounded(io::stdin().lock(), most)
+}
+
+fn bounded(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    from.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    if u64::try_from(bytes.len()).unwrap_or(u64::MAX) > most {
+        return Err(io::Error::new(ErrorKind::FileTooLarge, format!("it is larger than {}", size(most))));
+    }
+    Ok(bytes)
+}
+
+fn regular(found: &std::fs::Metadata) -> io::Result<()> {
+    match found.file_type() {
+        kind if kind.is_file() => Ok(()),
+        kind if kind.is_dir() => Err(ErrorKind::IsADirectory.into()),
+        _ => Err(io::Error::new(
+            ErrorKind::Unsupported,
+            "it is not a regular file; devices, pipes and sockets are not read",
+        )),
+    }
+}
+
+/// Opens a path; should it have become a pipe meanwhile, without waiting for its other end.
+#[cfg(unix)]
+fn waiting_for_nobody(path: &Path) -> io::Result<File> {
+    use std::os::unix::fs::OpenOptionsExt as _;
+
+    let flags = i32::try_from(rustix::fs::OFlags::NONBLOCK.bits()).unwrap_or_default();
+    std::fs::OpenOptions::new().read(true).custom_flags(flags).open(path)
+}
+
+#[cfg(not(unix))]
+fn waiting_for_nobody(path: &Path) -> io::Result<File> {
+    File::open(path)
+}
+
+/// What the names of drafts begin and end with.
+const DRAFT: (&str, &str) = (".armctl-", ".part");
+/// How often a draft is begun anew that somebody swept away as it was made.
+const TRIES: u32 = 10;
+
+/// A temporary file that later has the rights of any new file, not those of a secret. While it lives, it is locked.
+pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
+    static SWEPT: Mutex<Option<HashSet<PathBuf>>> = Mutex::new(None);
+
+    let is_new = {
+        let mut swept = SWEPT.lock().unwrap_or_else(PoisonError::into_inner);
+        swept.get_or_insert_default().insert(folder.to_owned())
+    };
+    if is_new {
+        sweep(folder);
+    }
+    let mut tries = 0;
+    loop {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(DRAFT.0).suffix(DRAFT.1);
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let file = builder.tempfile_in(folder)?;
+        tries += 1;
+        // Between its making and its locking, another run may have taken it for a dead one's.
+        if (lock(file.as_file()) && is_there(file.as_file())) || tries >= TRIES {
+            return Ok(file);
+        }
+    }
+}
+
+/// Removes the drafts of runs that were killed: those that nobody has locked.
+pub fn sweep(folder: &Path) {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let drafts = entries.map(|entry| entry.path()).filter(|path| {
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        name.strip_prefix(DRAFT.0).is_some_and(|rest| rest.ends_with(DRAFT.1))
+    });
+    for path in drafts {
+        if path.symlink_metadata().is_ok_and(|found| found.is_file())
+            && open(&path).is_ok_and(|file| can_tell_the_dead() && lock(&file))
+        {
+            // What cannot be removed is in nobody's way.
+            let _ = std::fs::remove_file(&path);
+        }
+    }
+}
+
+/// Replaces the content of a file, or makes it with its folder: what is there keeps its rights, and a link that leads to
+/// it stays one.
+pub fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
+    let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let folder = folder_of(&path);
+    std::fs::create_dir_all(&folder)?;
+    let mut file = draft_in(&folder)?;
+    if let Ok(found) = path.metadata() {
+        file.as_file().set_permissions(found.permissions())?;
+    }
+    file.write_all(content)?;
+    file.as_file().sync_all()?;
+    file.persist(&path)?;
+    Ok(())
+}
+
+/// The folder of a path, `.` for a bare name.
+pub fn folder_of(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(parent) if parent != Path::new("") => parent.to_owned(),
+        _ => PathBuf::from("."),
+    }
+}
+
+/// What one process at a time does with a file, from reading it to replacing it; until dropped.
+#[derive(Debug)]
+pub struct Turn {
+    _folder: Option<File>,
+}
+
+/// Waits for this process's turn with a file. The folder is locked that the file is in, so that nothing lies about
+/// afterwards; where that cannot be, as on some network drives, everybody goes on at once.
+pub fn turn(path: &Path) -> io::Result<Turn> {
+    let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let folder = folder_of(&path);
+    std::fs::create_dir_all(&folder)?;
+    Ok(Turn { _folder: locked_folder(&folder) })
+}
+
+#[cfg(unix)]
+fn locked_folder(folder: &Path) -> Option<File> {
+    let folder = File::open(folder).ok()?;
+    rustix::fs::flock(&folder, rustix::fs::FlockOperation::LockExclusive).ok()?;
+    Some(folder)
+}
+
+#[cfg(not(unix))]
+fn locked_folder(_: &Path) -> Option<File> {
+    None
+}
+
+/// Locks a file, unless another process has it.
+#[cfg(unix)]
+fn lock(file: &File) -> bool {
+    rustix::fs::flock(file, rustix::fs::FlockOperation::NonBlockingLockExclusive).is_ok()
+}
+
+#[cfg(not(unix))]
+fn lock(_: &File) -> bool {
+    true
+}
+
+/// Whether a lock goes with its process.
+const fn can_tell_the_dead() -> bool {
+    cfg!(unix)
+}
+
+/// Whether an open file still has a name.
+#[cfg(unix)]
+fn is_there(file: &File) -> bool {
+    file.metadata().is_ok_and(|found| std::os::unix::fs::MetadataExt::nlink(&found) > 0)
+}
+
+#[cfg(not(unix))]
+fn is_there(_: &File) -> bool {
+    true
+}
+
+/// `16 MiB`.
+fn size(bytes: u64) -> String {
+    match bytes {
+        bytes if bytes >= 1 << 20 => format!("{} MiB", bytes >> 20),
+        bytes if bytes >= 1 << 10 => format!("{} KiB", bytes >> 10),
+        bytes => format!("{bytes} bytes"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_read_up_to_its_limit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("file");
+        std::fs::write(&path, "12345").unwrap();
+        assert_eq!(read(&path, 5).unwrap(), b"12345");
+        let error = read(&path, 4).unwrap_err();
+        assert_eq!(
+            (error.kind(), error.to_string()),
+            (ErrorKind::FileTooLarge, "it is larger than 4 bytes".to_owned())
+        );
+        std::fs::write(&path, b"\xff").unwrap();
+        assert_eq!(text(&path, 5).unwrap_err().kind(), ErrorKind::InvalidData);
+        assert_eq!(read(folder.path(), 5).unwrap_err().kind(), ErrorKind::IsADirectory);
+        assert_eq!(read(&folder.path().join("no"), 5).unwrap_err().kind(), ErrorKind::NotFound);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn drafts_of_the_dead_are_swept_and_those_of_the_living_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        let names = || std::fs::read_dir(folder.path()).unwrap().count();
+        let living = draft_in(folder.path()).unwrap();
+        let kept = [".armctl-mine.txt", "x.armctl-1.part"];
+        for name in kept.iter().chain(&[".armctl-dead.part"]) {
+            std::fs::write(folder.path().join(name), "half").unwrap();
+        }
+        sweep(folder.path());
+        assert_eq!(names(), 3);
+        assert!(living.path().exists() && !folder.path().join(".armctl-dead.part").exists());
+        drop(living);
+        assert_eq!(names(), 2);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_replaced_keeps_its_rights_and_its_link() {
+        use std::os::unix::fs::PermissionsExt as _;
+
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        std::fs::write(&file, "old").unwrap();
+        std::fs::set_permissions(&file, std::fs::Permissions::from_mode(0o640)).unwrap();
+        std::os::unix::fs::symlink("file", &link).unwrap();
+        replace(&link, b"new").unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(std::fs::read(&file).unwrap(), b"new");
+        assert_eq!(file.metadata().unwrap().permissions().mode() & 0o777, 0o640);
+        replace(&folder.path().join("deep/new"), b"new").unwrap();
+        assert_eq!(std::fs::read(folder.path().join("deep/new")).unwrap(), b"new");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn devices_pipes_and_sockets_are_no_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let (link, socket) = (folder.path().join("link"), folder.path().join("socket"));
+        std::os::unix::fs::symlink("/dev/zero", &link).unwrap();
+        let _listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+        for path in [Path::new("/dev/zero"), Path::new("/dev/null"), &link, &socket] {
+            assert_eq!(read(path, 5).unwrap_err().kind(), ErrorKind::Unsupported, "{}", path.display());
+        }
+    }
+}

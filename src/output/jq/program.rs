@@ -1,0 +1,308 @@
+//! A filter as the library runs it, where it does what jq does.
+
+use jaq_core::load::lex::StrPart;
+use jaq_core::load::parse::{BinaryOp, Def, Pattern, Term};
+use jaq_core::load::{Arena, File, Loader, parse};
+use jaq_core::path::{Opt, Part, Path};
+use jaq_core::{Compiler, Ctx, Vars, data};
+use jaq_json::{Num, Val};
+use serde_json::{Map, Number, Value};
+
+/// What jq has and the library has not.
+const DEFS: &str = r#"
+def row(f): if isarray then . else error("\(type) is no row: an array is expected") end
+  | map(if . == null then "" elif isstring then f elif isarray or isobject then error("\(type) is no cell of a row")
+        else tostring end);
+def @csv: row("\"" + gsub("\""; "\"\"") + "\"") | join(",");
+def @tsv: row(gsub("\\\\"; "\\\\") | gsub("\t"; "\\t") | gsub("\n"; "\\n") | gsub("\r"; "\\r")) | join("\t");
+def __at($key): if isobject and ($key | isstring | not) then error("cannot index object with \($key | type)")
+  else .[$key] end;
+"#;
+/// The filter, as a definition; and what its paths call their input, and what looks up a key that may be no text.
+const FILTER: &str = "__filter";
+const INPUT: &str = "$__input";
+const AT: &str = "__at";
+/// How deep values may nest: whoever reads them again has to be able to.
+const DEEPEST: usize = 120;
+/// How much of an error is told: some hold the whole input.
+const LONGEST: usize = 400;
+
+/// A compiled filter.
+pub struct Program(jaq_core::Filter<data::JustLut<Val>>);
+
+impl Program {
+    /// Compiles a filter, or says what is wrong with it.
+    pub fn new(text: &str) -> Result<Self, String> {
+        let ours = parse(DEFS, |parser| parser.defs()).ok_or("the definitions do not parse")?;
+        let body = parse(text, |parser| parser.term()).ok_or("it does not parse")?;
+        let filter = Def { name: FILTER, args: Vec::new(), body: as_in_jq(body) };
+        let known = jaq_core::defs().chain(jaq_std::defs()).chain(jaq_json::defs()).chain(ours);
+        let defs = known.map(as_short_as).chain([filter]);
+        let funs = jaq_core::funs().chain(jaq_std::funs()).chain(jaq_json::funs());
+        let arena = Arena::default();
+        let modules = Loader::new(defs).load(&arena, File { code: FILTER, path: () });
+        let modules = modules.map_err(|_| "it does not parse")?;
+        let program = Compiler::default().with_funs(funs).compile(modules).map_err(|errors| {
+            let name = errors.iter().flat_map(|(_, errors)| errors).map(|(name, _)| *name).next();
+            format!("'{}' is not defined", name.unwrap_or("something"))
+        })?;
+        Ok(Self(program))
+    }
+
+    /// Hands over every value that the filter makes of `input`, until `take` has enough or something is wrong.
+    pub fn run(&self, input: Val, mut take: impl FnMut(Value) -> bool) -> Result<(), String> {
+        let context = Ctx::<data::JustLut<Val>>::new(&self.0.lut, Vars::new([]));
+        for result in self.0.id.run((context, input)) {
+            let value = match result {
+                Ok(value) => value,
+                Err(error) => {
+                    return match error.get_err() {
+                        Ok(error) => Err(shortened(&said(error))),
+                        // Nothing else leaves a filter than `halt`.
+                        Err(halt) => match halt.get_halt() {
+                            Ok(0) => Ok(()),
+                            _ => Err("it was halted".to_owned()),
+                        },
+                    };
+                }
+            };
+            if !take(json(&value, 0)?) {
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A definition that lives no longer than others beside it.
+fn as_short_as<'s>(def: Def<&'static str>) -> Def<&'s str> {
+    def
+}
+
+/// An error in words; one that the filter itself raises may be any value.
+fn said(error: jaq_core::Error<Val>) -> String {
+    match error.into_val() {
+        Val::TStr(text) => String::from_utf8_lossy(&text).into_owned(),
+        other => other.to_string(),
+    }
+}
+
+fn shortened(text: &str) -> String {
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// A value as JSON, numbers that JSON has not as jq writes them.
+fn json(value: &Val, depth: usize) -> Result<Value, String> {
+    if depth > DEEPEST {
+        return Err(format!("it makes a value that nests deeper than {DEEPEST} levels"));
+    }
+    Ok(match value {
+        Val::Null => Value::Null,
+        Val::Bool(value) => Value::Bool(*value),
+        Val::Num(number) => self::number(number),
+        Val::TStr(text) | Val::BStr(text) => Value::String(String::from_utf8_lossy(text).into_owned()),
+        Val::Arr(items) => Value::Array(items.iter().map(|item| json(item, depth + 1)).collect::<Result<_, _>>()?),
+        Val::Obj(entries) => {
+            let entry = |(key, value): (&Val, &Val)| match key {
+                Val::TStr(key) => Ok((String::from_utf8_lossy(key).into_owned(), json(value, depth + 1)?)),
+                _ => Err("it makes an object with a key that is no string".to_owned()),
+            };
+            Value::Object(entries.iter().map(entry).collect::<Result<Map<_, _>, _>>()?)
+        }
+    })
+}
+
+fn number(number: &Num) -> Value {
+    let float = match number {
+        Num::Int(value) => return Value::from(*value),
+        Num::Float(value) => *value,
+        Num::BigInt(value) => return long(&value.to_string()),
+        Num::Dec(text) => return long(text),
+    };
+    if float.is_nan() {
+        return Value::Null;
+    }
+    Number::from_f64(float.clamp(f64::MIN, f64::MAX)).map_or(Value::Null, Value::Number)
+}
+
+/// A number as it was written, as exactly as JSON numbers are kept here.
+fn long(text: &str) -> Value {
+    let whole = text.parse::<u64>().map(Number::from).or_else(|_| text.parse::<i64>().map(Number::from));
+    match whole {
+        Ok(whole) => Value::Number(whole),
+        Err(_) => number(&Num::Float(text.parse().unwrap_or(f64::NAN))),
+    }
+}
+
+/// The same filter, in which a key that is no text is an error at an object, as in jq. The library has objects with keys
+/// of any kind, and finds nothing there.
+fn as_in_jq<'s>(term: Term<&'s str>) -> Term<&'s str> {
+    let one = |term: Box<Term<&'s str>>| Box::new(as_in_jq(*term));
+    let all = |terms: Vec<Term<&'s str>>| terms.into_iter().map(as_in_jq).collect();
+    match term {
+        Term::Id | Term::Recurse | Term::Num(_) | Term::Break(_) | Term::Var(_) => term,
+        Term::Str(format, parts) => {
+            let part = |part| match part {
+                StrPart::Term(term) => StrPart::Term(as_in_jq(term)),
+                part => part,
+            };
+            Term::Str(format, parts.into_iter().map(part).collect())
+        }
+        Term::Arr(inner) => Term::Arr(inner.map(one)),
+        Term::Obj(entries) => {
+            let entry = |(key, value): (_, Option<_>)| (as_in_jq(key), value.map(as_in_jq));
+            Term::Obj(entries.into_iter().map(entry).collect())
+        }
+        Term::Neg(inner) => Term::Neg(one(inner)),
+        Term::BinOp(left, operator, right) => Term::BinOp(one(left), bound(operator), one(right)),
+        Term::Label(name, inner) => Term::Label(name, one(inner)),
+        Term::Fold(name, source, pattern, rest) => Term::Fold(name, one(source), pattern_in_jq(pattern), all(rest)),
+        Term::TryCatch(inner, catch) => Term::TryCatch(one(inner), catch.map(one)),
+        Term::IfThenElse(cases, otherwise) => {
+            let cases = cases.into_iter().map(|(when, then)| (as_in_jq(when), as_in_jq(then)));
+            Term::IfThenElse(cases.collect(), otherwise.map(one))
+        }
+        Term::Def(defs, inner) => {
+            let def = |def: Def<_, _>| Def { body: as_in_jq(def.body), ..def };
+            Term::Def(defs.into_iter().map(def).collect(), one(inner))
+        }
+        Term::Call(name, arguments) => Term::Call(name, all(arguments)),
+        Term::Path(from, Path(parts)) => path(as_in_jq(*from), parts),
+    }
+}
+
+fn bound(operator: BinaryOp<&str>) -> BinaryOp<&str> {
+    match operator {
+        BinaryOp::Pipe(Some(pattern)) => BinaryOp::Pipe(Some(pattern_in_jq(pattern))),
+        operator => operator,
+    }
+}
+
+fn pattern_in_jq(pattern: Pattern<&str>) -> Pattern<&str> {
+    match pattern {
+        Pattern::Var(name) => Pattern::Var(name),
+        Pattern::Arr(inner) => Pattern::Arr(inner.into_iter().map(pattern_in_jq).collect()),
+        Pattern::Obj(entries) => {
+            let entry = |(key, pattern)| (as_in_jq(key), pattern_in_jq(pattern));
+            Pattern::Obj(entries.into_iter().map(entry).collect())
+        }
+    }
+}
+
+/// `FROM[KEY]…` with a key that may be no text: `. as $__input | FROM | __at($__input | KEY) | …`, because keys are
+/// computed from what the whole path is given.
+fn path<'s>(from: Term<&'s str>, parts: Vec<(Part<Term<&'s str>>, Opt)>) -> Term<&'s str> {
+    let is_text = |(part, _): &(Part<Term<_>>, _)| !matches!(part, Part::Index(key) if !matches!(key, Term::Str(..)));
+    if parts.iter().all(is_text) {
+        let inner = |(part, opt)| match part {
+            Part::Index(key) => (Part::Index(as_in_jq(key)), opt),
+            Part::Range(start, end) => (Part::Range(start.map(as_in_jq), end.map(as_in_jq)), opt),
+        };
+        return Term::Path(Box::new(from), Path(parts.into_iter().map(inner).collect()));
+    }
+    let pipe = |left, pattern, right| Term::BinOp(Box::new(left), BinaryOp::Pipe(pattern), Box::new(right));
+    let of_input = |term| pipe(Term::Var(INPUT), None, as_in_jq(term));
+    let steps = parts.into_iter().fold(from, |steps, (part, opt)| {
+        let step = match part {
+            Part::Index(key) => {
+                let found = Term::Call(AT, vec![of_input(key)]);
+                if matches!(opt, Opt::Optional) { Term::TryCatch(Box::new(found), None) } else { found }
+            }
+            Part::Range(start, end) => {
+                let range = Part::Range(start.map(of_input), end.map(of_input));
+                Term::Path(Box::new(Term::Id), Path(vec![(range, opt)]))
+            }
+        };
+        pipe(steps, None, step)
+    });
+    pipe(Term::Id, Some(Pattern::Var(INPUT)), steps)
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn made(filter: &str, input: &Value) -> Result<Vec<Value>, String> {
+        let mut values = Vec::new();
+        let input: Val = serde_json::from_value(input.clone()).unwrap();
+        Program::new(filter)?.run(input, |value| {
+            values.push(value);
+            true
+        })?;
+        Ok(values)
+    }
+
+    #[test]
+    fn a_key_that_is_no_text_is_an_error_at_an_object() {
+        let input = json!({"a": [1, 2, {"b": 3}], "i": 1, "k": "i"});
+        for filter in [".[0]", ".[.i]", ".a[2][0]", "[.[0]]", ".a | map(.[0]?) | .[2] | .x[0], {} | .[0]", ".[0] = 1"] {
+            assert!(made(filter, &input).is_err(), "{filter}: {:?}", made(filter, &input));
+        }
+        assert_eq!(made(".[0]", &input).unwrap_err(), "cannot index object with number");
+        assert_eq!(made(".[null]", &input).unwrap_err(), "cannot index object with null");
+        for (filter, expected) in [
+            (".a[0]", json!([1])),
+            (".a[.i]", json!([2])),
+            (".[.k]", json!([1])),
+            (".a[-1].b", json!([3])),
+            (".a[0, 1]", json!([1, 2])),
+            (".a[1:][0]", json!([2])),
+            ("[.[0]?]", json!([[]])),
+            (".a[.a[0]]", json!([2])),
+            ("[.a[2][]]", json!([[3]])),
+            ("(.a[0] |= . + 4) | .a[0]", json!([5])),
+            ("[paths(type == \"number\")] | length", json!([4])),
+            ("path(.a[.i])", json!([["a", 1]])),
+            (".nothing[0]", json!([null])),
+            ("reduce .a[0] as $x (0; . + $x)", json!([1])),
+            ("\"\\(.a[0])\"", json!(["1"])),
+            ("def f: .[0]; .a | f", json!([1])),
+            ("[.a[:2][]]", json!([[1, 2]])),
+        ] {
+            assert_eq!(json!(made(filter, &input).unwrap()), expected, "{filter}");
+        }
+    }
+
+    #[test]
+    fn numbers_that_json_has_not_are_written_as_jq_writes_them() {
+        let made = |filter: &str| serde_json::to_string(&made(filter, &Value::Null).unwrap()).unwrap();
+        assert_eq!(made("nan, infinite, -infinite"), "[null,1.7976931348623157e+308,-1.7976931348623157e+308]");
+        assert_eq!(
+            made("[nan], 18446744073709551615, 1e1000"),
+            "[[null],18446744073709551615,1.7976931348623157e+308]"
+        );
+        assert_eq!(made("1, 2.5, -3"), "[1,2.5,-3]");
+    }
+
+    #[test]
+    fn what_nests_too_deep_is_an_error() {
+        let deep = |levels: usize| made(&format!("reduce range({levels}) as $i (0; [.])"), &Value::Null);
+        assert!(deep(DEEPEST).is_ok());
+        assert!(deep(DEEPEST + 1).unwrap_err().contains("nests deeper"));
+    }
+
+    #[test]
+    fn what_follows_enough_is_not_computed() {
+        let mut count = 0;
+        let forever = Program::new("repeat(1)").unwrap();
+        forever
+            .run(Val::Null, |_| {
+                count += 1;
+                count < 10
+            })
+            .unwrap();
+        assert_eq!(count, 10);
+        assert_eq!(made("1, halt, 2", &Value::Null).unwrap(), [json!(1)]);
+    }
+
+    #[test]
+    fn errors_are_short() {
+        let long = "x".repeat(100_000);
+        assert!(made("error", &json!(long)).unwrap_err().chars().count() < 500);
+    }
+}

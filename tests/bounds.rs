@@ -1,0 +1,296 @@
+//! What is bounded: memory, files, filters, what a table or a CSV file may do, how long a process may be deaf. Each of it
+//! through the binary, with a limit of the system where one counts.
+#![cfg(unix)]
+
+use std::io::Write as _;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+
+use tempfile::TempDir;
+
+fn armctl(folder: &Path, words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+    command.env_clear().env("HOME", folder).env("XDG_RUNTIME_DIR", folder).args(words);
+    command.current_dir(folder).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+fn run(folder: &Path, words: &[&str]) -> Output {
+    armctl(folder, words).output().expect("it runs")
+}
+
+/// The same with a limit of the shell's `ulimit`.
+fn limited(folder: &Path, limit: &str, words: &[&str]) -> Output {
+    let mut command = Command::new("sh");
+    command.env_clear().env("HOME", folder).env("XDG_RUNTIME_DIR", folder).current_dir(folder).stdin(Stdio::null());
+    command.args(["-c", &format!("ulimit {limit}; exec \"$0\" \"$@\""), env!("CARGO_BIN_EXE_armctl")]).args(words);
+    command.output().expect("a shell")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn ends(output: &Output, code: i32, says: &str) {
+    assert_eq!(output.status.code(), Some(code), "{} {}", stdout(output), stderr(output));
+    assert!(stderr(output).contains(says), "{says}: {}", stderr(output));
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().expect("a folder")
+}
+
+fn signal(child: &Child, name: &str) {
+    let pid = child.id().to_string();
+    assert!(Command::new("kill").args(["-s", name, &pid]).status().expect("kill runs").success());
+}
+
+/// A capture with raw IP packets of TCP from one end to the other, so many bytes in each, their IP length left to the card.
+fn capture(path: &Path, packets: u32, content: &[u8]) {
+    let mut file = std::io::BufWriter::new(std::fs::File::create(path).expect("it works here"));
+    file.write_all(&[&0xA1B2_C3D4_u32.to_be_bytes()[..], &[0, 2, 0, 4], &[0; 12], &[0, 0, 0, 101]].concat())
+        .expect("it works here");
+    let len = u32::try_from(content.len()).expect("it works here");
+    for number in 0..packets {
+        let ip = [&[0x45, 0, 0, 0, 0, 0, 0, 0, 64, 6, 0, 0][..], &[10, 0, 0, 1, 10, 0, 0, 2]].concat();
+        let sequence = 1 + number * len;
+        let tcp = [&[0x9C, 0x40, 0xAF, 0x12][..], &sequence.to_be_bytes(), &[0; 4], &[0x50, 0x10], &[0; 6]].concat();
+        let size = (len + 40).to_be_bytes();
+        for part in [&[0; 8][..], &size, &size, &ip, &tcp, content] {
+            file.write_all(part).expect("it works here");
+        }
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn many_small_messages_take_no_more_memory_than_they_are() {
+    let folder = folder();
+    // 2,700 NOP messages of 24 bytes in each packet.
+    capture(&folder.path().join("nop.pcap"), 30, &vec![0; 24 * 2700]);
+    let output = limited(folder.path(), "-v 500000", &["decode", "yrcx", "nop.pcap"]);
+    ends(&output, 0, "");
+    assert!(stdout(&output).contains("81000 messages"), "{}", &stdout(&output)[..300]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_capture_is_read_in_pieces() {
+    let folder = folder();
+    // What is of nobody: half a gigabyte, with room for a quarter.
+    capture(&folder.path().join("large.pcap"), 8000, &vec![b'x'; 65_000]);
+    for family in ["yerc", "yrcx", "toyo"] {
+        let output = limited(folder.path(), "-v 250000", &["decode", family, "large.pcap"]);
+        ends(&output, 0, "");
+        assert!(stdout(&output).contains("8000 packets, 0 of them"), "{}", stdout(&output));
+    }
+}
+
+#[test]
+fn only_regular_files_of_a_sensible_size_are_read() {
+    let folder = folder();
+    let fifo = folder.path().join("fifo");
+    assert!(Command::new("mkfifo").arg(&fifo).status().expect("mkfifo runs").success());
+    let large = std::fs::File::create(folder.path().join("large")).unwrap();
+    large.set_len(1 << 40).unwrap();
+    std::fs::create_dir(folder.path().join("saved")).unwrap();
+    assert!(Command::new("mkfifo").arg(folder.path().join("saved/manifest.json")).status().unwrap().success());
+    let (nothing, much) = ("not a regular file", "larger than");
+    for (file, why) in [("/dev/zero", nothing), ("fifo", nothing), ("large", much)] {
+        for (line, code) in [
+            ("--config FILE robots list", 2),
+            ("--config FILE robots add a udp://127.0.0.1", 2),
+            ("batch FILE --sim", 1),
+            ("decode yerc FILE.pcap", 1),
+            ("sim yerc --state FILE --bind 127.0.0.1:0", 1),
+            ("sim yrcx --state FILE --bind 127.0.0.1:0", 1),
+            ("sim toyo --state FILE --bind 127.0.0.1:0", 1),
+            ("--sim yerc var restore FILE --yes", 1),
+            ("--sim toyo program check FILE", 1),
+        ] {
+            if line.contains(".pcap") {
+                let link = folder.path().join("FILE.pcap");
+                std::fs::remove_file(&link).unwrap_or_default();
+                std::os::unix::fs::symlink(file, &link).unwrap();
+                if why == much {
+                    continue;
+                }
+            }
+            let line = if line.contains(".pcap") { line.to_owned() } else { line.replace("FILE", file) };
+            let output = limited(folder.path(), "-v 1500000", &line.split(' ').collect::<Vec<_>>());
+            let told = stderr(&output);
+            assert!(told.contains(why) || told.contains("can hold"), "{line}: {told}");
+            assert!([1, 2].contains(&output.status.code().unwrap_or_default()), "{line}: {code} {told}");
+        }
+    }
+    ends(&run(folder.path(), &["--sim", "diff", "saved"]), 1, nothing);
+}
+
+#[test]
+fn filters_are_bounded() {
+    let folder = folder();
+    // Less than a filter may have otherwise, so that it is soon full.
+    let status =
+        |filter: &str| limited(folder.path(), "-v 300000", &["--sim", "yerc", "status", &format!("--jq={filter}")]);
+    let deep = "(".repeat(20_000) + "1" + &")".repeat(20_000);
+    for filter in ["def f: 1 + f; f", "def f: [f]; f", "[repeat(1)]", "reduce range(1000000) as $i (0; [.])", &deep] {
+        ends(&status(filter), 2, "it needs too much memory, or calls itself too deep");
+    }
+    ends(&status("reduce range(1000) as $i (0; [.])"), 2, "nests deeper");
+    for (filter, expected) in [
+        ("nan, [nan]", "null\n[null]\n"),
+        ("infinite, -infinite", "1.7976931348623157e+308\n-1.7976931348623157e+308\n"),
+        ("limit(3; repeat(1))", "1\n1\n1\n"),
+        (".ok", "true\n"),
+    ] {
+        let output = status(filter);
+        ends(&output, 0, "");
+        assert_eq!(stdout(&output), expected, "{filter}");
+    }
+    ends(&status(".[0]"), 2, "cannot index object with number");
+    // What was made before an error is there, as with jq.
+    let output = status("1, error(\"late\")");
+    ends(&output, 2, "late");
+    assert_eq!(stdout(&output), "1\n");
+}
+
+#[test]
+fn a_filter_that_fails_after_a_change_is_no_mistake_of_the_line() {
+    let folder = folder();
+    for words in [
+        &["--sim", "yerc", "var", "set", "B0=1", "--yes", "--jq", "error"][..],
+        &["--config", "robots.toml", "robots", "add", "cell", "udp://127.0.0.1", "--jq", ".[0]"],
+    ] {
+        let output = run(folder.path(), words);
+        ends(&output, 1, "succeeded, but the report could not be written");
+    }
+    ends(&run(folder.path(), &["--config", "robots.toml", "robots", "show", "cell"]), 0, "");
+    // One that does not compile is found before anything is done.
+    ends(&run(folder.path(), &["--sim", "yerc", "var", "set", "B0=1", "--jq", ".["]), 2, "does not parse");
+}
+
+/// It ends at one signal, which comes once it computes.
+#[cfg(target_os = "linux")]
+fn ends_at_one(folder: &Path, words: &[&str], name: &str) {
+    let child = armctl(folder, words).spawn().expect("it works here");
+    // Its filter runs in a process of its own, once there is one.
+    let pid = child.id();
+    let children = || std::fs::read_to_string(format!("/proc/{pid}/task/{pid}/children")).unwrap_or_default();
+    while children().trim().is_empty() {
+        std::thread::yield_now();
+    }
+    let worker = children().trim().to_owned();
+    // Once it has computed for a while (in ticks of the clock), it does nothing else any more.
+    let ticks = || {
+        let stat = std::fs::read_to_string(format!("/proc/{worker}/stat")).unwrap_or_default();
+        stat.rsplit(')').next().and_then(|rest| rest.split(' ').nth(12)?.parse::<u64>().ok()).unwrap_or_default()
+    };
+    while ticks() < 10 {
+        std::thread::yield_now();
+    }
+    signal(&child, name);
+    let output = child.wait_with_output().expect("it works here");
+    assert_eq!(output.status.code(), Some(130), "{name}: {}", stderr(&output));
+    assert!(stderr(&output).contains("interrupted"), "{name}: {}", stderr(&output));
+    // It goes, too.
+    while Path::new(&format!("/proc/{worker}")).exists() {
+        std::thread::yield_now();
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_filter_without_end_holds_up_no_signal() {
+    let folder = folder();
+    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).unwrap().trim();
+    let is_hangup_ignored = u64::from_str_radix(ignored, 16).unwrap() & 1 == 1;
+    for name in ["INT", "TERM", "HUP"].into_iter().filter(|name| *name != "HUP" || !is_hangup_ignored) {
+        for words in [
+            &["--sim", "yerc", "status", "--jq", "def f: f; f"][..],
+            &["--sim", "yerc", "status", "--until", "def f: f; f"],
+            &["--sim", "toyo", "home", "--yes", "--jq", "def f: f; f"],
+        ] {
+            ends_at_one(folder.path(), words, name);
+        }
+    }
+}
+
+#[test]
+fn a_reader_that_does_not_read_holds_up_no_signal() {
+    let folder = folder();
+    let mut child =
+        armctl(folder.path(), &["--sim", "yerc", "status", "--watch", "1ms", "-o", "jsonl"]).spawn().unwrap();
+    let mut pipe = child.stdout.take().unwrap();
+    let mut first = [0; 1];
+    std::io::Read::read_exact(&mut pipe, &mut first).unwrap();
+    signal(&child, "INT");
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    drop(pipe);
+}
+
+#[test]
+fn robots_added_at_the_same_time_are_all_there() {
+    let folder = folder();
+    let mut adding: Vec<Child> = (0..50)
+        .map(|number| {
+            let (name, url) = (format!("cell{number}"), format!("udp://127.0.0.{}", number + 1));
+            armctl(folder.path(), &["--config", "robots.toml", "robots", "add", &name, &url]).spawn().unwrap()
+        })
+        .collect();
+    for child in &mut adding {
+        assert!(child.wait().unwrap().success());
+    }
+    let output = run(folder.path(), &["--config", "robots.toml", "robots", "list", "--jq", ".data.robots | length"]);
+    assert_eq!(stdout(&output), "50\n");
+    let names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(names, ["robots.toml"], "nothing lies about");
+}
+
+#[test]
+fn an_inventory_keeps_its_rights_and_its_link() {
+    use std::os::unix::fs::PermissionsExt as _;
+
+    let folder = folder();
+    let file = folder.path().join("real.toml");
+    std::fs::write(&file, "# ours\n").unwrap();
+    std::fs::set_permissions(&file, std::fs::Permissions::from_mode(0o664)).unwrap();
+    std::os::unix::fs::symlink("real.toml", folder.path().join("robots.toml")).unwrap();
+    ends(&run(folder.path(), &["--config", "robots.toml", "robots", "add", "cell", "udp://127.0.0.1"]), 0, "");
+    assert!(folder.path().join("robots.toml").is_symlink());
+    assert_eq!(file.metadata().unwrap().permissions().mode() & 0o777, 0o664);
+    assert!(std::fs::read_to_string(&file).unwrap().contains("# ours\n"));
+}
+
+#[test]
+fn a_process_that_may_open_nothing_says_so() {
+    let folder = folder();
+    // With fewer, the system cannot load the program.
+    for most in 5..12 {
+        let output = limited(folder.path(), &format!("-n {most}"), &["--sim", "yerc", "status"]);
+        ends(&output, 1, "ulimit -n");
+        assert!(!stderr(&output).contains("panicked"), "{}", stderr(&output));
+    }
+    for most in [16, 24, 32, 64] {
+        let output = limited(folder.path(), &format!("-n {most}"), &["--sim", "yerc", "status", "--jq", ".ok"]);
+        assert!(!stderr(&output).contains("panicked"), "{most}: {}", stderr(&output));
+        assert!([0, 1].contains(&output.status.code().unwrap()), "{most}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn drafts_of_killed_runs_are_swept() {
+    let folder = folder();
+    let saved = folder.path().join("saved");
+    std::fs::create_dir(&saved).unwrap();
+    std::fs::write(saved.join(".armctl-dead1.part"), "half").unwrap();
+    ends(&run(folder.path(), &["--sim", "toyo", "backup", "saved"]), 0, "");
+    assert!(!saved.join(".armctl-dead1.part").exists());
+    std::fs::write(folder.path().join(".armctl-dead2.part"), "half").unwrap();
+    ends(&run(folder.path(), &["--sim", "yerc", "file", "get", "TESTJOB.JBI"]), 0, "");
+    assert!(!folder.path().join(".armctl-dead2.part").exists());
+}
