@@ -147,7 +147,14 @@ pub struct Globals {
     #[arg(long, global = true, help_heading = "Output", conflicts_with = "format")]
     pub json: bool,
     /// Print what a jq filter makes of the JSON
-    #[arg(long, global = true, hide_short_help = true, value_name = "FILTER", help_heading = "Output")]
+    #[arg(
+        long,
+        global = true,
+        hide_short_help = true,
+        allow_hyphen_values = true,
+        value_name = "FILTER",
+        help_heading = "Output"
+    )]
     pub jq: Option<String>,
     /// Only errors and questions on stderr
     #[arg(short, long, global = true, hide_short_help = true, help_heading = "Output", conflicts_with = "verbose")]

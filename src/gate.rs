@@ -142,13 +142,15 @@ impl Gate {
         risk >= Risk::Destroy && !self.yes && !self.dry_run && !robot.target.value.is_simulated()
     }
 
-    /// Refuses to move, or to overwrite things on, several robots that were not each named.
-    pub fn pass_many(risk: Risk, robots: &[Robot], each_named: bool) -> Result<(), Failure> {
-        if risk < Risk::Destroy || robots.len() < 2 || each_named {
-            return Ok(());
-        }
-        let what = if risk == Risk::Motion { "would move" } else { "would have something deleted or overwritten" };
-        Err(Failure::new(Kind::RefusedHere, format!("{} robots {what} at once", robots.len())).hint(
+    /// Refuses to move, or to overwrite things on, robots that were not each named, where there are several.
+    pub fn pass_many(robots: &[(&Robot, Intent)], is_named: impl Fn(&Robot) -> bool) -> Result<(), Failure> {
+        let unnamed = robots.iter().filter(|(robot, intent)| intent.risk >= Risk::Destroy && !is_named(robot));
+        let unnamed: Vec<&(&Robot, Intent)> = unnamed.collect();
+        let Some((_, intent)) = unnamed.first().filter(|_| robots.len() > 1) else { return Ok(()) };
+        let names: Vec<&str> = unnamed.iter().map(|(robot, _)| robot.name.as_str()).collect();
+        let counted = format!("{} of {} robots", unnamed.len(), robots.len());
+        let message = format!("not confirmed: on {counted} ({}) this would {}", names.join(", "), intent.text);
+        Err(Failure::new(Kind::RefusedHere, message).hint(
             "name each of them with -r; patterns, --tag and --all are not enough for what moves, deletes or overwrites",
         ))
     }

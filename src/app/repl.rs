@@ -28,7 +28,9 @@ use crate::cli::{Globals, Words};
 use crate::command::holding::{Holder, HolderThread};
 use crate::command::interrupt::{again, asked_to_end, catch_interrupts, interruptible};
 use crate::command::line::Line;
+use crate::command::overview::Fleet;
 use crate::command::run::{Stopped, begin_trace};
+use crate::command::{self, Entry, Family as _};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
@@ -104,8 +106,10 @@ impl Repl {
     }
 
     async fn prompt(&mut self, editor: &mut Editor, terminal: &Terminal, holder: &Holder) -> Result<(), Stopped> {
+        // What stops the robot when it ends is taken by the command that needs it, once that was confirmed.
         if let Some(robot) = &self.robot
             && !self.globals.dry_run
+            && !matches!(Fleet::entry(robot, command::Need::Command), Entry::Stops(_))
         {
             line_of(holder, "repl").hold(robot, self.globals.trace.as_deref(), &self.screen).await?;
         }

@@ -136,9 +136,8 @@ impl Run {
         if command.is_endless() && robots.len() > 1 {
             return Err(Failure::usage("this watches one robot at a time").hint("name one with -r"));
         }
-        let each_named = robots.iter().all(|robot| self.sources.selection.robots.contains(&robot.name));
-        let risk = robots.iter().map(|robot| self.intent(command, robot).risk).max().unwrap_or(Risk::Read);
-        Gate::pass_many(risk, &robots, each_named)?;
+        let intents: Vec<_> = robots.iter().map(|robot| (robot, self.intent(command, robot))).collect();
+        Gate::pass_many(&intents, |robot| self.sources.selection.robots.contains(&robot.name))?;
         Ok(robots)
     }
 

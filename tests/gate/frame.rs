@@ -84,7 +84,7 @@ fn fleets_want_each_robot_named() {
     let desk = Desk::new(&inventory);
     for choice in ["--tag weld", "--all", "-r c*"] {
         for order in ["file delete TEST.JBI --yes", "servo on --yes"] {
-            desk.fails(&format!("{choice} yerc {order}"), 7, "2 robots would");
+            desk.fails(&format!("{choice} yerc {order}"), 7, "on 2 of 2 robots");
         }
         assert_eq!(desk.run(&format!("{choice} yerc var set B0=1")).exit, Some(0), "what can be set again");
     }
