@@ -19,6 +19,7 @@ use tokio::time::Instant;
 use super::eip::board::Board;
 use super::hold;
 use super::io::named;
+use super::overwrite::Replaced;
 use super::reach;
 use super::refusal;
 use super::trace::{Recorder, Trace};
@@ -126,6 +127,8 @@ pub struct Done {
     pub values: Values,
     /// From the first time that the command was sent to its end.
     pub elapsed: Duration,
+    /// What was overwritten, where something was.
+    pub replaced: Option<Replaced>,
 }
 
 /// What came of an order.
@@ -143,7 +146,9 @@ impl Given {
     /// What was carried out; a refusal is a failure.
     fn done(self, order: &Order) -> Result<Done, Failure> {
         match self.answer {
-            Answer::Done(values) | Answer::Running(values) => Ok(Done { values, elapsed: self.elapsed }),
+            Answer::Done(values) | Answer::Running(values) => {
+                Ok(Done { values, elapsed: self.elapsed, replaced: None })
+            }
             Answer::Refused { alarm, .. } => Err(refusal::refused_order(order, alarm)),
         }
     }
@@ -370,7 +375,7 @@ impl Link {
     }
 
     /// In a dry run, notes all the questions, whose answers are not known then.
-    pub fn rehearse(&mut self, orders: &[Order]) -> Result<(), Failure> {
+    pub fn dry_run(&mut self, orders: &[Order]) -> Result<(), Failure> {
         if !self.is_dry() || orders.is_empty() {
             return Ok(());
         }
@@ -581,13 +586,13 @@ impl Link {
     }
 
     /// Notes in a dry run an order that depends on answers.
-    pub fn foresee(&mut self, order: &Order, about: &str) {
+    pub fn plan(&mut self, order: &Order, about: &str) {
         self.note(order, Reason::about(about));
     }
 
     /// Notes in a dry run an order whose words, or whose sending, an answer before it decides. `other` is the same order
     /// with other answers: where both differ nothing is known.
-    pub fn foresee_depending(&mut self, order: &Order, other: &Order, reason: Reason<'_>) {
+    pub fn plan_depending(&mut self, order: &Order, other: &Order, reason: Reason<'_>) {
         let word = |(one, other): (&u16, &u16)| if one == other { format!("0x{one:04X}") } else { "?".to_owned() };
         let words: Vec<String> = order.words().iter().zip(other.words()).map(word).collect();
         if let Transport::Notes(plan) = &mut self.transport {

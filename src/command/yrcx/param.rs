@@ -5,11 +5,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::numbers::single;
+use super::overwrite::Stored;
 use super::several::{Rows, Several, ask_each};
 use super::single::Single;
 use super::{Family, link};
 use crate::command::ValueKind;
-use crate::command::orders::Done;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::nearest::nearest;
 use crate::controller::yrcx::order::{Draft, Order};
@@ -156,7 +156,7 @@ pub struct Set {
 }
 
 impl Single for Set {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.param.set";
 
     fn command(&self) -> table::Command {
@@ -168,10 +168,10 @@ impl Single for Set {
         draft.with_some(Key::Axes, self.axis.clone())
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
         let Parameter { name, unit, .. } = self.parameter;
         let axis = self.axis.as_ref().map(|axis| format!(" of axis {axis}")).unwrap_or_default();
-        Ok(Done::new(format!("{name}{axis} = {} {unit}", self.value).trim_end()))
+        Ok(Stored::new(format!("{name}{axis} = {} {unit}", self.value).trim_end(), done))
     }
 }
 

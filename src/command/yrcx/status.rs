@@ -6,11 +6,11 @@ use serde::Serialize;
 
 use super::Family;
 use super::info::{AxisServo, servos};
-use super::items::{ItemError, verdict};
 use super::link::Link;
 use super::overview::not_asked;
 use super::position::{Position, Unit};
 use super::several::ask_each;
+use crate::command::items::{ItemError, verdict};
 use crate::command::{Command, Context, Need, Report};
 use crate::controller::yrcx::answer::{Answer, Status as CommandStatus};
 use crate::controller::yrcx::image::Image;
@@ -48,7 +48,7 @@ impl Command for Status {
         let position = link.draft(table::Command::PositionMm)?.build()?;
         let orders = [servo, position];
         if link.is_dry() && (self.full || link.commands()) {
-            link.rehearse(&orders)?;
+            link.dry_run(&orders)?;
         }
         let image = link.look().await?;
         // What is seen at once does not wait for somebody else's motion to end.

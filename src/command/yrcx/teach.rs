@@ -3,9 +3,9 @@
 use clap::Args;
 
 use super::link;
+use super::overwrite::Stored;
 use super::position::Unit;
 use super::single::Single;
-use crate::command::orders::Done;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
@@ -23,7 +23,7 @@ pub struct Teach {
 }
 
 impl Single for Teach {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.teach";
 
     fn command(&self) -> Command {
@@ -34,8 +34,11 @@ impl Single for Teach {
         draft.with(Key::Point, self.point.as_str()).with(Key::Unit, i32::from(self.unit_of_point == Unit::Mm))
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new(format!("stored where the robot is in point {}, in {}", self.point, self.unit_of_point.symbol())))
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+        Ok(Stored::new(
+            format!("stored where the robot is in point {}, in {}", self.point, self.unit_of_point.symbol()),
+            done,
+        ))
     }
 }
 

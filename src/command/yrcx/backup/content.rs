@@ -80,10 +80,10 @@ impl Controller {
     }
 
     /// What a dry run notes of [`ask`](Self::ask).
-    pub fn foresee(link: &mut Link) -> Result<(), Failure> {
-        link.foresee(&Command::Versions.order().build()?, "which versions it has");
-        link.foresee(&of_robot(Command::ServoStatus, 1).build()?, "which axes it has, and so on for robots 2 to 4");
-        link.foresee(&of_robot(Command::System, 1).build()?, "the type of each robot that it has");
+    pub fn plan(link: &mut Link) -> Result<(), Failure> {
+        link.plan(&Command::Versions.order().build()?, "which versions it has");
+        link.plan(&of_robot(Command::ServoStatus, 1).build()?, "which axes it has, and so on for robots 2 to 4");
+        link.plan(&of_robot(Command::System, 1).build()?, "the type of each robot that it has");
         Ok(())
     }
 

@@ -93,7 +93,7 @@ impl Command for Restore {
                 .hint("parameters and settings are written with --machine only, and info never"));
         }
         if link.is_dry() {
-            return rehearse(link, &jobs).await;
+            return dry_run(link, &jobs).await;
         }
         // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
         let mut items: Vec<Item> = jobs.iter().map(|job| pending(job.part)).collect();
@@ -184,12 +184,12 @@ fn count(counter: &mut Option<usize>) {
     *counter = counter.map(|count| count + 1);
 }
 
-async fn rehearse(link: &mut Link, jobs: &[Job]) -> Result<Restored, Failure> {
-    Controller::foresee(link)?;
+async fn dry_run(link: &mut Link, jobs: &[Job]) -> Result<Restored, Failure> {
+    Controller::plan(link)?;
     for Job { part, stores } in jobs {
         for store in stores {
-            link.foresee(&store.read, &format!("{part} {}, to compare", store.key));
-            link.foresee(&store.write, "if it differs");
+            link.plan(&store.read, &format!("{part} {}, to compare", store.key));
+            link.plan(&store.write, "if it differs");
         }
     }
     Err(unknown())

@@ -91,7 +91,7 @@ impl Command for Backup {
         let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
         let asked = Asked::of(&scope)?;
         if link.is_dry() {
-            return rehearse(link, &asked).await;
+            return dry_run(link, &asked).await;
         }
         let saving = Saving { link, screen, folder: &folder, asked, items: Vec::new() };
         // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with what was saved.
@@ -129,12 +129,12 @@ impl Asked {
     }
 }
 
-async fn rehearse(link: &mut Link, asked: &Asked) -> Result<BackedUp, Failure> {
-    Controller::foresee(link)?;
+async fn dry_run(link: &mut Link, asked: &Asked) -> Result<BackedUp, Failure> {
+    Controller::plan(link)?;
     let parts = Part::single().into_iter().chain([Part::Points(0)]);
     for part in parts.filter(|part| asked.has(*part)) {
         for (order, about) in content::first_reads(part)? {
-            link.foresee(&order, &about);
+            link.plan(&order, &about);
         }
     }
     Err(unknown())

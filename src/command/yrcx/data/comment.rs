@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
 use crate::command::yrcx::{Family, link};
@@ -93,7 +93,7 @@ pub struct Set {
 }
 
 impl Single for Set {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.comment.set";
 
     fn command(&self) -> table::Command {
@@ -104,11 +104,12 @@ impl Single for Set {
         draft.with(Key::Point, self.point).with(Key::Comment, self.comment.as_str())
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new(match &self.comment[..] {
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+        let told = match &self.comment[..] {
             "" => format!("removed the comment of point {}", self.point),
             comment => format!("comment of point {}: {comment}", self.point),
-        }))
+        };
+        Ok(Stored::new(told, done))
     }
 }
 

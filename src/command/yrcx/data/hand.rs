@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::mm;
-use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
 use crate::command::yrcx::{Family, link};
@@ -132,7 +132,7 @@ pub struct Set {
 }
 
 impl Single for Set {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.hand-data.set";
 
     fn command(&self) -> table::Command {
@@ -145,10 +145,10 @@ impl Single for Set {
         data.into_iter().fold(draft, |draft, (key, text)| draft.with(key, text.as_str()))
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
         let Self { hand, first, second, third, on_r_axis } = self;
         let place = if *on_r_axis { ", on the R axis" } else { "" };
-        Ok(Done::new(format!("defined hand {hand}: {first}, {second} mm, {third} mm{place}")))
+        Ok(Stored::new(format!("defined hand {hand}: {first}, {second} mm, {third} mm{place}"), done))
     }
 }
 

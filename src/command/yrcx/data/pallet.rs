@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
 use crate::command::yrcx::{Family, link};
@@ -118,7 +118,7 @@ pub struct Set {
 }
 
 impl Single for Set {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.pallet-data.set";
 
     fn command(&self) -> table::Command {
@@ -131,9 +131,9 @@ impl Single for Set {
         counts.into_iter().fold(draft, |draft, (key, count)| draft.with(key, count.as_str()))
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
         let Self { pallet, nx, ny, nz, first_point } = self;
-        Ok(Done::new(format!("defined pallet {pallet}: {nx} x {ny} x {nz}, first point {first_point}")))
+        Ok(Stored::new(format!("defined pallet {pallet}: {nx} x {ny} x {nz}, first point {first_point}"), done))
     }
 }
 

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Four, four, mm};
-use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::position::{Position, Unit};
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::{Single, shown};
@@ -134,7 +134,7 @@ impl Set {
 }
 
 impl Single for Set {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.point.set";
 
     fn command(&self) -> table::Command {
@@ -148,12 +148,12 @@ impl Single for Set {
         draft.with_some(Key::HandSystem, self.hand.clone())
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
         let (unit, four) = self.coordinates();
         let numbers = four.map(Four::told).unwrap_or_default();
         let unit = if unit == "mm" { "mm" } else { "pulses" };
         let hand = self.hand.as_ref().map(|hand| format!(", {hand}-handed")).unwrap_or_default();
-        Ok(Done::new(format!("defined point {}: {numbers} {unit}{hand}", self.point)))
+        Ok(Stored::new(format!("defined point {}: {numbers} {unit}{hand}", self.point), done))
     }
 }
 

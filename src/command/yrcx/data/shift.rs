@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Four, four, mm};
-use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::position::{Position, Unit};
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
@@ -94,7 +94,7 @@ pub struct Set {
 }
 
 impl Single for Set {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.shift-data.set";
 
     fn command(&self) -> table::Command {
@@ -105,8 +105,8 @@ impl Single for Set {
         self.mm.put(draft.with(Key::Shift, self.shift))
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new(format!("defined shift {}: {} mm", self.shift, self.mm.told())))
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+        Ok(Stored::new(format!("defined shift {}: {} mm", self.shift, self.mm.told()), done))
     }
 }
 
