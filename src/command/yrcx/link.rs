@@ -167,7 +167,10 @@ impl Family for Yrcx {
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
         let way = reach::way(robot)?;
         if access.dry_run {
-            return Link::new(robot, &access, screen, Transport::Notes(Plan::default()), None);
+            let mut link = Link::new(robot, &access, screen, Transport::Notes(Plan::default()), None)?;
+            let opens_session = access.need == Need::Command && robot.hold.value && !robot.read_only.value;
+            link.is_held |= opens_session || is_held(robot);
+            return Ok(link);
         }
         if access.need == Need::Messages {
             let (board, recorder) = way.board(robot, &access, screen).await?;
@@ -436,14 +439,14 @@ impl Link {
     /// Carries out an order until it has ended, or the controller is seen to carry it out (`None`): it then goes on, and
     /// the link takes no other until it ends.
     pub async fn begin_run(&mut self, order: &Order) -> Result<Option<Done>, Failure> {
-        if self.is_dry() {
-            return self.run(order).await.map(Some);
-        }
         if !self.is_held {
             return Err(Failure::usage(
                 "without waiting, the connection would end now, and the controller stop the robot",
             )
-            .hint("leave --no-wait away"));
+            .hint("remove --no-wait, or keep a connection open with `armctl session open` first"));
+        }
+        if self.is_dry() {
+            return self.run(order).await.map(Some);
         }
         self.admit(order.row().id, order.risk())?;
         self.start(order).await?;
@@ -540,6 +543,11 @@ impl Link {
         self.is_shared
     }
 
+    /// Whether the connection outlives the command.
+    pub fn is_held(&self) -> bool {
+        self.is_held
+    }
+
     /// Whether commands can be given, or signals only be seen.
     pub fn commands(&self) -> bool {
         self.is_owner
@@ -623,11 +631,14 @@ impl Link {
                 Step::Rise(signal) => (signal, true),
                 Step::Require { .. } | Step::Await { .. } => continue,
             };
-            if signal.is_on(image) != on {
-                signal.set(image, on);
-                let about = format!("{} {}", named(signal), if on { "on" } else { "off" });
-                plan.note(json!({ "bits": hex(&image.0[COMMAND_WORDS..]) }), Reason::about(&about));
-            }
+            let is_there = signal.is_on(image) == on;
+            signal.set(image, on);
+            let [now, before] = if on { ["on", "off"] } else { ["off", "on"] };
+            let about = format!("{} {now}", named(signal));
+            let depends_on = format!("what is shown before it: it is sent if {} is {before}", signal.name());
+            let reason = Reason::about(&about);
+            let reason = if is_there { reason.depending_on(&depends_on) } else { reason };
+            plan.note(json!({ "bits": hex(&image.0[COMMAND_WORDS..]) }), reason);
         }
     }
 

@@ -10,6 +10,7 @@ use super::link::Link;
 use super::overview::not_asked;
 use super::position::{Position, Unit};
 use super::several::ask_each;
+use crate::command::dry_run::Reason;
 use crate::command::items::{ItemError, verdict};
 use crate::command::{Command, Context, Need, Report};
 use crate::controller::yrcx::answer::{Answer, Status as CommandStatus};
@@ -49,6 +50,10 @@ impl Command for Status {
         let orders = [servo, position];
         if link.is_dry() && (self.full || link.commands()) {
             link.dry_run(&orders)?;
+        }
+        if link.is_dry() && link.is_held() {
+            let reason = Reason::default().depending_on("the session: it is asked if no other command is under way");
+            orders.iter().for_each(|order| link.plan_depending(order, order, reason));
         }
         let image = link.look().await?;
         // What is seen at once does not wait for somebody else's motion to end.

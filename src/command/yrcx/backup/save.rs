@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::content::{self, Controller, Text, Wanted};
+use super::content::{self, Controller, GAP, Text, Wanted};
 use super::parts::{POINTS, Part, THOUSAND};
 use crate::command::backup::{BackedUp, Item, Items, Making, Only, cut_off, write_text};
 use crate::command::dry_run::unknown;
@@ -55,8 +55,6 @@ pub fn points(text: &str) -> Result<String, String> {
 
 /// Before numbers of points, in the scope of a backup.
 const OF_POINTS: &str = "points ";
-/// So many in a row that are not defined end the points, where nobody says which.
-const GAP: usize = 100;
 
 type Manifest = manifest::Manifest<Controller>;
 
@@ -133,9 +131,7 @@ async fn dry_run(link: &mut Link, asked: &Asked) -> Result<BackedUp, Failure> {
     Controller::plan(link)?;
     let parts = Part::single().into_iter().chain([Part::Points(0)]);
     for part in parts.filter(|part| asked.has(*part)) {
-        for (order, about) in content::first_reads(part)? {
-            link.plan(&order, &about);
-        }
+        content::plan(link, part, asked.points.as_ref())?;
     }
     Err(unknown())
 }
