@@ -567,6 +567,12 @@ impl Link {
         self.unit = unit;
     }
 
+    /// What may be done from now on.
+    #[cfg(test)]
+    pub(super) fn set_grant(&mut self, granted: Grant) {
+        self.granted = granted;
+    }
+
     /// Whether nothing is sent, only noted.
     pub fn is_dry(&self) -> bool {
         matches!(self.transport, Transport::Notes(_))

@@ -22,6 +22,8 @@ mod clock;
 mod coverage;
 mod data;
 pub mod eip;
+#[cfg(test)]
+mod gate;
 mod hold;
 mod info;
 mod io;

@@ -115,6 +115,13 @@ pub(super) fn frames(words: &[&str]) -> Result<Vec<Value>, Failure> {
     Ok(testing::frames(&planned(&robot, &*command, |link| link.set_unit(unit(words)))?))
 }
 
+/// The report of a dry run of a line.
+pub(super) fn planned_line(target: &str, line: &str) -> Result<Value, Failure> {
+    let words: Vec<&str> = line.split(' ').collect();
+    let (robot, command) = resolved(target, &words)?;
+    planned(&robot, &*command, |link| link.set_unit(unit(&words)))
+}
+
 /// A real controller that nothing is sent to.
 const DRY: &str = "eip://127.0.0.1";
 
