@@ -179,12 +179,12 @@ impl Single for Set {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{example, objection, read_example, words};
+    use crate::command::yrcx::testing::{example, objection, read_example, words, written};
 
     #[test]
     fn the_examples_of_the_manual() {
         let set = ["param", "set", "TOLE", "1000", "--axis", "3"];
-        assert_eq!(words(&set).unwrap(), [example("4.4.2-assign")]);
+        assert_eq!(written(&set).unwrap(), [example("4.4.2-assign")]);
         assert_eq!(read_example("4.4.2-assign", &set)["done"], "TOLE of axis 3 = 1000 pulses");
         let read = read_example("4.4.2-reference", &["param", "get", "outpos", "--axis", "1"]);
         let row = json!({
@@ -207,7 +207,7 @@ mod tests {
                 "0x2224 0x0000 0x0104 0x0008",
             ]
         );
-        assert_eq!(words(&["param", "set", "2", "500"]).unwrap()[0][2..5], ["0x0002", "0x0000", "0x01F4"]);
+        assert_eq!(written(&["param", "set", "2", "500"]).unwrap()[0][2..5], ["0x0002", "0x0000", "0x01F4"]);
     }
 
     #[test]

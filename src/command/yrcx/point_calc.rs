@@ -230,7 +230,7 @@ fn place(bits: i32) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::yrcx::testing::{example, objection, read_example, words};
+    use crate::command::yrcx::testing::{example, objection, read_example, words, written};
 
     #[test]
     fn the_examples_of_the_manual() {
@@ -242,16 +242,16 @@ mod tests {
             ("4.4.4-shift-element", "shift-element 1 --element 2 --mm 1", "element 2 of shift 1 = 1 mm"),
         ] {
             let line: Vec<&str> = ["point-calc"].into_iter().chain(line.split(' ')).collect();
-            assert_eq!(words(&line).unwrap(), [example(id)], "{id}");
+            assert_eq!(written(&line).unwrap(), [example(id)], "{id}");
             assert_eq!(read_example(id, &line)["done"], done);
         }
     }
 
     #[test]
     fn the_point_that_changes_comes_first() {
-        let sent = words(&["point-calc", "sub", "100", "--from", "1"]).unwrap();
+        let sent = written(&["point-calc", "sub", "100", "--from", "1"]).unwrap();
         assert_eq!(sent[0][..4], ["0x0235", "0x0000", "0x0001", "0x0064"]);
-        let sent = words(&["point-calc", "element", "7", "--element", "6", "--pulse", "-1"]).unwrap();
+        let sent = written(&["point-calc", "element", "7", "--element", "6", "--pulse", "-1"]).unwrap();
         assert_eq!(sent[0][..6], ["0x0240", "0x0000", "0x0007", "0x0020", "0xFFFF", "0xFFFF"]);
     }
 

@@ -44,11 +44,11 @@ impl Single for Teach {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::yrcx::testing::{objection, words};
+    use crate::command::yrcx::testing::{objection, words, written};
 
     #[test]
     fn the_unit_is_always_told() {
-        let sent = words(&["teach", "--point", "29999", "--in", "mm", "--unit", "2"]).unwrap();
+        let sent = written(&["teach", "--point", "29999", "--in", "mm", "--unit", "2"]).unwrap();
         assert_eq!(sent[0][..4], ["0x2028", "0x0000", "0x752F", "0x0001"]);
         assert!(words(&["teach", "--point", "30000", "--in", "mm"]).unwrap_err().message.contains("0 to 29999"));
         assert!(objection(&["teach", "--point", "1"]).contains("--in"));

@@ -117,12 +117,12 @@ impl Single for Set {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{example, read_example, words};
+    use crate::command::yrcx::testing::{example, read_example, words, written};
 
     #[test]
     fn the_examples_of_the_manual() {
         let set = ["comment", "set", "100", "WAIT ORG"];
-        assert_eq!(words(&set).unwrap(), [example("4.3.2-define")]);
+        assert_eq!(written(&set).unwrap(), [example("4.3.2-define")]);
         assert_eq!(read_example("4.3.2-define", &set)["done"], "comment of point 100: WAIT ORG");
         let read = read_example("4.3.2-reference", &["comment", "get", "50"]);
         assert_eq!(read["comments"], json!([{"point": 50, "ok": true, "comment": "WAIT ORG"}]));
@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn comments_have_sixteen_characters_that_print() {
         assert!(words(&["comment", "set", "1", "0123456789ABCDEF"]).is_ok());
-        assert_eq!(words(&["comment", "set", "1", ""]).unwrap()[0][4], "0x0000");
+        assert_eq!(written(&["comment", "set", "1", ""]).unwrap()[0][4], "0x0000");
         for wrong in ["0123456789ABCDEFG", "Größe", "a\tb"] {
             let failure = words(&["comment", "set", "1", wrong]).unwrap_err();
             assert!(failure.message.ends_with("allowed: up to 16 ASCII characters"), "{failure}");

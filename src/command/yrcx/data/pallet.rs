@@ -141,12 +141,12 @@ impl Single for Set {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{example, objection, read_example, words};
+    use crate::command::yrcx::testing::{example, objection, read_example, words, written};
 
     #[test]
     fn the_examples_of_the_manual() {
         let set = ["pallet-data", "set", "10", "--nx", "10", "--ny", "15", "--first-point", "100"];
-        assert_eq!(words(&set).unwrap(), [example("4.3.3-define")]);
+        assert_eq!(written(&set).unwrap(), [example("4.3.3-define")]);
         assert_eq!(read_example("4.3.3-define", &set)["done"], "defined pallet 10: 10 x 15 x 1, first point 100");
         let read = read_example("4.3.3-reference", &["pallet-data", "get", "10"]);
         assert_eq!(
