@@ -48,6 +48,17 @@ fn taught_points_are_not_overwritten_unasked() {
 }
 
 #[test]
+fn what_wants_a_word_wants_it_with_its_connection_too() {
+    let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
+    let refused = desk.run("-r cell yrcx abs-reset --axis 2");
+    assert_eq!(refused.exit, Some(7));
+    for part in ["make the place where axis 2 of robot 1 stands its reset position", "and take the command connection"]
+    {
+        assert!(refused.stderr.contains(part), "{refused:?}");
+    }
+}
+
+#[test]
 fn a_restore_asks_once_with_old_and_new() {
     let controller = Simulator::start("yrcx");
     let desk = held(&controller);

@@ -53,7 +53,9 @@ impl Command for Status {
         }
         if link.is_dry() && link.is_held() {
             let reason = Reason::default().depending_on("the session: it is asked if no other command is under way");
-            orders.iter().for_each(|order| link.plan_depending(order, order, reason));
+            for order in &orders {
+                link.plan_depending(order, order, reason);
+            }
         }
         let image = link.look().await?;
         // What is seen at once does not wait for somebody else's motion to end.

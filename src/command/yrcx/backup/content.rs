@@ -10,7 +10,7 @@ use super::rows::{self, Row};
 use crate::command::dry_run::Reason;
 use crate::command::manifest::{About, Entry, LeftOut};
 use crate::command::yrcx::link::Link;
-use crate::command::yrcx::numbers::{Numbers, runs};
+use crate::command::yrcx::numbers::{self, Numbers, runs};
 use crate::command::yrcx::refusal::refused;
 use crate::command::yrcx::several::{check_echo, is_about_commands};
 use crate::command::yrcx::single::shown;
@@ -302,7 +302,8 @@ pub fn plan(link: &mut Link, part: Part, points: Option<&BTreeSet<i32>>) -> Resu
 
 fn plan_records(link: &mut Link, records: &Records, numbers: Vec<i32>) -> Result<(), Failure> {
     for number in numbers {
-        link.plan(&records.read(number)?, records.kind);
+        let key = numbers::named(records.read, records.columns[0].1, number);
+        link.plan(&records.read(number)?, &format!("{} {key}", records.kind));
     }
     Ok(())
 }

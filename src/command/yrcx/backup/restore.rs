@@ -37,7 +37,7 @@ pub struct Restore {
     /// Parts whose names fit, such as variables or 'points*' (repeatable)
     #[arg(long, value_name = "PATTERN", value_delimiter = ',')]
     only: Vec<String>,
-    /// Write parameters and settings, too; needs --yes
+    /// Write parameters and settings, too
     #[arg(long)]
     machine: bool,
     /// Write the backup of other robots
@@ -98,7 +98,7 @@ impl Command for Restore {
                 .hint("parameters and settings are written with --machine only, and info never"));
         }
         if link.is_dry() {
-            return dry_run(link, &jobs).await;
+            return dry_run(link, &jobs);
         }
         self.admit(link, &manifest.controller).await?;
         let mut items: Vec<Item> = jobs.iter().map(|job| pending(job.part)).collect();
@@ -255,7 +255,7 @@ fn count(counter: &mut Option<usize>) {
     *counter = counter.map(|count| count + 1);
 }
 
-async fn dry_run(link: &mut Link, jobs: &[Job]) -> Result<Restored, Failure> {
+fn dry_run(link: &mut Link, jobs: &[Job]) -> Result<Restored, Failure> {
     Controller::plan(link)?;
     for Job { part, stores } in jobs {
         for store in stores {

@@ -89,7 +89,7 @@ impl Command for Backup {
         let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
         let asked = Asked::of(&scope)?;
         if link.is_dry() {
-            return dry_run(link, &asked).await;
+            return dry_run(link, &asked);
         }
         let saving = Saving { link, screen, folder: &folder, asked, items: Vec::new() };
         // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with what was saved.
@@ -127,7 +127,7 @@ impl Asked {
     }
 }
 
-async fn dry_run(link: &mut Link, asked: &Asked) -> Result<BackedUp, Failure> {
+fn dry_run(link: &mut Link, asked: &Asked) -> Result<BackedUp, Failure> {
     Controller::plan(link)?;
     let parts = Part::single().into_iter().chain([Part::Points(0)]);
     for part in parts.filter(|part| asked.has(*part)) {
