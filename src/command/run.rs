@@ -156,11 +156,14 @@ impl Run {
         let is_free = self.gate.dry_run || intent.is_stop || self.opens_session(command, robot);
         let entry = if is_free { Entry::Harmless } else { F::entry(robot, command.need()) };
         let Entry::Stops(entry) = entry else { return intent };
-        let text = match intent.risk {
-            Risk::Motion => format!("{}, and {entry}", intent.text),
-            Risk::Read | Risk::Write | Risk::Destroy => entry.to_owned(),
+        let both = || format!("{}, and {entry}", intent.text);
+        let (text, confirmation) = match (intent.risk, intent.confirmation) {
+            // What wants a word wants it here as well: nothing else is asked later.
+            (_, Confirmation::Word(word)) => (both(), Confirmation::Word(word)),
+            (Risk::Motion, _) | (Risk::Destroy, Confirmation::Question) => (both(), Confirmation::Question),
+            _ => (entry.to_owned(), Confirmation::Question),
         };
-        Intent { risk: Risk::Motion, text, confirmation: Confirmation::Question, ..intent }
+        Intent { risk: Risk::Motion, text, confirmation, ..intent }
     }
 
     /// Finds what is refused without asking anybody: robots that are not there, a gate that stays closed.

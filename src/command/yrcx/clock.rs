@@ -45,7 +45,7 @@ impl Command for Get {
         let link = context.link;
         let date = link.draft(table::Command::DateGet)?.build()?;
         let time = link.draft(table::Command::TimeGet)?.build()?;
-        link.rehearse(&[date.clone(), time.clone()])?;
+        link.dry_run(&[date.clone(), time.clone()])?;
         let mut day = date_of(&link.run(&date).await?.values)?;
         let moment = time_of(&link.run(&time).await?.values)?;
         // Midnight may have come between the two.

@@ -19,6 +19,7 @@ use tokio::time::Instant;
 use super::eip::board::Board;
 use super::hold;
 use super::io::named;
+use super::overwrite::Replaced;
 use super::reach;
 use super::refusal;
 use super::trace::{Recorder, Trace};
@@ -126,6 +127,8 @@ pub struct Done {
     pub values: Values,
     /// From the first time that the command was sent to its end.
     pub elapsed: Duration,
+    /// What was overwritten, where something was.
+    pub replaced: Option<Replaced>,
 }
 
 /// What came of an order.
@@ -143,7 +146,9 @@ impl Given {
     /// What was carried out; a refusal is a failure.
     fn done(self, order: &Order) -> Result<Done, Failure> {
         match self.answer {
-            Answer::Done(values) | Answer::Running(values) => Ok(Done { values, elapsed: self.elapsed }),
+            Answer::Done(values) | Answer::Running(values) => {
+                Ok(Done { values, elapsed: self.elapsed, replaced: None })
+            }
             Answer::Refused { alarm, .. } => Err(refusal::refused_order(order, alarm)),
         }
     }
@@ -162,7 +167,10 @@ impl Family for Yrcx {
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
         let way = reach::way(robot)?;
         if access.dry_run {
-            return Link::new(robot, &access, screen, Transport::Notes(Plan::default()), None);
+            let mut link = Link::new(robot, &access, screen, Transport::Notes(Plan::default()), None)?;
+            let opens_session = access.need == Need::Command && robot.hold.value && !robot.read_only.value;
+            link.is_held |= opens_session || is_held(robot);
+            return Ok(link);
         }
         if access.need == Need::Messages {
             let (board, recorder) = way.board(robot, &access, screen).await?;
@@ -370,7 +378,7 @@ impl Link {
     }
 
     /// In a dry run, notes all the questions, whose answers are not known then.
-    pub fn rehearse(&mut self, orders: &[Order]) -> Result<(), Failure> {
+    pub fn dry_run(&mut self, orders: &[Order]) -> Result<(), Failure> {
         if !self.is_dry() || orders.is_empty() {
             return Ok(());
         }
@@ -431,14 +439,14 @@ impl Link {
     /// Carries out an order until it has ended, or the controller is seen to carry it out (`None`): it then goes on, and
     /// the link takes no other until it ends.
     pub async fn begin_run(&mut self, order: &Order) -> Result<Option<Done>, Failure> {
-        if self.is_dry() {
-            return self.run(order).await.map(Some);
-        }
         if !self.is_held {
             return Err(Failure::usage(
                 "without waiting, the connection would end now, and the controller stop the robot",
             )
-            .hint("leave --no-wait away"));
+            .hint("remove --no-wait, or keep a connection open with `armctl session open` first"));
+        }
+        if self.is_dry() {
+            return self.run(order).await.map(Some);
         }
         self.admit(order.row().id, order.risk())?;
         self.start(order).await?;
@@ -535,6 +543,11 @@ impl Link {
         self.is_shared
     }
 
+    /// Whether the connection outlives the command.
+    pub fn is_held(&self) -> bool {
+        self.is_held
+    }
+
     /// Whether commands can be given, or signals only be seen.
     pub fn commands(&self) -> bool {
         self.is_owner
@@ -552,6 +565,12 @@ impl Link {
     #[cfg(test)]
     pub(super) fn set_unit(&mut self, unit: u8) {
         self.unit = unit;
+    }
+
+    /// What may be done from now on.
+    #[cfg(test)]
+    pub(super) fn set_grant(&mut self, granted: Grant) {
+        self.granted = granted;
     }
 
     /// Whether nothing is sent, only noted.
@@ -581,13 +600,13 @@ impl Link {
     }
 
     /// Notes in a dry run an order that depends on answers.
-    pub fn foresee(&mut self, order: &Order, about: &str) {
+    pub fn plan(&mut self, order: &Order, about: &str) {
         self.note(order, Reason::about(about));
     }
 
     /// Notes in a dry run an order whose words, or whose sending, an answer before it decides. `other` is the same order
     /// with other answers: where both differ nothing is known.
-    pub fn foresee_depending(&mut self, order: &Order, other: &Order, reason: Reason<'_>) {
+    pub fn plan_depending(&mut self, order: &Order, other: &Order, reason: Reason<'_>) {
         let word = |(one, other): (&u16, &u16)| if one == other { format!("0x{one:04X}") } else { "?".to_owned() };
         let words: Vec<String> = order.words().iter().zip(other.words()).map(word).collect();
         if let Transport::Notes(plan) = &mut self.transport {
@@ -618,11 +637,14 @@ impl Link {
                 Step::Rise(signal) => (signal, true),
                 Step::Require { .. } | Step::Await { .. } => continue,
             };
-            if signal.is_on(image) != on {
-                signal.set(image, on);
-                let about = format!("{} {}", named(signal), if on { "on" } else { "off" });
-                plan.note(json!({ "bits": hex(&image.0[COMMAND_WORDS..]) }), Reason::about(&about));
-            }
+            let is_there = signal.is_on(image) == on;
+            signal.set(image, on);
+            let [now, before] = if on { ["on", "off"] } else { ["off", "on"] };
+            let about = format!("{} {now}", named(signal));
+            let depends_on = format!("what is shown before it: it is sent if {} is {before}", signal.name());
+            let reason = Reason::about(&about);
+            let reason = if is_there { reason.depending_on(&depends_on) } else { reason };
+            plan.note(json!({ "bits": hex(&image.0[COMMAND_WORDS..]) }), reason);
         }
     }
 

@@ -22,14 +22,16 @@ mod clock;
 mod coverage;
 mod data;
 pub mod eip;
+#[cfg(test)]
+mod gate;
 mod hold;
 mod info;
 mod io;
-mod items;
 pub mod link;
 mod motion;
 mod numbers;
 mod overview;
+mod overwrite;
 mod param;
 mod point_calc;
 mod port;

@@ -5,11 +5,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::numbers::single;
+use super::overwrite::Stored;
 use super::several::{Rows, Several, ask_each};
 use super::single::Single;
 use super::{Family, link};
 use crate::command::ValueKind;
-use crate::command::orders::Done;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::nearest::nearest;
 use crate::controller::yrcx::order::{Draft, Order};
@@ -156,7 +156,7 @@ pub struct Set {
 }
 
 impl Single for Set {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.param.set";
 
     fn command(&self) -> table::Command {
@@ -168,10 +168,10 @@ impl Single for Set {
         draft.with_some(Key::Axes, self.axis.clone())
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
         let Parameter { name, unit, .. } = self.parameter;
         let axis = self.axis.as_ref().map(|axis| format!(" of axis {axis}")).unwrap_or_default();
-        Ok(Done::new(format!("{name}{axis} = {} {unit}", self.value).trim_end()))
+        Ok(Stored::new(format!("{name}{axis} = {} {unit}", self.value).trim_end(), done))
     }
 }
 
@@ -179,12 +179,12 @@ impl Single for Set {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{example, objection, read_example, words};
+    use crate::command::yrcx::testing::{example, objection, read_example, words, written};
 
     #[test]
     fn the_examples_of_the_manual() {
         let set = ["param", "set", "TOLE", "1000", "--axis", "3"];
-        assert_eq!(words(&set).unwrap(), [example("4.4.2-assign")]);
+        assert_eq!(written(&set).unwrap(), [example("4.4.2-assign")]);
         assert_eq!(read_example("4.4.2-assign", &set)["done"], "TOLE of axis 3 = 1000 pulses");
         let read = read_example("4.4.2-reference", &["param", "get", "outpos", "--axis", "1"]);
         let row = json!({
@@ -207,7 +207,7 @@ mod tests {
                 "0x2224 0x0000 0x0104 0x0008",
             ]
         );
-        assert_eq!(words(&["param", "set", "2", "500"]).unwrap()[0][2..5], ["0x0002", "0x0000", "0x01F4"]);
+        assert_eq!(written(&["param", "set", "2", "500"]).unwrap()[0][2..5], ["0x0002", "0x0000", "0x01F4"]);
     }
 
     #[test]

@@ -3,10 +3,10 @@
 use clap::{ArgGroup, Args};
 
 use super::numbers::single;
+use super::overwrite::Stored;
 use super::single::Single;
 use super::{Family, link};
 use crate::command::commands;
-use crate::command::orders::Done;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
@@ -46,7 +46,7 @@ pub struct Copy {
 }
 
 impl Single for Copy {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.point-calc.copy";
 
     fn command(&self) -> Command {
@@ -57,8 +57,8 @@ impl Single for Copy {
         draft.with(Key::Point, self.to).with(Key::Point2, self.point)
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new(format!("P{} = P{}", self.to, self.point)))
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+        Ok(Stored::new(format!("P{} = P{}", self.to, self.point), done))
     }
 }
 
@@ -74,7 +74,7 @@ pub struct Add {
 }
 
 impl Single for Add {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.point-calc.add";
 
     fn command(&self) -> Command {
@@ -85,8 +85,8 @@ impl Single for Add {
         draft.with(Key::Point, self.to).with(Key::Point2, self.point)
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new(format!("P{to} = P{to} + P{}", self.point, to = self.to)))
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+        Ok(Stored::new(format!("P{to} = P{to} + P{}", self.point, to = self.to), done))
     }
 }
 
@@ -102,7 +102,7 @@ pub struct Sub {
 }
 
 impl Single for Sub {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.point-calc.sub";
 
     fn command(&self) -> Command {
@@ -113,8 +113,8 @@ impl Single for Sub {
         draft.with(Key::Point, self.from).with(Key::Point2, self.point)
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new(format!("P{from} = P{from} - P{}", self.point, from = self.from)))
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+        Ok(Stored::new(format!("P{from} = P{from} - P{}", self.point, from = self.from), done))
     }
 }
 
@@ -133,7 +133,7 @@ pub struct Pallet {
 }
 
 impl Single for Pallet {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.point-calc.pallet";
 
     fn command(&self) -> Command {
@@ -145,8 +145,8 @@ impl Single for Pallet {
         draft.with(Key::WorkPosition, self.place)
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new(format!("P{} = place {} of pallet {}", self.to, self.place, self.pallet)))
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+        Ok(Stored::new(format!("P{} = place {} of pallet {}", self.to, self.place, self.pallet), done))
     }
 }
 
@@ -169,7 +169,7 @@ pub struct Element {
 }
 
 impl Single for Element {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.point-calc.element";
 
     fn command(&self) -> Command {
@@ -181,13 +181,13 @@ impl Single for Element {
         draft.with(Key::Point, self.point).with(Key::Element, self.element).with_some(Key::Value, value)
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
         let (value, unit) = match &self.mm {
             Some(value) => (Some(value), "mm"),
             None => (self.pulse.as_ref(), "pulses"),
         };
         let value = value.map_or("", String::as_str);
-        Ok(Done::new(format!("element {} of P{} = {value} {unit}", place(self.element), self.point)))
+        Ok(Stored::new(format!("element {} of P{} = {value} {unit}", place(self.element), self.point), done))
     }
 }
 
@@ -206,7 +206,7 @@ pub struct ShiftElement {
 }
 
 impl Single for ShiftElement {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.point-calc.shift-element";
 
     fn command(&self) -> Command {
@@ -218,8 +218,8 @@ impl Single for ShiftElement {
         draft.with(Key::Value, self.mm.as_str())
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new(format!("element {} of shift {} = {} mm", place(self.element), self.shift, self.mm)))
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+        Ok(Stored::new(format!("element {} of shift {} = {} mm", place(self.element), self.shift, self.mm), done))
     }
 }
 
@@ -230,7 +230,7 @@ fn place(bits: i32) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::yrcx::testing::{example, objection, read_example, words};
+    use crate::command::yrcx::testing::{example, objection, read_example, words, written};
 
     #[test]
     fn the_examples_of_the_manual() {
@@ -242,16 +242,16 @@ mod tests {
             ("4.4.4-shift-element", "shift-element 1 --element 2 --mm 1", "element 2 of shift 1 = 1 mm"),
         ] {
             let line: Vec<&str> = ["point-calc"].into_iter().chain(line.split(' ')).collect();
-            assert_eq!(words(&line).unwrap(), [example(id)], "{id}");
+            assert_eq!(written(&line).unwrap(), [example(id)], "{id}");
             assert_eq!(read_example(id, &line)["done"], done);
         }
     }
 
     #[test]
     fn the_point_that_changes_comes_first() {
-        let sent = words(&["point-calc", "sub", "100", "--from", "1"]).unwrap();
+        let sent = written(&["point-calc", "sub", "100", "--from", "1"]).unwrap();
         assert_eq!(sent[0][..4], ["0x0235", "0x0000", "0x0001", "0x0064"]);
-        let sent = words(&["point-calc", "element", "7", "--element", "6", "--pulse", "-1"]).unwrap();
+        let sent = written(&["point-calc", "element", "7", "--element", "6", "--pulse", "-1"]).unwrap();
         assert_eq!(sent[0][..6], ["0x0240", "0x0000", "0x0007", "0x0020", "0xFFFF", "0xFFFF"]);
     }
 

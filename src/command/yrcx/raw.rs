@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::refusal::refused;
-use super::{Family, link};
+use super::{Family, link, overwrite};
 use crate::command::common::decode::yrcx::{FieldRow, field_table};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -14,6 +14,7 @@ use crate::controller::yrcx::describe;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Words};
 use crate::controller::yrcx::order::Order;
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 use crate::output::view::{Section, View};
 
 /// Sends words that the manual allows.
@@ -67,8 +68,15 @@ impl Command for Raw {
         format!("send {}: {}", self.wi.row().id, self.wi.row().name)
     }
 
+    fn confirmation(&self) -> Confirmation {
+        overwrite::confirmation(self.wi.command())
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Exchange, Failure> {
         context.link.no_unit("the words name the robot")?;
+        if self.confirmation() == Confirmation::WhenKnown {
+            overwrite::confirm(context.link, &context.authority, &self.wi).await?;
+        }
         let given = context.link.try_run(&self.wi).await?;
         Ok(Exchange::of(&self.wi, &given))
     }

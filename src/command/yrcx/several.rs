@@ -4,11 +4,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use super::items::{ItemError, ItemOutcome, alone, verdict};
 use super::link::{Given, Link};
 use super::numbers::Numbers;
 use super::refusal::refused;
 use crate::command::Context;
+use crate::command::items::{ItemError, ItemOutcome, verdict};
 use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use crate::controller::yrcx::answer::Answer;
 use crate::controller::yrcx::order::Order;
@@ -30,7 +30,7 @@ pub struct Answers {
 /// Asks all of it. What is refused stands in its place; what ends the link, or would be refused whatever is asked, ends
 /// the asking. Nothing but that is a failure of all. A dry run notes all orders and ends.
 pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Order]) -> Result<Answers, Failure> {
-    link.rehearse(orders)?;
+    link.dry_run(orders)?;
     let mut progress = (orders.len() > 1).then(|| screen.items_progress(what, orders.len() as u64));
     let mut outcomes = Vec::with_capacity(orders.len());
     for (done, order) in orders.iter().enumerate() {
@@ -104,7 +104,11 @@ impl<V> Several<V> {
         let pairs = names.into_iter().zip(outcomes).enumerate();
         let outcomes = pairs.map(|(at, (name, outcome))| ItemOutcome::new(name, outcome.map(|values| of(at, &values))));
         let outcomes: Vec<_> = outcomes.collect();
-        alone(outcomes.len(), outcomes.iter().filter_map(ItemOutcome::error))?;
+        if let [only] = &outcomes[..]
+            && let Some(error) = only.error()
+        {
+            return Err(error.failure());
+        }
         Ok(Self { outcomes, asked })
     }
 

@@ -2,12 +2,14 @@
 
 use super::Family;
 use super::link::Done;
+use super::overwrite;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 
 /// A command line that is one row of the table.
 pub trait Single {
@@ -46,10 +48,14 @@ impl<S: Single> Command for S {
         Single::intent(self)
     }
 
+    fn confirmation(&self) -> Confirmation {
+        overwrite::confirmation(Single::command(self))
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<S::Report, Failure> {
         let draft = context.link.draft(Single::command(self))?;
         let order = self.fill(draft).build()?;
-        self.report(&context.link.run(&order).await?)
+        self.report(&overwrite::give(context.link, &context.authority, &order).await?)
     }
 }
 

@@ -6,11 +6,12 @@ use serde::Serialize;
 
 use super::Family;
 use super::info::{AxisServo, servos};
-use super::items::{ItemError, verdict};
 use super::link::Link;
 use super::overview::not_asked;
 use super::position::{Position, Unit};
 use super::several::ask_each;
+use crate::command::dry_run::Reason;
+use crate::command::items::{ItemError, verdict};
 use crate::command::{Command, Context, Need, Report};
 use crate::controller::yrcx::answer::{Answer, Status as CommandStatus};
 use crate::controller::yrcx::image::Image;
@@ -48,7 +49,13 @@ impl Command for Status {
         let position = link.draft(table::Command::PositionMm)?.build()?;
         let orders = [servo, position];
         if link.is_dry() && (self.full || link.commands()) {
-            link.rehearse(&orders)?;
+            link.dry_run(&orders)?;
+        }
+        if link.is_dry() && link.is_held() {
+            let reason = Reason::default().depending_on("the session: it is asked if no other command is under way");
+            for order in &orders {
+                link.plan_depending(order, order, reason);
+            }
         }
         let image = link.look().await?;
         // What is seen at once does not wait for somebody else's motion to end.

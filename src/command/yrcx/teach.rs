@@ -3,9 +3,9 @@
 use clap::Args;
 
 use super::link;
+use super::overwrite::Stored;
 use super::position::Unit;
 use super::single::Single;
-use crate::command::orders::Done;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
@@ -23,7 +23,7 @@ pub struct Teach {
 }
 
 impl Single for Teach {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.teach";
 
     fn command(&self) -> Command {
@@ -34,18 +34,21 @@ impl Single for Teach {
         draft.with(Key::Point, self.point.as_str()).with(Key::Unit, i32::from(self.unit_of_point == Unit::Mm))
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new(format!("stored where the robot is in point {}, in {}", self.point, self.unit_of_point.symbol())))
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+        Ok(Stored::new(
+            format!("stored where the robot is in point {}, in {}", self.point, self.unit_of_point.symbol()),
+            done,
+        ))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::command::yrcx::testing::{objection, words};
+    use crate::command::yrcx::testing::{objection, words, written};
 
     #[test]
     fn the_unit_is_always_told() {
-        let sent = words(&["teach", "--point", "29999", "--in", "mm", "--unit", "2"]).unwrap();
+        let sent = written(&["teach", "--point", "29999", "--in", "mm", "--unit", "2"]).unwrap();
         assert_eq!(sent[0][..4], ["0x2028", "0x0000", "0x752F", "0x0001"]);
         assert!(words(&["teach", "--point", "30000", "--in", "mm"]).unwrap_err().message.contains("0 to 29999"));
         assert!(objection(&["teach", "--point", "1"]).contains("--in"));

@@ -15,6 +15,7 @@ use crate::command::{Access, AnyCommand, Family as _, Need, Noun as _};
 use crate::controller::Risk;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Words};
 use crate::controller::yrcx::signal::output;
+use crate::controller::yrcx::table::Row;
 use crate::failure::Failure;
 use crate::gate::Grant;
 use crate::output::{ColorChoice, Format, Screen};
@@ -66,10 +67,20 @@ fn numbers(texts: &Value) -> Words {
 /// The report of a command line that is answered as in an example of the manual.
 #[track_caller]
 pub(super) fn read_example(id: &str, line: &[&str]) -> Value {
-    let scripted = Scripted::new([Reply::Ends(1, answer(id))]);
+    let before = undefined(line);
+    let count = before.len();
+    let scripted = Scripted::new(before.into_iter().chain([Reply::Ends(1, answer(id))]));
     let (outcome, peer) = run_on(scripted, line);
-    assert_eq!(peer.taken, [numbers(corrected(&entry(id), "wi"))]);
+    assert_eq!(peer.taken[count..], [numbers(corrected(&entry(id), "wi"))]);
     outcome.unwrap()
+}
+
+/// How a controller answers what a line reads before it overwrites something: there is nothing yet.
+pub(super) fn undefined(line: &[&str]) -> Vec<Reply> {
+    let mut refused = [0; COMMAND_WORDS];
+    refused[..3].copy_from_slice(&[0x4000, 2, 904]);
+    let count = if risk(line) == Risk::Destroy { words(line).unwrap().len() - written(line).unwrap().len() } else { 0 };
+    vec![Reply::Ends(0, refused); count]
 }
 
 /// The report of a command line that sends the commands of several examples, each answered as there.
@@ -109,10 +120,24 @@ pub(super) fn words(words: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
     Ok(frames(words)?.iter().map(|frame| &frame["wi"]).filter(|words| words.is_array()).map(texts).collect())
 }
 
+/// Those of them that do not only read.
+pub(super) fn written(line: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
+    let code = |words: &Vec<String>| u16::from_str_radix(words[0].trim_start_matches("0x"), 16).unwrap();
+    let is_written = |words: &Vec<String>| Row::of(code(words)).unwrap().risk > Risk::Read;
+    Ok(words(line)?.into_iter().filter(is_written).collect())
+}
+
 /// All that `armctl yrcx WORDS…` would send.
 pub(super) fn frames(words: &[&str]) -> Result<Vec<Value>, Failure> {
     let (robot, command) = resolved(DRY, words)?;
     Ok(testing::frames(&planned(&robot, &*command, |link| link.set_unit(unit(words)))?))
+}
+
+/// The report of a dry run of a line.
+pub(super) fn planned_line(target: &str, line: &str) -> Result<Value, Failure> {
+    let words: Vec<&str> = line.split(' ').collect();
+    let (robot, command) = resolved(target, &words)?;
+    planned(&robot, &*command, |link| link.set_unit(unit(&words)))
 }
 
 /// A real controller that nothing is sent to.

@@ -5,11 +5,12 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::parts::{POINTS, Part, Records};
+use super::parts::{Part, Records};
 use super::rows::{self, Row};
+use crate::command::dry_run::Reason;
 use crate::command::manifest::{About, Entry, LeftOut};
 use crate::command::yrcx::link::Link;
-use crate::command::yrcx::numbers::{Numbers, runs};
+use crate::command::yrcx::numbers::{self, Numbers, runs};
 use crate::command::yrcx::refusal::refused;
 use crate::command::yrcx::several::{check_echo, is_about_commands};
 use crate::command::yrcx::single::shown;
@@ -80,10 +81,13 @@ impl Controller {
     }
 
     /// What a dry run notes of [`ask`](Self::ask).
-    pub fn foresee(link: &mut Link) -> Result<(), Failure> {
-        link.foresee(&Command::Versions.order().build()?, "which versions it has");
-        link.foresee(&of_robot(Command::ServoStatus, 1).build()?, "which axes it has, and so on for robots 2 to 4");
-        link.foresee(&of_robot(Command::System, 1).build()?, "the type of each robot that it has");
+    pub fn plan(link: &mut Link) -> Result<(), Failure> {
+        link.plan(&Command::Versions.order().build()?, "which versions it has");
+        for robot in 1..=4_u8 {
+            link.plan(&of_robot(Command::ServoStatus, robot).build()?, &format!("which axes robot {robot} has"));
+            let (order, about) = (of_robot(Command::System, robot).build()?, format!("its type, robot {robot}"));
+            plan_if(link, &order, &about, &format!("the axes: it is asked if there is a robot {robot}"));
+        }
         Ok(())
     }
 
@@ -92,6 +96,11 @@ impl Controller {
         let types = self.robots.iter().map(|robot| format!("{} (robot {})", robot.robot_type, robot.robot));
         types.collect::<Vec<_>>().join(", ")
     }
+}
+
+/// Notes in a dry run what is sent only if an answer says so.
+fn plan_if(link: &mut Link, order: &Order, about: &str, depends_on: &str) {
+    link.plan_depending(order, order, Reason::about(about).depending_on(depends_on));
 }
 
 /// What the state of the servo of an axis is that is not there (4.7.3).
@@ -151,6 +160,9 @@ pub async fn ask(link: &mut Link, order: &Order) -> Result<Result<Values, Alarm>
         Answer::Refused { alarm, .. } => Ok(Err(alarm)),
     }
 }
+
+/// So many in a row that are not defined end the points, where nobody says which.
+pub const GAP: usize = 100;
 
 /// Which numbers of records are read.
 pub struct Wanted {
@@ -244,27 +256,56 @@ const SETTINGS: [(&str, Command, Key, Command, Key); 5] = [
 const SETTING_COLUMNS: [&str; 3] = ["robot", "setting", "value"];
 const PARAMETER_COLUMNS: [&str; 4] = ["robot", "parameter", "axis", "value"];
 
-/// What reads a part first, for a dry run, and what follows.
-pub fn first_reads(part: Part) -> Result<Vec<(Order, String)>, Failure> {
-    let about = |text: &str| text.to_owned();
-    Ok(match (part, part.records()) {
-        (Part::Comments(_), _) => Vec::new(),
-        (_, Some(records)) => {
-            let then =
-                if records.kind == POINTS.kind { "and so on, then the comments of those defined" } else { "and so on" };
-            let first = records.all()?[0];
-            vec![(records.read(first)?, format!("{}, {then}", records.kind))]
+/// Notes in a dry run what reads a part; points are those that are asked for.
+pub fn plan(link: &mut Link, part: Part, points: Option<&BTreeSet<i32>>) -> Result<(), Failure> {
+    match (part, part.records()) {
+        (Part::Points(_), Some(records)) => {
+            // As many as are read in any case.
+            let certain = || (0..).take(GAP).collect();
+            let numbers = points.map_or_else(certain, |points| points.iter().copied().collect::<Vec<_>>());
+            plan_records(link, records, numbers)?;
+            let others = if points.is_some() { "" } else { "the other points until 100 in a row are not defined, " };
+            link.then(&format!("{others}the points of pallets, then the comments of the points that are defined"));
+            Ok(())
         }
-        (Part::Settings, _) => vec![
-            (of_robot(Command::SpeedStatus, 1).build()?, about("settings of each robot: speeds")),
-            (of_robot(Command::InchAmountGet, 1).build()?, about("its inching distance")),
-            (of_robot(Command::ArmDesignation, 1).build()?, about("its hand system")),
-        ],
+        (_, Some(records)) => plan_records(link, records, records.all()?),
+        (Part::Settings, _) => {
+            for robot in 1..=4_u8 {
+                for (command, about) in [
+                    (Command::SpeedStatus, "speeds"),
+                    (Command::InchAmountGet, "inching distance"),
+                    (Command::ArmDesignation, "hand system"),
+                ] {
+                    let (order, about) = (of_robot(command, robot).build()?, format!("{about} of robot {robot}"));
+                    plan_if(link, &order, &about, &format!("its axes: it is asked if there is a robot {robot}"));
+                }
+            }
+            Ok(())
+        }
         (Part::Parameters, _) => {
-            vec![(parameter(1, "WEIGHTG", "")?, about("parameters of each robot and axis, and so on"))]
+            for robot in 1..=4 {
+                for (name, axis) in parameters_of(&[1, 2, 3, 4]) {
+                    let about = parameter_key(robot, name, &axis);
+                    let order = parameter(robot, name, &axis)?;
+                    plan_if(link, &order, &about, "its axes: it is asked if the robot has them");
+                }
+            }
+            Ok(())
         }
-        _ => vec![(Command::Slots.order().with(Key::Controller, 1).build()?, about("what is in the option slots"))],
-    })
+        _ => {
+            link.plan(&Command::Versions.order().build()?, "versions");
+            link.plan(&Command::Slots.order().with(Key::Controller, 1).build()?, "what is in the option slots");
+            Ok(())
+        }
+    }
+}
+
+fn plan_records(link: &mut Link, records: &Records, numbers: Vec<i32>) -> Result<(), Failure> {
+    for number in numbers {
+        let key = numbers::named(records.read, records.columns[0].1, number);
+        link.plan(&records.read(number)?, &format!("{} {key}", records.kind));
+    }
+    Ok(())
 }
 
 /// Reads a part that is not made of records.
@@ -395,7 +436,19 @@ fn parameter(robot: u8, name: &str, axis: &str) -> Result<Order, Failure> {
     Ok(draft.with_some(Key::Axes, Some(axis).filter(|axis| !axis.is_empty())).build()?)
 }
 
-/// All parameters but one: the payload in kilograms is that in grams, less exactly.
+/// All parameters of a robot with these axes but one: the payload in kilograms is that in grams, less exactly.
+fn parameters_of(axes: &[u8]) -> Vec<(&'static str, String)> {
+    let mut all = Vec::new();
+    for parameter in PARAMETERS.iter().filter(|parameter| parameter.name != "WEIGHT") {
+        if parameter.per_axis {
+            all.extend(axes.iter().map(|axis| (parameter.name, axis.to_string())));
+        } else {
+            all.push((parameter.name, String::new()));
+        }
+    }
+    all
+}
+
 async fn parameters(
     link: &mut Link,
     screen: &Screen,
@@ -403,13 +456,7 @@ async fn parameters(
 ) -> Result<(String, Vec<LeftOut>), Failure> {
     let mut wanted = Vec::new();
     for Robot { robot, axes, .. } in &controller.robots {
-        for parameter in PARAMETERS.iter().filter(|parameter| parameter.name != "WEIGHT") {
-            if parameter.per_axis {
-                wanted.extend(axes.iter().map(|axis| (*robot, parameter.name, axis.to_string())));
-            } else {
-                wanted.push((*robot, parameter.name, String::new()));
-            }
-        }
+        wanted.extend(parameters_of(axes).into_iter().map(|(name, axis)| (*robot, name, axis)));
     }
     let mut progress = bar(screen, "parameters", wanted.len());
     let (mut rows, mut left_out) = (Vec::new(), Vec::new());
@@ -449,6 +496,20 @@ impl Store {
     /// Whether what was read is what would be written.
     pub fn is_there(&self, values: &Values) -> bool {
         self.wanted.iter().all(|(key, wanted)| values.value(*key).unwrap_or(&Value::Int(0)) == wanted)
+    }
+
+    /// What was read, in words.
+    pub fn told(&self, values: &Values) -> String {
+        let fields = self.wanted.iter().filter_map(|(key, _)| {
+            let value = values.value(*key)?;
+            field(self.read.row().answer(), *key, values).map(|field| field.show(value))
+        });
+        fields.collect::<Vec<_>>().join(" ")
+    }
+
+    /// What would be written, in words.
+    pub fn wanted(&self) -> String {
+        self.told(&self.wanted.iter().cloned().collect())
     }
 }
 

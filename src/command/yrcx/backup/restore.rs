@@ -7,7 +7,7 @@ use clap::Args;
 use super::content::{self, Controller, Store};
 use super::parts::Part;
 use crate::command::backup::{Item, Items, Only, Restored, Restoring};
-use crate::command::dry_run::unknown;
+use crate::command::dry_run::{Reason, unknown};
 use crate::command::interrupt::interruptible;
 use crate::command::local::own_folder;
 use crate::command::manifest::{self, LeftOut, State};
@@ -18,6 +18,7 @@ use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yrcx::signal::output;
 use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 
 /// Writes back what a backup holds.
@@ -36,7 +37,7 @@ pub struct Restore {
     /// Parts whose names fit, such as variables or 'points*' (repeatable)
     #[arg(long, value_name = "PATTERN", value_delimiter = ',')]
     only: Vec<String>,
-    /// Write parameters and settings, too; needs --yes
+    /// Write parameters and settings, too
     #[arg(long)]
     machine: bool,
     /// Write the backup of other robots
@@ -71,8 +72,12 @@ impl Command for Restore {
         "overwrite what the controller stores by the backup".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
-        let Context { link, screen, robot, several, .. } = context;
+        let Context { link, screen, robot, several, authority } = context;
         link.no_unit("a backup is of the whole controller")?;
         let folder = own_folder(&self.folder, &robot.name, several);
         let manifest: manifest::Manifest<Controller> = manifest::existing(&folder)?;
@@ -93,11 +98,19 @@ impl Command for Restore {
                 .hint("parameters and settings are written with --machine only, and info never"));
         }
         if link.is_dry() {
-            return rehearse(link, &jobs).await;
+            return dry_run(link, &jobs);
         }
-        // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
+        self.admit(link, &manifest.controller).await?;
         let mut items: Vec<Item> = jobs.iter().map(|job| pending(job.part)).collect();
-        match interruptible(self.restore(link, screen, &manifest.controller, &jobs, &mut items)).await {
+        let mut found = Found::default();
+        let total = jobs.len();
+        for (number, (job, item)) in jobs.iter().zip(&mut items).enumerate() {
+            screen.step(&format!("{}/{total} comparing {}", number + 1, job.part));
+            found.compare(link, screen, job, item).await?;
+        }
+        authority.confirm(&found.change(&folder.display().to_string())).await?;
+        // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
+        match interruptible(write_all(link, screen, &jobs, &found, &mut items)).await {
             Ok(outcome) => outcome?,
             Err(failure) => {
                 let first = items.iter_mut().find(|item| matches!(item.state, State::NotTried));
@@ -109,14 +122,8 @@ impl Command for Restore {
 }
 
 impl Restore {
-    async fn restore(
-        &self,
-        link: &mut Link,
-        screen: &Screen,
-        backup: &Controller,
-        jobs: &[Job],
-        items: &mut [Item],
-    ) -> Result<(), Failure> {
+    /// Whether the backup may be written to this controller, and now.
+    async fn admit(&self, link: &mut Link, backup: &Controller) -> Result<(), Failure> {
         let image = link.look().await?;
         if output::PROGRAM_RUNNING.is_on(&image) {
             return Err(Failure::new(Kind::RefusedHere, "the robot program runs, and may use what would be written")
@@ -129,18 +136,6 @@ impl Restore {
             return Err(Failure::new(Kind::RefusedHere, message)
                 .hint("take the backup of this controller; --force writes it all the same"));
         }
-        let total = jobs.len();
-        for (number, (Job { part, stores }, item)) in jobs.iter().zip(items).enumerate() {
-            screen.step(&format!("{}/{total} {part}", number + 1));
-            match store_all(link, screen, *part, stores, item).await {
-                Ok(()) => {}
-                Err(failure) => {
-                    if !item.fail(failure) {
-                        break;
-                    }
-                }
-            }
-        }
         Ok(())
     }
 }
@@ -149,29 +144,100 @@ fn pending(part: Part) -> Item {
     Item { file: Some(part.file()), written: Some(0), unchanged: Some(0), ..Item::pending(part) }
 }
 
-/// Writes what differs. What the controller refuses is noted, and the rest goes on.
-async fn store_all(
+/// What the controller has, beside what the backup has.
+#[derive(Default)]
+struct Found {
+    /// Of each part, which stores are to be written.
+    differ: Vec<Vec<usize>>,
+    /// What is overwritten: which, old and new.
+    replaced: Vec<(String, String, String)>,
+    /// Values that the controller has nothing for yet.
+    added: usize,
+}
+
+impl Found {
+    /// Reads what a part has a value for.
+    async fn compare(
+        &mut self,
+        link: &mut Link,
+        screen: &Screen,
+        Job { part, stores }: &Job,
+        item: &mut Item,
+    ) -> Result<(), Failure> {
+        let mut progress = screen.items_progress(&format!("comparing {part}"), stores.len() as u64);
+        let mut differ = Vec::new();
+        for (at, store) in stores.iter().enumerate() {
+            let there = content::ask(link, &store.read).await.map_err(|failure| named(store, failure))?;
+            match there {
+                Ok(values) if store.is_there(&values) => count(&mut item.unchanged),
+                Ok(values) => {
+                    self.replaced.push((format!("{} {}", part.kind(), store.key), store.told(&values), store.wanted()));
+                    differ.push(at);
+                }
+                Err(_) => {
+                    self.added += 1;
+                    differ.push(at);
+                }
+            }
+            progress.advance(1);
+        }
+        self.differ.push(differ);
+        Ok(())
+    }
+
+    /// What is asked for.
+    fn change(&self, folder: &str) -> Change {
+        let count = match self.replaced.len() {
+            0 => return Change::nothing(),
+            1 => "1 value".to_owned(),
+            many => format!("{many} values"),
+        };
+        let change = Change::new(format!("overwrite {count} by those of {folder}"));
+        let change = self.replaced.iter().fold(change, |change, (what, old, new)| change.replaces(what, old, new));
+        match self.added {
+            0 => change,
+            added => change.note(format!("Values that the controller has not yet are written as well: {added}.")),
+        }
+    }
+}
+
+/// Writes what differs.
+async fn write_all(
     link: &mut Link,
     screen: &Screen,
-    part: Part,
-    stores: &[Store],
+    jobs: &[Job],
+    found: &Found,
+    items: &mut [Item],
+) -> Result<(), Failure> {
+    let total = jobs.len();
+    for (number, ((job, differ), item)) in jobs.iter().zip(&found.differ).zip(items).enumerate() {
+        screen.step(&format!("{}/{total} {}", number + 1, job.part));
+        if let Err(failure) = write(link, screen, job, differ, item).await
+            && !item.fail(failure)
+        {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Writes what differs of a part. What the controller refuses is noted, and the rest goes on.
+async fn write(
+    link: &mut Link,
+    screen: &Screen,
+    Job { part, stores }: &Job,
+    differ: &[usize],
     item: &mut Item,
 ) -> Result<(), Failure> {
-    let mut progress = screen.items_progress(&format!("writing {part}"), stores.len() as u64);
+    let mut progress = screen.items_progress(&format!("writing {part}"), differ.len() as u64);
     let mut refusal = None;
-    for store in stores {
-        let at = |failure: Failure| Failure { message: format!("{}: {}", store.key, failure.message), ..failure };
-        let there = content::ask(link, &store.read).await.map_err(at)?;
-        if there.is_ok_and(|values| store.is_there(&values)) {
-            count(&mut item.unchanged);
-        } else {
-            match content::ask(link, &store.write).await.map_err(at)? {
-                Ok(_) => count(&mut item.written),
-                Err(alarm) => {
-                    let failure = refused(store.write.row(), alarm);
-                    item.left_out.push(LeftOut { key: store.key.clone(), why: failure.message.clone() });
-                    refusal.get_or_insert(at(failure));
-                }
+    for store in differ.iter().filter_map(|at| stores.get(*at)) {
+        match content::ask(link, &store.write).await.map_err(|failure| named(store, failure))? {
+            Ok(_) => count(&mut item.written),
+            Err(alarm) => {
+                let failure = refused(store.write.row(), alarm);
+                item.left_out.push(LeftOut { key: store.key.clone(), why: failure.message.clone() });
+                refusal.get_or_insert(named(store, failure));
             }
         }
         progress.advance(1);
@@ -180,17 +246,30 @@ async fn store_all(
     refusal.map_or(Ok(()), Err)
 }
 
+/// The failure of one value.
+fn named(store: &Store, failure: Failure) -> Failure {
+    Failure { message: format!("{}: {}", store.key, failure.message), ..failure }
+}
+
 fn count(counter: &mut Option<usize>) {
     *counter = counter.map(|count| count + 1);
 }
 
-async fn rehearse(link: &mut Link, jobs: &[Job]) -> Result<Restored, Failure> {
-    Controller::foresee(link)?;
+fn dry_run(link: &mut Link, jobs: &[Job]) -> Result<Restored, Failure> {
+    Controller::plan(link)?;
     for Job { part, stores } in jobs {
         for store in stores {
-            link.foresee(&store.read, &format!("{part} {}, to compare", store.key));
-            link.foresee(&store.write, "if it differs");
+            link.plan(&store.read, &format!("{part} {}, to compare", store.key));
+        }
+    }
+    for Job { part, stores } in jobs {
+        for store in stores {
+            let about = format!("{part} {}", store.key);
+            link.plan_depending(&store.write, &store.write, Reason::about(&about).depending_on(IF_IT_DIFFERS));
         }
     }
     Err(unknown())
 }
+
+/// On what it depends whether a value is written.
+const IF_IT_DIFFERS: &str = "the comparison: it is written if it differs";

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::content::{self, Controller, Text, Wanted};
+use super::content::{self, Controller, GAP, Text, Wanted};
 use super::parts::{POINTS, Part, THOUSAND};
 use crate::command::backup::{BackedUp, Item, Items, Making, Only, cut_off, write_text};
 use crate::command::dry_run::unknown;
@@ -55,8 +55,6 @@ pub fn points(text: &str) -> Result<String, String> {
 
 /// Before numbers of points, in the scope of a backup.
 const OF_POINTS: &str = "points ";
-/// So many in a row that are not defined end the points, where nobody says which.
-const GAP: usize = 100;
 
 type Manifest = manifest::Manifest<Controller>;
 
@@ -91,7 +89,7 @@ impl Command for Backup {
         let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
         let asked = Asked::of(&scope)?;
         if link.is_dry() {
-            return rehearse(link, &asked).await;
+            return dry_run(link, &asked);
         }
         let saving = Saving { link, screen, folder: &folder, asked, items: Vec::new() };
         // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with what was saved.
@@ -129,13 +127,11 @@ impl Asked {
     }
 }
 
-async fn rehearse(link: &mut Link, asked: &Asked) -> Result<BackedUp, Failure> {
-    Controller::foresee(link)?;
+fn dry_run(link: &mut Link, asked: &Asked) -> Result<BackedUp, Failure> {
+    Controller::plan(link)?;
     let parts = Part::single().into_iter().chain([Part::Points(0)]);
     for part in parts.filter(|part| asked.has(*part)) {
-        for (order, about) in content::first_reads(part)? {
-            link.foresee(&order, &about);
-        }
+        content::plan(link, part, asked.points.as_ref())?;
     }
     Err(unknown())
 }

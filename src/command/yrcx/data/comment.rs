@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
 use crate::command::yrcx::{Family, link};
@@ -93,7 +93,7 @@ pub struct Set {
 }
 
 impl Single for Set {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.comment.set";
 
     fn command(&self) -> table::Command {
@@ -104,11 +104,12 @@ impl Single for Set {
         draft.with(Key::Point, self.point).with(Key::Comment, self.comment.as_str())
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new(match &self.comment[..] {
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+        let told = match &self.comment[..] {
             "" => format!("removed the comment of point {}", self.point),
             comment => format!("comment of point {}: {comment}", self.point),
-        }))
+        };
+        Ok(Stored::new(told, done))
     }
 }
 
@@ -116,12 +117,12 @@ impl Single for Set {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{example, read_example, words};
+    use crate::command::yrcx::testing::{example, read_example, words, written};
 
     #[test]
     fn the_examples_of_the_manual() {
         let set = ["comment", "set", "100", "WAIT ORG"];
-        assert_eq!(words(&set).unwrap(), [example("4.3.2-define")]);
+        assert_eq!(written(&set).unwrap(), [example("4.3.2-define")]);
         assert_eq!(read_example("4.3.2-define", &set)["done"], "comment of point 100: WAIT ORG");
         let read = read_example("4.3.2-reference", &["comment", "get", "50"]);
         assert_eq!(read["comments"], json!([{"point": 50, "ok": true, "comment": "WAIT ORG"}]));
@@ -130,7 +131,7 @@ mod tests {
     #[test]
     fn comments_have_sixteen_characters_that_print() {
         assert!(words(&["comment", "set", "1", "0123456789ABCDEF"]).is_ok());
-        assert_eq!(words(&["comment", "set", "1", ""]).unwrap()[0][4], "0x0000");
+        assert_eq!(written(&["comment", "set", "1", ""]).unwrap()[0][4], "0x0000");
         for wrong in ["0123456789ABCDEFG", "Größe", "a\tb"] {
             let failure = words(&["comment", "set", "1", wrong]).unwrap_err();
             assert!(failure.message.ends_with("allowed: up to 16 ASCII characters"), "{failure}");

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::mm;
-use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
 use crate::command::yrcx::{Family, link};
@@ -132,7 +132,7 @@ pub struct Set {
 }
 
 impl Single for Set {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.hand-data.set";
 
     fn command(&self) -> table::Command {
@@ -145,10 +145,10 @@ impl Single for Set {
         data.into_iter().fold(draft, |draft, (key, text)| draft.with(key, text.as_str()))
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
         let Self { hand, first, second, third, on_r_axis } = self;
         let place = if *on_r_axis { ", on the R axis" } else { "" };
-        Ok(Done::new(format!("defined hand {hand}: {first}, {second} mm, {third} mm{place}")))
+        Ok(Stored::new(format!("defined hand {hand}: {first}, {second} mm, {third} mm{place}"), done))
     }
 }
 
@@ -156,14 +156,14 @@ impl Single for Set {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{example, read_example, words};
+    use crate::command::yrcx::testing::{example, read_example, words, written};
     use crate::failure::Kind;
 
     const SET: [&str; 9] = ["hand-data", "set", "1", "--data-1", "10000", "--data-2", "-2", "--data-3", "5"];
 
     #[test]
     fn the_examples_of_the_manual() {
-        assert_eq!(words(&SET).unwrap(), [example("4.3.5-define")]);
+        assert_eq!(written(&SET).unwrap(), [example("4.3.5-define")]);
         assert_eq!(read_example("4.3.5-define", &SET)["done"], "defined hand 1: 10000, -2 mm, 5 mm");
         let read = read_example("4.3.5-reference", &["hand-data", "get", "1"]);
         let hand = json!({"hand": 1, "ok": true, "robot": 1, "data_1": 10000, "data_2_mm": -2.0, "data_3_mm": 5.0, "data_4": 0});
@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn a_hand_belongs_to_a_robot_and_is_read_without() {
-        let sent = words(&[&SET[..], &["--on-r-axis", "--unit", "3"]].concat()).unwrap();
+        let sent = written(&[&SET[..], &["--on-r-axis", "--unit", "3"]].concat()).unwrap();
         assert_eq!((sent[0][0].as_str(), sent[0][10].as_str()), ("0x3110", "0x0001"));
         assert_eq!(words(&["hand-data", "get", "1", "--unit", "3"]).unwrap_err().kind, Kind::Usage);
         let first = |data| words(&["hand-data", "set", "1", "--data-1", data, "--data-2", "0", "--data-3", "0"]);

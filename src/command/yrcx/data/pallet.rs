@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
 use crate::command::yrcx::{Family, link};
@@ -118,7 +118,7 @@ pub struct Set {
 }
 
 impl Single for Set {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.pallet-data.set";
 
     fn command(&self) -> table::Command {
@@ -131,9 +131,9 @@ impl Single for Set {
         counts.into_iter().fold(draft, |draft, (key, count)| draft.with(key, count.as_str()))
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
         let Self { pallet, nx, ny, nz, first_point } = self;
-        Ok(Done::new(format!("defined pallet {pallet}: {nx} x {ny} x {nz}, first point {first_point}")))
+        Ok(Stored::new(format!("defined pallet {pallet}: {nx} x {ny} x {nz}, first point {first_point}"), done))
     }
 }
 
@@ -141,12 +141,12 @@ impl Single for Set {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{example, objection, read_example, words};
+    use crate::command::yrcx::testing::{example, objection, read_example, words, written};
 
     #[test]
     fn the_examples_of_the_manual() {
         let set = ["pallet-data", "set", "10", "--nx", "10", "--ny", "15", "--first-point", "100"];
-        assert_eq!(words(&set).unwrap(), [example("4.3.3-define")]);
+        assert_eq!(written(&set).unwrap(), [example("4.3.3-define")]);
         assert_eq!(read_example("4.3.3-define", &set)["done"], "defined pallet 10: 10 x 15 x 1, first point 100");
         let read = read_example("4.3.3-reference", &["pallet-data", "get", "10"]);
         assert_eq!(

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Four, four, mm};
-use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::position::{Position, Unit};
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::{Single, shown};
@@ -134,7 +134,7 @@ impl Set {
 }
 
 impl Single for Set {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.point.set";
 
     fn command(&self) -> table::Command {
@@ -148,12 +148,12 @@ impl Single for Set {
         draft.with_some(Key::HandSystem, self.hand.clone())
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
         let (unit, four) = self.coordinates();
         let numbers = four.map(Four::told).unwrap_or_default();
         let unit = if unit == "mm" { "mm" } else { "pulses" };
         let hand = self.hand.as_ref().map(|hand| format!(", {hand}-handed")).unwrap_or_default();
-        Ok(Done::new(format!("defined point {}: {numbers} {unit}{hand}", self.point)))
+        Ok(Stored::new(format!("defined point {}: {numbers} {unit}{hand}", self.point), done))
     }
 }
 
@@ -161,13 +161,15 @@ impl Single for Set {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{Reply, Scripted, example, objection, read_example, report_on, run_on, words};
+    use crate::command::yrcx::testing::{
+        Reply, Scripted, example, objection, read_example, report_on, run_on, words, written,
+    };
     use crate::failure::Kind;
 
     #[test]
     fn the_examples_of_the_manual() {
         let set = ["point", "set", "100", "--pulse", "10000,-20000,5000,-18000"];
-        assert_eq!(words(&set).unwrap(), [example("4.3.1-define")]);
+        assert_eq!(written(&set).unwrap(), [example("4.3.1-define")]);
         assert_eq!(read_example("4.3.1-define", &set)["done"], "defined point 100: 10000, -20000, 5000, -18000 pulses");
         let read = read_example("4.3.1-reference", &["point", "get", "50"]);
         let mm = [10.0, -20.0, 5.0, -18.0];
@@ -177,7 +179,7 @@ mod tests {
 
     #[test]
     fn coordinates_have_a_unit_and_a_hand() {
-        let sent = words(&["point", "set", "0", "--mm", "1,-2.5,0,0", "--hand", "left"]).unwrap();
+        let sent = written(&["point", "set", "0", "--mm", "1,-2.5,0,0", "--hand", "left"]).unwrap();
         assert_eq!(sent[0][..8], ["0x0100", "0x0005", "0x0000", "0x0000", "0x03E8", "0x0000", "0xF63C", "0xFFFF"]);
         for (line, part) in [
             ("point set 1", "--mm"),

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Four, four, mm};
-use crate::command::orders::Done;
 use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::position::{Position, Unit};
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
@@ -94,7 +94,7 @@ pub struct Set {
 }
 
 impl Single for Set {
-    type Report = Done;
+    type Report = Stored;
     const ID: &'static str = "yrcx.shift-data.set";
 
     fn command(&self) -> table::Command {
@@ -105,8 +105,8 @@ impl Single for Set {
         self.mm.put(draft.with(Key::Shift, self.shift))
     }
 
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new(format!("defined shift {}: {} mm", self.shift, self.mm.told())))
+    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+        Ok(Stored::new(format!("defined shift {}: {} mm", self.shift, self.mm.told()), done))
     }
 }
 
@@ -114,12 +114,12 @@ impl Single for Set {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{example, objection, read_example, words};
+    use crate::command::yrcx::testing::{example, objection, read_example, written};
 
     #[test]
     fn the_examples_of_the_manual() {
         let set = ["shift-data", "set", "5", "--mm", "10,-20,5,-18"];
-        assert_eq!(words(&set).unwrap(), [example("4.3.4-define")]);
+        assert_eq!(written(&set).unwrap(), [example("4.3.4-define")]);
         assert_eq!(read_example("4.3.4-define", &set)["done"], "defined shift 5: 10, -20, 5, -18 mm");
         let read = read_example("4.3.4-reference", &["shift-data", "get", "5"]);
         assert_eq!(read["shifts"], json!([{"shift": 5, "ok": true, "shift_mm": [10.0, -20.0, 5.0, -18.0]}]));

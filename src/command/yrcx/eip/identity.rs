@@ -25,6 +25,7 @@ impl Command for Identify {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Identified, Failure> {
         context.link.no_unit(NO_UNIT)?;
+        context.link.then("messages that ask the board who it is, and what it can do");
         let board = context.link.board().await?;
         let address = board.address().to_string();
         let Some(identity) = board.identity().await? else {

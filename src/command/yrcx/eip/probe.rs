@@ -30,6 +30,9 @@ impl Command for Probe {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Found, Failure> {
         context.link.no_unit(NO_UNIT)?;
+        context
+            .link
+            .then("messages that ask the board who it is, for its assemblies, and for connections that it refuses");
         let board = context.link.board().await?;
         let identity = board.identity().await?;
         let probed = board.probe(identity.as_ref()).await?;

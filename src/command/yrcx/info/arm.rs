@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::command::items::{ItemError, verdict};
 use crate::command::yrcx::Family;
-use crate::command::yrcx::items::{ItemError, verdict};
 use crate::command::yrcx::several::ask_each;
 use crate::command::yrcx::single::shown;
 use crate::command::{Command, Context, Report};

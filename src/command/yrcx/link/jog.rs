@@ -51,7 +51,7 @@ impl Link {
         let given = self.given(order.row(), outcome);
         let done = given.and_then(|given| match given.answer {
             Answer::Refused { alarm: STOP_INPUT, positions } if is_stopped => {
-                Ok(Done { values: positions, elapsed: given.elapsed })
+                Ok(Done { values: positions, elapsed: given.elapsed, replaced: None })
             }
             _ => given.done(order),
         });

@@ -36,7 +36,7 @@ impl Link {
                 && let Some(Answer::Running(values)) = exchange.running()
             {
                 let is_empty = values.iter().all(|(_, value)| *value == Value::Int(0));
-                let done = Done { values, elapsed: exchange.elapsed(now) };
+                let done = Done { values, elapsed: exchange.elapsed(now), replaced: None };
                 if is_under_way || !is_empty {
                     return Ok(done);
                 }

@@ -5,6 +5,7 @@ use clap::Args;
 use super::{Moved, go};
 use crate::command::yrcx::Family;
 use crate::command::yrcx::arguments::{Direction, Which};
+use crate::command::yrcx::overwrite::confirmation;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yrcx::table;
@@ -64,10 +65,7 @@ impl Command for AbsReset {
     }
 
     fn confirmation(&self) -> Confirmation {
-        match self.direction {
-            Some(_) => Confirmation::Question,
-            None => Confirmation::Word("reset"),
-        }
+        confirmation(self.command())
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Moved, Failure> {

@@ -149,12 +149,12 @@ async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order,
     let present = link.draft(table::Command::PositionMm)?.build()?;
     if link.is_dry() {
         let names = axes.iter().map(usize::to_string).collect::<Vec<_>>().join(" and ");
-        link.foresee(&present, "where the robot is");
+        link.plan(&present, "where the robot is");
         let one = draft.clone();
         let keys: Vec<Key> = axes.iter().filter_map(|axis| Key::AXES.get(axis - 1).copied()).collect();
         let other = keys.into_iter().fold(one, |draft, key| draft.with(key, -1)).build()?;
         let kept = format!("the present position of what is not named: axis {names}");
-        link.foresee_depending(&order, &other, Reason::default().depending_on(&kept));
+        link.plan_depending(&order, &other, Reason::default().depending_on(&kept));
         return Err(unknown());
     }
     let not_moved = |failure: Failure| Failure {

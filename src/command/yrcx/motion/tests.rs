@@ -2,7 +2,9 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
-use crate::command::yrcx::testing::{Bench, Reply, Scripted, answer, entries, example, frames, intent, run_on, words};
+use crate::command::yrcx::testing::{
+    Bench, Reply, Scripted, answer, entries, example, frames, intent, run_on, undefined, words, written,
+};
 use crate::controller::yrcx::image::Words;
 use crate::failure::Kind;
 
@@ -69,7 +71,7 @@ fn there_is_a_line_for_each_example_of_the_section() {
 #[test]
 fn lines_become_the_words_of_the_examples() {
     for (id, line) in EXAMPLES {
-        assert_eq!(words(&split(line)).unwrap(), [example(id)], "{id}");
+        assert_eq!(written(&split(line)).unwrap(), [example(id)], "{id}");
     }
     let walk_through = words(&split("move --point 19 --speed 50")).unwrap();
     assert_eq!(walk_through, [example("2-ptp-walkthrough")]);
@@ -99,9 +101,11 @@ fn words_become_the_reports_of_the_examples() {
         if entry["refused"] == "12.400" {
             line.extend(["--for", "200ms"]);
         }
-        let (outcome, peer) = run_on(Scripted::new([reply(answer(id))]), &line);
+        let before = undefined(&line);
+        let count = before.len() + 1;
+        let (outcome, peer) = run_on(Scripted::new(before.into_iter().chain([reply(answer(id))])), &line);
         let report = outcome.unwrap_or_else(|failure| panic!("{id}: {failure}"));
-        assert_eq!(peer.taken.len(), 1, "{id}");
+        assert_eq!(peer.taken.len(), count, "{id}");
         if report.get("elapsed_ms").is_some() {
             let told = (report["position_mm"].clone(), report["position_pulses"].clone());
             assert_eq!((told, &report["ended"]), (positions(entry), &true.into()), "{id}: {report}");

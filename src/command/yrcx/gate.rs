@@ -1,0 +1,404 @@
+//! Every leaf command against the gate: its risk, a read-only robot, nobody to ask, and a dry run beside what is sent.
+
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use serde_json::Value;
+
+use super::link::Link;
+use super::simulated::in_process;
+use super::testing::{planned_line, resolved};
+use super::{Family, Yrcx};
+use crate::command::authority::Authority;
+use crate::command::testing::QUIET;
+use crate::command::{Access, AnyCommand, Context, Need, Noun as _};
+use crate::controller::Risk;
+use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
+use crate::controller::yrcx::signal::{Side, Signal, resting};
+use crate::controller::yrcx::table::Row;
+use crate::failure::{Failure, Kind};
+use crate::gate::{Gate, Grant};
+use crate::settings::Robot;
+use crate::settings::target::Sim;
+use crate::transport::image::ImagePeer;
+
+const READS: &[&str] = &[
+    "status",
+    "status --full",
+    "status-reset",
+    "point get 0..3",
+    "comment get 50",
+    "pallet-data get 10",
+    "shift-data get 4,5",
+    "hand-data get 1",
+    "var get SGI1",
+    "param get WEIGHT",
+    "port get DO2",
+    "program show --task 1",
+    "info version",
+    "info system",
+    "info servo",
+    "info position",
+    "info tasks",
+    "info line",
+    "info alarm",
+    "info message",
+    "info speed",
+    "info arm",
+    "info origin",
+    "info torque",
+    "info slots",
+    "info inch",
+    "clock get",
+    "io get",
+    "io watch",
+    "auto-mode",
+    "backup @/new --only info,settings,pallets,shifts,hands,variables",
+    "eip identity",
+    "eip probe",
+    "eip get 1 1 7",
+];
+
+const WRITES: &[&str] = &[
+    "inch-distance 100",
+    "servo off",
+    "motor off",
+    "speed manual 20",
+    "shift select 4",
+    "hand select 1",
+    "arm select right",
+    "torque-limit --axis 1 50",
+    "var set SGI1 1",
+    "var add SGI1 1",
+    "var sub SGI1 1",
+    "var mul SGI1 1",
+    "var div SGI1 1",
+    "port set DO2 1",
+    "program select --program 1 --priority 32",
+    "program reset --all-programs",
+    "clock set 2026-03-01",
+    "alarm reset",
+    "io set SI20=on",
+    "io pulse SI20",
+    "emergency-stop",
+    "reset",
+    "stop",
+    "raw --wi 0x604",
+    "eip set 0xF5 1 3 00",
+];
+
+/// Each after what makes it overwrite something else.
+const DESTROYS: &[(&str, &str)] = &[
+    ("point set 7 --mm 9,9,9,9", "teach --point 7 --in mm"),
+    ("point set 7 --mm 9,9,9,9", "point set 7 --mm 1,2,3,4"),
+    ("comment set 7 OLD", "comment set 7 NEW"),
+    ("pallet-data set 7 --nx 2 --ny 2 --first-point 1", "pallet-data set 7 --nx 3 --ny 2 --first-point 1"),
+    ("shift-data set 7 --mm 1,2,3,4", "shift-data set 7 --mm 1,2,3,5"),
+    ("hand-data set 7 --data-1 1 --data-2 2 --data-3 3", "hand-data set 7 --data-1 1 --data-2 2 --data-3 4"),
+    ("param set TOLE 100 --axis 1", "param set TOLE 101 --axis 1"),
+    ("point set 7 --mm 9,9,9,9", "point-calc copy 1 --to 7"),
+    ("point set 7 --mm 9,9,9,9", "point-calc add 1 --to 7"),
+    ("point set 7 --mm 9,9,9,9", "point-calc sub 1 --from 7"),
+    ("point set 7 --mm 9,9,9,9", "point-calc pallet 10 --place 1 --to 7"),
+    ("point set 7 --mm 9,9,9,9", "point-calc element 7 --element 1 --mm 1"),
+    ("shift-data set 7 --mm 1,2,3,4", "point-calc shift-element 7 --element 1 --mm 9"),
+    ("point set 7 --mm 9,9,9,9", "raw --wi 0x100,1,7,0,1"),
+    ("pallet-data set 10 --nx 3 --ny 3 --first-point 1", "restore @/saved"),
+];
+
+const MOTIONS: &[&str] = &[
+    "move --point 19",
+    "movei --point 19",
+    "movet --point 19",
+    "drive --axis 3 --point 19",
+    "drivei --axis 3 --point 19",
+    "pallet --pallet 1 --position 21",
+    "push --axis 3 --point 19",
+    "jog pulse 1 + --for 100ms",
+    "inch pulse 1 +",
+    "origin",
+    "servo on",
+    "motor on",
+    "program run --all-programs",
+    "program step --task 1",
+    "program skip --task 1",
+    "program next --task 1",
+    "power-on",
+    "recover",
+    "run",
+    "raw --wi 0x42",
+];
+
+/// What sends nothing that shows: what the controller shows is looked at, and zeros are what it is shown at rest.
+const SHOWN: [&str; 2] = ["io watch", "status-reset"];
+
+/// What asks for a word, as nothing brings back what it does.
+const WORD: &str = "abs-reset --axis 2";
+
+/// Folders that lines name, made by a backup.
+struct Desk(tempfile::TempDir);
+
+impl Desk {
+    fn new() -> Self {
+        let desk = Self(tempfile::tempdir().unwrap());
+        let mut bench = Bench::new();
+        bench.run(&desk.line("backup @/saved --only pallets,shifts"), true).unwrap();
+        desk
+    }
+
+    fn line(&self, line: &str) -> String {
+        line.replace('@', self.0.path().to_str().unwrap())
+    }
+}
+
+/// All lines with the risk that each shall have.
+fn lines() -> impl Iterator<Item = (&'static str, Risk)> {
+    let with = |lines: &'static [&'static str], risk| lines.iter().map(move |line| (*line, risk));
+    let destroys = DESTROYS.iter().map(|(_, line)| (*line, Risk::Destroy)).chain([(WORD, Risk::Destroy)]);
+    with(READS, Risk::Read).chain(with(WRITES, Risk::Write)).chain(destroys).chain(with(MOTIONS, Risk::Motion))
+}
+
+/// Commands that need no robot, or have their own way to one.
+const AT_DESK: [&str; 1] = ["yrcx.io.map"];
+
+/// A controller that nothing is sent to, and the command of a line.
+fn real(line: &str) -> (Robot, Box<dyn AnyCommand<Family>>) {
+    let line: Vec<&str> = line.split(' ').collect();
+    resolved("eip://127.0.0.1", &line).unwrap_or_else(|failure| panic!("{line:?}: {failure}"))
+}
+
+#[test]
+fn every_leaf_has_the_risk_that_it_shall_have() {
+    let mut seen: BTreeSet<&str> = AT_DESK.into();
+    for (line, risk) in lines() {
+        let (_, command) = real(line);
+        assert_eq!(command.intent(None).risk, risk, "{line}");
+        seen.insert(command.id());
+    }
+    let all: BTreeSet<&str> = Yrcx::schemas().iter().map(|entry| entry.id).collect();
+    assert_eq!(all.difference(&seen).collect::<Vec<_>>(), Vec::<&&str>::new(), "these have no line");
+}
+
+#[test]
+fn a_read_only_robot_is_read_and_stopped() {
+    for (line, risk) in lines() {
+        let (mut robot, command) = real(line);
+        robot.read_only.value = true;
+        let intent = command.intent(Some(&robot));
+        let passes = Gate { yes: true, ..Gate::default() }.must_ask(&QUIET, &robot, &intent);
+        if risk == Risk::Read || ["stop", "emergency-stop"].contains(&line) {
+            assert_eq!(passes, Ok(false), "{line}");
+        } else {
+            assert_eq!(passes.unwrap_err().kind, Kind::RefusedHere, "{line}");
+        }
+    }
+}
+
+#[test]
+fn what_overwrites_is_not_done_where_nobody_says_yes() {
+    let desk = Desk::new();
+    for (before, line) in DESTROYS {
+        let mut bench = Bench::new();
+        bench.run(before, true).unwrap();
+        bench.sent();
+        let failure = bench.run(&desk.line(line), false).unwrap_err();
+        assert_eq!((failure.kind.exit(), line), (7, line), "{failure}");
+        assert!(failure.message.contains(" -> ") && failure.message.contains("would overwrite "), "{line}: {failure}");
+        let risks = bench.sent().into_iter().map(|frame| frame.risk());
+        assert!(risks.clone().all(|risk| risk == Risk::Read) && risks.count() > 0, "{line}");
+        bench.run(&desk.line(line), true).unwrap();
+        assert_eq!(bench.sent().iter().map(Frame::risk).max(), Some(Risk::Destroy), "{line}");
+        // A second time there is nothing left to overwrite, unless the order adds, or what it stores cannot be foretold.
+        if !["add", "sub", "--place"].iter().any(|word| line.contains(word)) {
+            bench.run(&desk.line(line), false).unwrap();
+        }
+    }
+    for line in MOTIONS.iter().chain([&WORD]) {
+        let (robot, command) = real(line);
+        let failure = Gate::default().must_ask(&QUIET, &robot, &command.intent(Some(&robot))).unwrap_err();
+        assert_eq!(failure.kind.exit(), 7, "{line}");
+    }
+}
+
+#[test]
+fn what_is_new_wants_no_yes() {
+    let desk = Desk::new();
+    for line in [
+        "teach --point 7 --in pulse",
+        "point set 7 --mm 1,2,3,4",
+        "comment set 7 NEW",
+        "pallet-data set 7 --nx 3 --ny 2 --first-point 1",
+        "hand-data set 7 --data-1 1 --data-2 2 --data-3 4",
+        "point-calc copy 1 --to 7",
+        "point-calc pallet 10 --place 1 --to 7",
+        "restore @/saved",
+    ] {
+        let mut bench = Bench::new();
+        bench.run(&desk.line(line), false).unwrap_or_else(|failure| panic!("{line}: {failure}"));
+    }
+}
+
+#[test]
+fn a_dry_run_shows_a_frame_of_its_own_risk() {
+    let desk = Desk::new();
+    for (line, risk) in lines() {
+        let plan =
+            planned_line("eip://127.0.0.1", &desk.line(line)).unwrap_or_else(|failure| panic!("{line}: {failure}"));
+        let risks: Vec<Risk> = frames(&plan).iter().map(|(frame, _)| frame.risk()).collect();
+        if line.starts_with("eip ") {
+            assert!(plan["frames"][0]["hex"].is_string() || plan["then"].is_string(), "{line}: {plan}");
+        } else if risk > Risk::Read {
+            assert_eq!(risks.iter().max(), Some(&risk), "{line}: {plan}");
+        } else {
+            assert!(risks.iter().all(|risk| *risk == Risk::Read), "{line}: {plan}");
+        }
+        let is_complete = plan["complete"] == true;
+        assert_eq!(is_complete, plan["then"].is_null(), "{line}: {plan}");
+    }
+}
+
+#[test]
+fn a_dry_run_shows_what_is_sent() {
+    let desk = Desk::new();
+    let befores = DESTROYS.iter().map(|(before, line)| (Some(*before), *line));
+    let others = lines().filter(|(_, risk)| *risk != Risk::Destroy).map(|(line, _)| (None, line));
+    for (before, line) in befores.chain(others).filter(|(_, line)| !line.starts_with("eip ") && !SHOWN.contains(line)) {
+        let line = desk.line(line);
+        let mut bench = Bench::new();
+        if let Some(before) = before {
+            bench.run(before, true).unwrap();
+        }
+        let plan = planned_line("sim:", &line).unwrap();
+        bench.sent();
+        let outcome = bench.run(&line, true);
+        let mut sent = bench.sent().into_iter().peekable();
+        for (frame, is_certain) in frames(&plan) {
+            if sent.peek() == Some(&frame) {
+                sent.next();
+            } else if is_certain && outcome.is_ok() {
+                panic!("{line}: {frame:?} is planned, {:?} is sent: {plan}", sent.peek());
+            }
+        }
+        let rest: Vec<Frame> = sent.collect();
+        assert!(rest.is_empty() || plan["complete"] == false, "{line}: {rest:?} is sent and not planned: {plan}");
+    }
+}
+
+/// What leaves: a remote command, or the words of signals.
+#[derive(Debug, Clone, PartialEq)]
+enum Frame {
+    Words(Vec<String>),
+    Bits(Vec<String>),
+}
+
+impl Frame {
+    /// The riskiest of what it can mean; of signals, the risk of what the first word differs in from rest.
+    fn risk(&self) -> Risk {
+        match self {
+            Self::Words(words) => Row::of(number(&words[0])).unwrap().risk,
+            Self::Bits(bits) => risk_of(bits),
+        }
+    }
+}
+
+fn number(word: &str) -> u16 {
+    u16::from_str_radix(word.trim_start_matches("0x"), 16).unwrap()
+}
+
+/// The risk of signals, by what is not as at rest.
+fn risk_of(bits: &[String]) -> Risk {
+    let mut image = Image::default();
+    for (word, text) in image.0[COMMAND_WORDS..].iter_mut().zip(bits) {
+        *word = number(text);
+    }
+    let differ = Signal::all(Side::Input).filter(|signal| signal.is_on(&image) != signal.is_on(&resting()));
+    differ.map(|signal| signal.risk(signal.is_on(&image))).max().unwrap_or(Risk::Write)
+}
+
+/// The frames of a plan, and whether each is certain.
+fn frames(plan: &Value) -> Vec<(Frame, bool)> {
+    let texts =
+        |value: &Value| value.as_array().map(|all| all.iter().map(|text| text.as_str().unwrap().to_owned()).collect());
+    let frame = |frame: &Value| {
+        let words = texts(&frame["wi"]).map(Frame::Words).or_else(|| texts(&frame["bits"]).map(Frame::Bits))?;
+        let depends = frame["depends_on"].as_str();
+        assert!(depends.is_none_or(|on| on.contains(" if ")), "{frame}");
+        Some((words, depends.is_none()))
+    };
+    plan["frames"].as_array().unwrap().iter().filter_map(frame).collect()
+}
+
+/// A simulated controller that takes note of what it is shown.
+struct Bench {
+    runtime: tokio::runtime::Runtime,
+    robot: Robot,
+    link: Link,
+    shown: Arc<Mutex<Vec<Frame>>>,
+}
+
+struct Noting<P>(P, Image, Arc<Mutex<Vec<Frame>>>);
+
+impl<P: std::fmt::Debug> std::fmt::Debug for Noting<P> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl<P: ImagePeer> ImagePeer for Noting<P> {
+    fn input(&mut self, now: Duration, image: Option<&[u8]>) {
+        if let Some(next) = image.and_then(Image::from_bytes) {
+            let (was, is) = (self.1.0, next.0);
+            let mut shown = self.2.lock().unwrap();
+            if is[COMMAND_WORDS..] != was[COMMAND_WORDS..] {
+                shown.push(Frame::Bits(super::link::hex(&is[COMMAND_WORDS..])));
+            }
+            if is[0] != 0 && is[..COMMAND_WORDS] != was[..COMMAND_WORDS] {
+                shown.push(Frame::Words(super::link::hex(&is[..COMMAND_WORDS])));
+            }
+            self.1 = next;
+        }
+        self.0.input(now, image);
+    }
+
+    fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
+        self.0.output(now)
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        self.0.wake()
+    }
+}
+
+impl Bench {
+    fn new() -> Self {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().unwrap();
+        let (simulated, _) = resolved("sim:", &["status"]).unwrap();
+        let shown = Arc::default();
+        let peer = Noting(in_process(&Sim::default()).unwrap(), Image::default(), Arc::clone(&shown));
+        let access = Access::reading(Need::Command);
+        let link = runtime.block_on(Link::to_peer(&simulated, &access, &QUIET, Box::new(peer))).unwrap();
+        // The gate is to take it for a real one.
+        let (robot, _) = real("status");
+        Self { runtime, robot, link, shown }
+    }
+
+    /// Runs a line as the frame does, with `--yes` or where nobody can be asked.
+    fn run(&mut self, line: &str, yes: bool) -> Result<Value, Failure> {
+        let (_, command) = real(line);
+        let intent = command.intent(Some(&self.robot));
+        let gate = Gate { yes, ..Gate::default() };
+        let grant = Grant::of(intent.granted_at_first());
+        let Self { runtime, robot, link, .. } = self;
+        link.set_grant(grant.clone());
+        let authority = Authority::new(gate, &QUIET, robot, intent.risk, grant);
+        let context = Context { robot, link, screen: &QUIET, several: false, authority };
+        let report = runtime.block_on(command.run(context))?;
+        report.failure().map_or_else(|| report.data(), Err)
+    }
+
+    /// What was shown since the last time.
+    fn sent(&mut self) -> Vec<Frame> {
+        std::mem::take(&mut *self.shown.lock().unwrap())
+    }
+}

@@ -1,0 +1,328 @@
+//! Orders that overwrite what a person wrote or taught: what is there is read first, then old and new are confirmed.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::link::{Done, Link};
+use super::position::Unit;
+use super::refusal::refused;
+use super::several::{check_echo, is_about_commands};
+use crate::command::Report;
+use crate::command::authority::Authority;
+use crate::command::dry_run::Reason;
+use crate::controller::Risk;
+use crate::controller::yrcx::answer::Answer;
+use crate::controller::yrcx::order::{Draft, Order};
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::table::parameter::Parameter;
+use crate::controller::yrcx::value::{Key, Value, Values};
+use crate::failure::Failure;
+use crate::gate::{Change, Confirmation};
+use crate::output::view::View;
+
+/// What an order overwrites, and with what.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Replaced {
+    /// `point 7`.
+    what: String,
+    /// What is there; nothing if that is not defined.
+    old: Option<String>,
+    /// What shall be there, as far as that is known before.
+    new: String,
+    /// It is there already, so that there is nothing to write.
+    is_there: bool,
+}
+
+/// How a yes is given to a remote command.
+pub fn confirmation(command: Command) -> Confirmation {
+    match (command, command.row().risk) {
+        (Command::AbsoluteReset, _) => Confirmation::Word("reset"),
+        (_, Risk::Destroy) => Confirmation::WhenKnown,
+        (_, Risk::Read | Risk::Write | Risk::Motion) => Confirmation::Question,
+    }
+}
+
+/// Gives an order. If it overwrites something, that is confirmed first; what is there already is not written.
+pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order) -> Result<Done, Failure> {
+    if confirmation(order.command()) != Confirmation::WhenKnown {
+        return link.run(order).await;
+    }
+    let replaced = confirm(link, authority, order).await?;
+    if replaced.is_there {
+        return Ok(Done { replaced: Some(replaced), ..Done::default() });
+    }
+    if link.is_dry() {
+        let reason =
+            if may_be_there(order.command()) { Reason::default().depending_on(DIFFERS) } else { Reason::default() };
+        link.plan_depending(order, order, reason);
+        return Ok(Done::default());
+    }
+    let done = link.run(order).await?;
+    Ok(Done { replaced: Some(replaced), ..done })
+}
+
+const DIFFERS: &str = "what is there: it is sent if that is something else";
+
+/// Whether what shall be there can be there before.
+fn may_be_there(command: Command) -> bool {
+    // Where the robot is has changed by the time that it is stored.
+    !matches!(command, Command::Teach | Command::PointPallet)
+}
+
+/// Finds out what an order overwrites, and has it confirmed. A dry run notes what is read.
+pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order) -> Result<Replaced, Failure> {
+    let Some((noun, what, read)) = target(order) else {
+        authority.confirm(&Change::new(order.row().name)).await?;
+        return Ok(Replaced { what: order.row().id.to_owned(), ..Replaced::default() });
+    };
+    let old = there(link, &read.build()?, &format!("{what}, which is overwritten")).await?;
+    let old = old.filter(|values| is_defined(order.command(), values));
+    let (new, is_same) = wanted(link, order, old.as_ref()).await?;
+    let old = old.map(|values| told(order.command(), &values));
+    let change = match &old {
+        Some(old) if !is_same => Change::new(format!("overwrite {noun}")).replaces(&what, old, &new),
+        _ => Change::nothing(),
+    };
+    authority.confirm(&change).await?;
+    Ok(Replaced { what, old, new, is_there: is_same && may_be_there(order.command()) })
+}
+
+/// What an order overwrites: what kind of thing, which one, and what reads it.
+fn target(order: &Order) -> Option<(&'static str, String, Draft)> {
+    let values = order.values();
+    let number = |key| values.int(key).unwrap_or_default();
+    let of = |command: Command, key| command.order().with(key, number(key));
+    Some(match order.command() {
+        Command::Teach
+        | Command::PointSet
+        | Command::PointCopy
+        | Command::PointAdd
+        | Command::PointSub
+        | Command::PointPallet
+        | Command::PointElementPulse
+        | Command::PointElementMm => {
+            ("a point", format!("point {}", number(Key::Point)), of(Command::PointGet, Key::Point))
+        }
+        Command::CommentSet => {
+            let what = format!("comment of point {}", number(Key::Point));
+            ("the comment of a point", what, of(Command::CommentGet, Key::Point))
+        }
+        Command::PalletSet => {
+            ("a pallet", format!("pallet {}", number(Key::Pallet)), of(Command::PalletGet, Key::Pallet))
+        }
+        Command::ShiftSet | Command::ShiftElement => {
+            ("a shift", format!("shift {}", number(Key::Shift)), of(Command::ShiftGet, Key::Shift))
+        }
+        Command::HandSet => ("a hand", format!("hand {}", number(Key::Hand)), of(Command::HandGet, Key::Hand)),
+        Command::ParamSet => {
+            let name = Parameter::of(number(Key::Parameter)).map_or("a parameter", |parameter| parameter.name);
+            let axis = number(Key::Axes);
+            let axis = if axis == 0 { String::new() } else { format!(" of axis {}", axis.trailing_zeros() + 1) };
+            let what = format!("{name}{axis}, robot {}", number(Key::Robot).max(1));
+            let read = [Key::Robot, Key::Parameter, Key::Axes].into_iter();
+            let read = read.fold(Command::ParamGet.order(), |draft, key| match values.value(key) {
+                Some(value) => draft.with(key, value.clone()),
+                None => draft,
+            });
+            ("a parameter", what, read)
+        }
+        _ => return None,
+    })
+}
+
+/// Reads what is there; nothing where the controller refuses to tell, as it does of what is not defined.
+async fn there(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>, Failure> {
+    if link.is_dry() {
+        link.plan(order, about);
+        return Ok(None);
+    }
+    match link.try_run(order).await?.answer {
+        Answer::Done(values) | Answer::Running(values) => check_echo(order, &values).map(|()| Some(values)),
+        Answer::Refused { alarm, .. } if is_about_commands(alarm) => Err(refused(order.row(), alarm)),
+        Answer::Refused { .. } => Ok(None),
+    }
+}
+
+/// Whether what was read is something.
+fn is_defined(command: Command, values: &Values) -> bool {
+    match command {
+        Command::CommentSet => values.text(Key::Comment).is_some_and(|text| !text.is_empty()),
+        Command::PalletSet => [Key::CountX, Key::CountY, Key::CountZ].iter().all(|key| values.int(*key) != Some(0)),
+        Command::HandSet => values.int(Key::Owner) != Some(0),
+        _ => true,
+    }
+}
+
+/// What shall be there in words, and whether it is there.
+async fn wanted(link: &mut Link, order: &Order, old: Option<&Values>) -> Result<(String, bool), Failure> {
+    let (command, values) = (order.command(), order.values());
+    let number = |key| values.int(key).unwrap_or_default();
+    let new = match command {
+        Command::Teach => {
+            let is_mm = number(Key::Unit) == 1;
+            let read = if is_mm { Command::PositionMm } else { Command::PositionPulse };
+            let read = read.order().with(Key::Robot, number(Key::Robot)).build()?;
+            let place = there(link, &read, "where the robot is, which is stored").await?;
+            place.map_or(Err("where the robot is".to_owned()), |mut place| {
+                place.set(Key::Unit, i32::from(is_mm));
+                Ok(place)
+            })
+        }
+        Command::PointCopy | Command::PointAdd | Command::PointSub => {
+            let source = Command::PointGet.order().with(Key::Point, number(Key::Point2)).build()?;
+            let about = format!("point {}, which it is computed from", number(Key::Point2));
+            let source = there(link, &source, &about).await?;
+            computed(command, (number(Key::Point), old), (number(Key::Point2), source.as_ref()))
+        }
+        Command::PointPallet => Err(format!("place {} of pallet {}", number(Key::WorkPosition), number(Key::Pallet))),
+        Command::PointElementPulse | Command::PointElementMm | Command::ShiftElement => element(command, values, old),
+        _ => Ok(values.clone()),
+    };
+    Ok(match new {
+        Ok(new) => (told(command, &new), old.is_some_and(|old| is_same(command, old, &new))),
+        Err(words) => (words, false),
+    })
+}
+
+/// A point that the controller computes from two; in words where that is not known.
+fn computed(
+    command: Command,
+    (number, old): (i32, Option<&Values>),
+    (other, source): (i32, Option<&Values>),
+) -> Result<Values, String> {
+    let sign = match command {
+        Command::PointCopy => return source.cloned().ok_or_else(|| format!("point {other}")),
+        Command::PointAdd => 1,
+        _ => -1,
+    };
+    let words = || format!("point {number} {} point {other}", if sign > 0 { "+" } else { "-" });
+    let (old, source) = old.zip(source).ok_or_else(words)?;
+    if old.int(Key::Unit) != source.int(Key::Unit) {
+        return Err(words());
+    }
+    let mut new = old.clone();
+    for key in Key::AXES {
+        let axis = |values: &Values| values.int(key).unwrap_or_default();
+        new.set(key, axis(old).saturating_add(sign * axis(source)));
+    }
+    Ok(new)
+}
+
+/// A point or a shift with one element changed; in words where it is not among those that can be read.
+fn element(command: Command, values: &Values, old: Option<&Values>) -> Result<Values, String> {
+    let number = values.int(Key::Element).unwrap_or_default().trailing_zeros();
+    let value = values.int(Key::Value).unwrap_or_default();
+    let is_mm = command != Command::PointElementPulse;
+    let words = || {
+        let (value, unit) = if is_mm { (mm(value), Unit::Mm) } else { (value.to_string(), Unit::Pulse) };
+        format!("element {} = {value} {}", number + 1, unit.symbol())
+    };
+    let key = usize::try_from(number).ok().and_then(|at| Key::AXES.get(at)).ok_or_else(words)?;
+    let old = old.ok_or_else(words)?;
+    if command != Command::ShiftElement && (old.int(Key::Unit) == Some(1)) != is_mm {
+        return Err(words());
+    }
+    let mut new = old.clone();
+    new.set(*key, value);
+    Ok(new)
+}
+
+/// What a command defines.
+const POINT: [Key; 6] = [Key::Unit, Key::HandSystem, Key::Axis1, Key::Axis2, Key::Axis3, Key::Axis4];
+const HAND: [Key; 4] = [Key::Data1, Key::Data2, Key::Data3, Key::Data4];
+
+/// Whether what is there is what shall be there.
+fn is_same(command: Command, old: &Values, new: &Values) -> bool {
+    let zero = Value::Int(0);
+    let has =
+        |keys: &[Key]| keys.iter().all(|key| old.value(*key).unwrap_or(&zero) == new.value(*key).unwrap_or(&zero));
+    match command {
+        Command::CommentSet => has(&[Key::Comment]),
+        Command::PalletSet => has(&[Key::CountX, Key::CountY, Key::CountZ, Key::FirstPoint]),
+        Command::ShiftSet | Command::ShiftElement => has(&Key::AXES),
+        Command::HandSet => has(&HAND) && owner(old) == owner(new),
+        Command::ParamSet => has(&[Key::Value]),
+        _ => has(&POINT),
+    }
+}
+
+/// The robot that has a hand, or gets it.
+fn owner(hand: &Values) -> i32 {
+    hand.int(Key::Owner).or_else(|| hand.int(Key::Robot)).unwrap_or_default().max(1)
+}
+
+/// What a command defines, in words.
+fn told(command: Command, values: &Values) -> String {
+    let number = |key| values.int(key).unwrap_or_default();
+    match command {
+        Command::CommentSet => format!("'{}'", values.text(Key::Comment).unwrap_or_default()),
+        Command::PalletSet => {
+            let [nx, ny, nz] = [Key::CountX, Key::CountY, Key::CountZ].map(number);
+            format!("{nx} x {ny} x {nz}, first point {}", number(Key::FirstPoint))
+        }
+        Command::ShiftSet | Command::ShiftElement => four(values, Unit::Mm),
+        Command::HandSet => {
+            let place = if number(Key::Data4) == 0 { "" } else { ", on the R axis" };
+            let [first, second, third] =
+                [number(Key::Data1).to_string(), mm(number(Key::Data2)), mm(number(Key::Data3))];
+            format!("{first}, {second} mm, {third} mm{place}, robot {}", owner(values))
+        }
+        Command::ParamSet => {
+            let unit = Parameter::of(number(Key::Parameter)).map_or("", |parameter| parameter.unit);
+            format!("{} {unit}", number(Key::Value)).trim_end().to_owned()
+        }
+        _ => {
+            let unit = if number(Key::Unit) == 1 { Unit::Mm } else { Unit::Pulse };
+            let hand = match number(Key::HandSystem) {
+                1 => ", right-handed",
+                2 => ", left-handed",
+                _ => "",
+            };
+            format!("{}{hand}", four(values, unit))
+        }
+    }
+}
+
+fn four(values: &Values, unit: Unit) -> String {
+    let axis = |key| {
+        let value = values.int(key).unwrap_or_default();
+        if unit == Unit::Mm { mm(value) } else { value.to_string() }
+    };
+    format!("{} {}", Key::AXES.map(axis).join(", "), unit.symbol())
+}
+
+fn mm(steps: i32) -> String {
+    format!("{:.3}", f64::from(steps) / 1000.0)
+}
+
+/// Something that was stored by its number.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Stored {
+    /// In words.
+    done: String,
+    /// Whether it was written; false where it was so already.
+    written: bool,
+    /// What it was, with its unit; null if it was not defined.
+    old: Option<String>,
+    /// What it is, with its unit, as far as that is known.
+    new: String,
+    #[serde(skip)]
+    what: String,
+}
+
+impl Stored {
+    /// What was done, in words, and what became of it.
+    pub fn new(done: impl Into<String>, given: &Done) -> Self {
+        let Replaced { what, old, new, is_there } = given.replaced.clone().unwrap_or_default();
+        Self { done: done.into(), written: !is_there, old, new, what }
+    }
+}
+
+impl Report for Stored {
+    fn view(&self) -> View {
+        if self.written {
+            return View::text(self.done.clone());
+        }
+        View::text(format!("{}: {} already; nothing was written", self.what, self.new))
+    }
+}

@@ -1,0 +1,134 @@
+//! What holds for a YRCX controller.
+
+use crate::desk::Desk;
+use crate::simulator::Simulator;
+
+fn entry(url: &str, more: &str) -> String {
+    format!("[[robot]]\nname = \"cell\"\ntarget = \"{url}\"\n{more}\n")
+}
+
+/// A desk with a controller whose connection a session holds.
+fn held(controller: &Simulator) -> Desk {
+    let desk = Desk::new(&entry(&controller.url, ""));
+    assert_eq!(desk.run("-r cell session open --background").exit, Some(0));
+    desk
+}
+
+#[test]
+fn taught_points_are_not_overwritten_unasked() {
+    let controller = Simulator::start("yrcx");
+    let desk = held(&controller);
+    let point = || desk.data("-r cell yrcx point get 1")["points"][0]["position_mm"].to_string();
+    let before = point();
+    for (order, old_and_new) in [
+        ("point set 1 --mm 1,2,3,4", "point 1: 100.000, 100.000, 0.000, 0.000 mm -> 1.000, 2.000, 3.000, 4.000 mm"),
+        ("teach --point 1 --in mm", "point 1: 100.000, 100.000, 0.000, 0.000 mm -> "),
+        ("point-calc copy 3 --to 1", "100.000, 100.000, 0.000, 0.000 mm -> 200.000, -100.000, 0.000, 0.000 mm"),
+        ("point-calc element 1 --element 1 --mm 5", "0.000 mm -> 5.000, 100.000, 0.000, 0.000 mm"),
+        ("comment set 50 NEW", "comment of point 50: 'WAIT ORG' -> 'NEW'"),
+        (
+            "pallet-data set 10 --nx 2 --ny 2 --first-point 1",
+            "10 x 15 x 1, first point 110 -> 2 x 2 x 1, first point 1",
+        ),
+        ("shift-data set 4 --mm 1,2,3,4", "shift 4: 10.000, 0.000, 0.000, 0.000 mm -> 1.000"),
+        ("hand-data set 1 --data-1 1 --data-2 2 --data-3 3", "10000, -2.000 mm, 5.000 mm, robot 1 -> 1, 2.000 mm"),
+        ("param set TOLE 100 --axis 1", "TOLE of axis 1, robot 1: 80 pulses -> 100 pulses"),
+        ("raw --wi 0x100,1,1", "point 1: 100.000, 100.000, 0.000, 0.000 mm -> 0.000"),
+    ] {
+        desk.fails(&format!("-r cell yrcx {order}"), 7, old_and_new);
+    }
+    assert_eq!(point(), before);
+    let stored = desk.data("-r cell yrcx point set 1 --mm 1,2,3,4 --yes");
+    assert_eq!((&stored["written"], &stored["old"]), (&true.into(), &"100.000, 100.000, 0.000, 0.000 mm".into()));
+    // What is there already, and what is new, wants no yes.
+    let again = desk.run("-r cell yrcx point set 1 --mm 1,2,3,4");
+    assert!(again.exit == Some(0) && again.stdout.contains("already; nothing was written"), "{again:?}");
+    assert_eq!(desk.data("-r cell yrcx point set 7 --mm 1,2,3,4")["old"], serde_json::Value::Null);
+    assert_eq!(desk.run("session close cell").exit, Some(0));
+}
+
+#[test]
+fn what_wants_a_word_wants_it_with_its_connection_too() {
+    let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
+    let refused = desk.run("-r cell yrcx abs-reset --axis 2");
+    assert_eq!(refused.exit, Some(7));
+    for part in ["make the place where axis 2 of robot 1 stands its reset position", "and take the command connection"]
+    {
+        assert!(refused.stderr.contains(part), "{refused:?}");
+    }
+}
+
+#[test]
+fn a_restore_asks_once_with_old_and_new() {
+    let controller = Simulator::start("yrcx");
+    let desk = held(&controller);
+    desk.data("-r cell yrcx backup saved --only shifts,pallets");
+    assert_eq!(desk.run("-r cell yrcx restore saved").exit, Some(0), "nothing differs");
+    desk.data("-r cell yrcx shift-data set 4 --mm 1,2,3,4 --yes");
+    desk.data("-r cell yrcx pallet-data set 10 --nx 2 --ny 2 --first-point 1 --yes");
+    for restore in ["yrcx restore saved", "restore saved"] {
+        desk.fails(&format!("-r cell {restore}"), 7, "this would overwrite ");
+    }
+    desk.fails("-r cell yrcx restore saved", 7, "overwrite 2 values by those of saved (shifts 4: 1.000 ");
+    let restored = desk.data("-r cell yrcx restore saved --yes");
+    let written: Vec<u64> =
+        restored["files"].as_array().unwrap().iter().map(|item| item["written"].as_u64().unwrap()).collect();
+    assert_eq!(written, [1, 1]);
+    assert_eq!(desk.run("session close cell").exit, Some(0));
+}
+
+#[test]
+fn a_reset_ends_in_no_circle() {
+    let controller = Simulator::start("yrcx");
+    let desk = Desk::new(&entry(&controller.url, ""));
+    // Said before the connection is taken.
+    desk.fails("-r cell yrcx alarm reset", 7, "alarm 12.551 (`armctl session open` keeps a connection open)");
+    assert_eq!(desk.run("-r cell yrcx alarm reset --yes").exit, Some(0));
+    let again = desk.run("-r cell yrcx alarm reset --yes");
+    assert!(again.stderr.contains("raises alarm 12.551 again") && again.stderr.contains("`yrcx recover`"), "{again:?}");
+    assert_eq!(desk.run("-r cell session open --background").exit, Some(0));
+    let reset = desk.run("-r cell yrcx alarm reset");
+    assert!(reset.exit == Some(0) && reset.stderr.contains("`yrcx recover`"), "{reset:?}");
+    assert_eq!(desk.run("-r cell yrcx recover --yes").exit, Some(0));
+    let status = desk.data("-r cell yrcx status");
+    assert_eq!((&status["alarm"], &status["servo_on"]), (&false.into(), &true.into()));
+    assert_eq!(desk.run("session close cell").exit, Some(0));
+}
+
+#[test]
+fn a_read_only_controller_is_stopped_and_looked_at() {
+    let controller = Simulator::start("yrcx");
+    let desk = Desk::new(&entry(&controller.url, "read_only = true"));
+    for order in ["info version", "alarm reset", "var set SGI1 1", "teach --point 1 --in mm", "run", "status --full"] {
+        desk.fails(&format!("-r cell yrcx {order} --yes"), 7, "is read-only");
+    }
+    for look in ["status", "io get", "eip identity"] {
+        assert_eq!(desk.run(&format!("-r cell yrcx {look}")).exit, Some(0), "{look}");
+    }
+    for stop in ["stop", "emergency-stop"] {
+        assert_eq!(desk.run(&format!("-r cell yrcx {stop}")).exit, Some(0), "{stop}");
+    }
+}
+
+#[test]
+fn what_would_end_with_the_connection_is_refused_before_anybody_is_asked() {
+    let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
+    desk.fails("-r cell yrcx move --point 1 --no-wait", 2, "the connection would end now");
+}
+
+#[test]
+fn dry_runs_go_to_their_end() {
+    let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
+    let set = desk.data("-r cell yrcx point set 7 --mm 1,2,3,4 --dry-run");
+    let codes: Vec<&str> =
+        set["frames"].as_array().unwrap().iter().map(|frame| frame["wi"][0].as_str().unwrap()).collect();
+    assert_eq!(codes, ["0x0101", "0x0100"]);
+    assert!(set["frames"][1]["depends_on"].as_str().unwrap().contains("if that is something else"));
+    let run = desk.data("-r cell yrcx recover --dry-run");
+    let edges: Vec<&str> =
+        run["frames"].as_array().unwrap().iter().map(|frame| frame["about"].as_str().unwrap()).collect();
+    assert_eq!(edges.len(), 5, "{edges:?}");
+    let backup = desk.data("-r cell yrcx backup new --dry-run");
+    assert_eq!(backup["complete"], false);
+    assert!(backup["then"].as_str().unwrap().contains("comments"), "{}", backup["then"]);
+}
