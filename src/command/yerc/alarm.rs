@@ -55,7 +55,7 @@ impl Command for List {
         let link = context.link;
         let mut texts = !self.no_texts;
         let question = |slot, texts| ReadAlarm::new(slot, texts).map_err(usage);
-        link.rehearse(&(1..=SLOTS).map(|slot| question(slot, texts)).collect::<Result<Vec<_>, _>>()?)?;
+        link.dry_run(&(1..=SLOTS).map(|slot| question(slot, texts)).collect::<Result<Vec<_>, _>>()?)?;
         let mut alarms = Vec::new();
         let mut round = Round::default();
         for slot in 1..=SLOTS {
@@ -131,7 +131,7 @@ impl Command for History {
         let classes = CLASSES.iter().filter(|row| self.class == Class::All || self.class == row.0);
         let question = |class, number, texts| ReadAlarmHistory::new(class, number, texts).map_err(usage);
         let all = classes.clone().flat_map(|row| numbers.clone().map(|number| question(row.1, number, texts)));
-        link.rehearse(&all.collect::<Result<Vec<_>, _>>()?)?;
+        link.dry_run(&all.collect::<Result<Vec<_>, _>>()?)?;
         let mut alarms = Vec::new();
         let mut asked = 0;
         let mut round = Round::default();

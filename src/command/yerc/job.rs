@@ -11,10 +11,11 @@ use tokio::time::Instant;
 use super::Family;
 use super::each::{Denied, Outcome};
 use super::link::Link;
-use super::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost};
+use super::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost, plan_alarm};
 use super::numbers::within;
 use super::orders::{refuse_controls, usage};
 use crate::command::ValueKind;
+use crate::command::dry_run::unknown;
 use crate::command::items::{self, ItemError};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -25,6 +26,7 @@ use crate::controller::yerc::payload::{ControllerStatus, JobInfo};
 use crate::controller::yerc::query::{Query, ReadJob, ReadStatus, SelectJob, Selection, StartJob};
 use crate::controller::yerc::status::{self, is_absent};
 use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation};
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::settings::duration;
 
@@ -290,10 +292,21 @@ impl Command for Start {
         "start the selected job".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Started, Failure> {
         let link = context.link;
-        link.ask(&StartJob).await?;
-        let Some(limit) = self.wait else { return Ok(Started { accepted: true, ended: None, elapsed_ms: None }) };
+        let (change, job) = self.known(link).await?;
+        context.authority.confirm(&change).await?;
+        link.is_for("starts it").ask(&StartJob).await?;
+        let Some(limit) = self.wait else { return Ok(Started { accepted: true, job, ended: None, elapsed_ms: None }) };
+        if link.is_dry() {
+            link.plan(&ReadStatus.request(), "again and again until the job has ended");
+            plan_alarm(link)?;
+            return Err(unknown());
+        }
         let progress = context.screen.spinner("the job runs");
         let began = Instant::now();
         let mut watch = Watch::new(limit);
@@ -316,7 +329,34 @@ impl Command for Start {
             tokio::time::sleep(LOOK_EVERY).await;
         }
         let elapsed_ms = u64::try_from(began.elapsed().as_millis()).ok();
-        Ok(Started { accepted: true, ended: Some(true), elapsed_ms })
+        Ok(Started { accepted: true, job, ended: Some(true), elapsed_ms })
+    }
+}
+
+impl Start {
+    /// What the question says, and the job, as far as the controller tells it.
+    async fn known(&self, link: &mut Link) -> Result<(Change, Option<String>), Failure> {
+        let unnamed = |why: &str| (Change::new("start the selected job").note(why), None);
+        let question = ReadJob::new(link.model, 0).map_err(usage)?;
+        let info = match link.is_for("which job is selected").try_ask(&question).await {
+            Err(failure) if failure.kind == Kind::NotKnown => return Ok(unnamed("")),
+            Err(failure) if failure.kind == Kind::Malformed => {
+                return Ok(unnamed(&format!("Which job that is could not be read: {}", failure.message)));
+            }
+            answer => answer?,
+        };
+        let info = match info {
+            Ok(info) if info.name.is_empty() => return Ok(unnamed("The controller names no job.")),
+            Ok(info) => info,
+            Err(refusal) => {
+                let refused = Failure::from(refusal).message;
+                return Ok(unnamed(&format!("Which job that is could not be read: {refused}")));
+            }
+        };
+        let job = link.encoding.decode(info.name.as_bytes());
+        let percent = units::PERCENT.show_unsigned(info.speed_override);
+        let change = Change::new(format!("start job {job} from line {} on", info.line));
+        Ok((change.note(format!("The speed override is {percent} %.")), Some(job)))
     }
 }
 
@@ -388,6 +428,8 @@ impl Watch {
 pub struct Started {
     /// The controller took the order.
     accepted: bool,
+    /// Its name, as the controller told it before; null if it did not.
+    job: Option<String>,
     /// Whether it has ended; null if nobody waited.
     ended: Option<bool>,
     /// From the acceptance to the end; null if nobody waited.
@@ -397,8 +439,15 @@ pub struct Started {
 impl Report for Started {
     fn view(&self) -> View {
         match self.elapsed_ms {
-            None => View::fields([("job", Cell::from("started").tone(Tone::Good))]),
-            Some(ms) => View::fields([("job", Cell::from("ended").tone(Tone::Good)), ("elapsed (ms)", ms.into())]),
+            None => View::fields([
+                ("job", Cell::maybe(self.job.as_deref())),
+                ("state", Cell::from("started").tone(Tone::Good)),
+            ]),
+            Some(ms) => View::fields([
+                ("job", Cell::maybe(self.job.as_deref())),
+                ("state", Cell::from("ended").tone(Tone::Good)),
+                ("elapsed (ms)", ms.into()),
+            ]),
         }
     }
 }
@@ -449,8 +498,11 @@ mod tests {
 
     #[test]
     fn a_start_is_one_frame_and_a_motion() {
-        assert_eq!(frames("job start").unwrap(), ["860001000110000001000000"]);
-        assert_eq!(frames("job start --wait 2m").unwrap(), ["860001000110000001000000"]);
+        let start = ["7300010000010000".to_owned(), "860001000110000001000000".to_owned()];
+        assert_eq!(frames("job start").unwrap(), start);
+        let waiting = frames("job start --wait 2m").unwrap();
+        assert_eq!(waiting[..2], start);
+        assert_eq!(waiting[2..], ["7200010000010000", "7000010000010000"], "the status until it has ended");
         assert_eq!(intent("job start"), "start the selected job");
         assert_eq!(StartJob.risk(), Risk::Motion);
     }

@@ -6,6 +6,8 @@ mod check;
 mod each;
 pub mod file;
 mod fitted;
+#[cfg(test)]
+mod gated;
 mod hours;
 mod info;
 mod io;

@@ -12,6 +12,7 @@ use crate::command::overview::{Fleet, Link};
 use crate::command::{Command, Context, toyo, yerc, yrcx};
 use crate::controller::Risk;
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 use crate::settings::target::Family;
 
 /// Writes back what a backup holds.
@@ -55,6 +56,14 @@ impl Command for Restore {
 
     fn intent(&self) -> String {
         "overwrite what the controller stores by the backup".to_owned()
+    }
+
+    fn confirmation(&self) -> Confirmation {
+        match self.family() {
+            // These know what differs before they ask.
+            Some(Family::Yerc) => Confirmation::WhenKnown,
+            _ => Confirmation::Question,
+        }
     }
 
     async fn run(&self, context: Context<'_, Fleet>) -> Result<Restored, Failure> {

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::command::yerc::testing::{Bench, DX200, FS100, frames_on, rehearse, same};
+use crate::command::yerc::testing::{Bench, DX200, FS100, dry_run, frames_on, same};
 
 /// [`same`] with words that are made.
 #[track_caller]
@@ -58,7 +58,7 @@ fn many_variables_are_a_handful_of_requests() {
 #[test]
 fn what_cannot_be_meant_is_not_sent() {
     let failed = |words: &[&str]| {
-        let failure = rehearse(DX200, words).unwrap_err();
+        let failure = dry_run(DX200, words).unwrap_err();
         assert_eq!(failure.kind.exit(), 2, "{words:?}");
         format!("{} {}", failure.message, failure.hint.unwrap_or_default())
     };
