@@ -1,5 +1,7 @@
 //! Asks for a yes where the gate wants one, before a command begins and while it runs.
 
+use std::sync::{Mutex, PoisonError};
+
 use super::interrupt::{catch_interrupts, interruptible};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
@@ -72,6 +74,9 @@ enum Question {
     Word(String, &'static str),
 }
 
+/// Who asks.
+static TURN: Mutex<()> = Mutex::new(());
+
 /// Asks on a thread of its own, so that Ctrl-C is heard meanwhile. `otherwise` is how things are after a no.
 async fn ask(
     screen: &Screen,
@@ -85,6 +90,8 @@ async fn ask(
     let screen = *screen;
     let who = format!("REAL CONTROLLER: {} ({}, {})", robot.name, robot.family, robot.target.value.url());
     let asked = tokio::task::spawn_blocking(move || {
+        // Several robots may have something to ask: one after the other.
+        let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         screen.ask_note(&who);
         lines.iter().for_each(|line| screen.ask_note(line));
         match question {

@@ -298,7 +298,7 @@ impl Command for Start {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Started, Failure> {
         let link = context.link;
-        let (change, job) = self.known(link).await?;
+        let (change, job) = selected(link).await?;
         context.authority.confirm(&change).await?;
         link.is_for("starts it").ask(&StartJob).await?;
         let Some(limit) = self.wait else { return Ok(Started { accepted: true, job, ended: None, elapsed_ms: None }) };
@@ -333,31 +333,29 @@ impl Command for Start {
     }
 }
 
-impl Start {
-    /// What the question says, and the job, as far as the controller tells it.
-    async fn known(&self, link: &mut Link) -> Result<(Change, Option<String>), Failure> {
-        let unnamed = |why: &str| (Change::new("start the selected job").note(why), None);
-        let question = ReadJob::new(link.model, 0).map_err(usage)?;
-        let info = match link.is_for("which job is selected").try_ask(&question).await {
-            Err(failure) if failure.kind == Kind::NotKnown => return Ok(unnamed("")),
-            Err(failure) if failure.kind == Kind::Malformed => {
-                return Ok(unnamed(&format!("Which job that is could not be read: {}", failure.message)));
-            }
-            answer => answer?,
-        };
-        let info = match info {
-            Ok(info) if info.name.is_empty() => return Ok(unnamed("The controller names no job.")),
-            Ok(info) => info,
-            Err(refusal) => {
-                let refused = Failure::from(refusal).message;
-                return Ok(unnamed(&format!("Which job that is could not be read: {refused}")));
-            }
-        };
-        let job = link.encoding.decode(info.name.as_bytes());
-        let percent = units::PERCENT.show_unsigned(info.speed_override);
-        let change = Change::new(format!("start job {job} from line {} on", info.line));
-        Ok((change.note(format!("The speed override is {percent} %.")), Some(job)))
+/// What the question says, and the name of the job, as far as the controller tells it.
+async fn selected(link: &mut Link) -> Result<(Change, Option<String>), Failure> {
+    let unnamed = || Change::new("start the selected job");
+    let unread = |failure: &Failure| {
+        let why = failure.message.trim_end_matches('.');
+        (unnamed().note(format!("Which job that is could not be read: {why}.")), None)
+    };
+    let question = ReadJob::new(link.model, 0).map_err(usage)?;
+    let info = match link.is_for("which job is selected").try_ask(&question).await {
+        Ok(Ok(info)) => info,
+        Ok(Err(refusal)) => return Ok(unread(&refusal.into())),
+        Err(failure) if failure.kind == Kind::Malformed => return Ok(unread(&failure)),
+        Err(failure) if failure.kind == Kind::NotKnown => return Ok((unnamed(), None)),
+        Err(failure) => return Err(failure),
+    };
+    if info.name.is_empty() {
+        return Ok((unnamed().note("The controller names no job."), None));
     }
+    let job = link.encoding.decode(info.name.as_bytes());
+    let from = if info.line == 0 { String::new() } else { format!(" from line {} on", info.line) };
+    let percent = units::PERCENT.show_unsigned(info.speed_override);
+    let change = Change::new(format!("start job {job}{from}")).note(format!("The speed override is {percent} %."));
+    Ok((change, Some(job)))
 }
 
 /// Job and line for the eye, where there is one; a controller that refuses is not asked to explain here.
