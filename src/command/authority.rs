@@ -50,11 +50,16 @@ impl<'a> Authority<'a> {
         Authority { gate: self.gate, screen, robot, most: self.most, grant: self.grant.clone() }
     }
 
+    /// Whether a person is asked before a change: then time passes, in which others may change something.
+    pub fn asks(&self) -> bool {
+        self.gate.needs_yes(self.robot, self.most) && self.grant.get() < self.most
+    }
+
     /// Asks whether `change` shall be made, and lets it through. Nothing has been changed so far; what changes nothing
     /// that a person wrote or taught is let through without a question.
     pub async fn confirm(&self, change: &Change) -> Result<(), Failure> {
         let risk = self.most;
-        if !change.is_empty() && self.gate.needs_yes(self.robot, risk) && self.grant.get() < risk {
+        if !change.is_empty() && self.asks() {
             let text = change.in_a_line();
             if !self.screen.can_ask() {
                 return Err(unasked(self.robot, risk, &text));

@@ -4,6 +4,7 @@ use serde_json::Value;
 
 use crate::desk::Desk;
 use crate::simulator::Simulator;
+use crate::terminal::Terminal;
 
 const JOB: &str = "/JOB\r\n//NAME NEW\r\n//POS\r\n///NPOS 0,0,0,0,0,0\r\n//INST\r\nNOP\r\nEND\r\n";
 
@@ -108,6 +109,23 @@ fn a_job_is_started_by_its_name() {
     assert_eq!(desk.run("-r cell yerc job select TESTJOB").exit, Some(0));
     assert_eq!(desk.data("-r cell yerc job start --yes")["job"], "TESTJOB");
     assert_eq!(frames(&desk, "job start"), [("7300 0100 01".to_owned(), false), ("8600 0100 10".to_owned(), false)]);
+}
+
+/// What a person said yes to is what is started.
+#[test]
+fn a_job_that_was_not_asked_about_is_not_started() {
+    let controller = Simulator::start("yerc");
+    let desk = desk(&controller);
+    assert_eq!(desk.run("-r cell yerc servo on --yes").exit, Some(0));
+    for (meanwhile, exit) in [("MAIN", 7), ("COUNT", 0)] {
+        assert_eq!(desk.run("-r cell yerc job select COUNT").exit, Some(0));
+        let mut terminal = Terminal::start(desk.command("-r cell yerc job start"), 100, 30).unwrap();
+        terminal.says("This will start job COUNT.");
+        terminal.says("Continue?");
+        assert_eq!(desk.run(&format!("-r cell yerc job select {meanwhile}")).exit, Some(0));
+        terminal.press("y\n");
+        assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
+    }
 }
 
 #[test]

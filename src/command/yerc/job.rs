@@ -9,6 +9,7 @@ use serde::Serialize;
 use tokio::time::Instant;
 
 use super::Family;
+use super::chosen::Chosen;
 use super::each::{Denied, Outcome};
 use super::link::Link;
 use super::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost, plan_alarm};
@@ -26,7 +27,7 @@ use crate::controller::yerc::payload::{ControllerStatus, JobInfo};
 use crate::controller::yerc::query::{Query, ReadJob, ReadStatus, SelectJob, Selection, StartJob};
 use crate::controller::yerc::status::{self, is_absent};
 use crate::failure::{Failure, Kind};
-use crate::gate::{Change, Confirmation};
+use crate::gate::Confirmation;
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::settings::duration;
 
@@ -298,8 +299,13 @@ impl Command for Start {
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Started, Failure> {
         let link = context.link;
-        let (change, job) = selected(link).await?;
-        context.authority.confirm(&change).await?;
+        let chosen = Chosen::ask(link).await?;
+        let is_asked = context.authority.asks();
+        context.authority.confirm(&chosen.change(link.encoding)).await?;
+        if is_asked {
+            chosen.check_again(link).await?;
+        }
+        let job = chosen.name(link.encoding);
         link.is_for("starts it").ask(&StartJob).await?;
         let Some(limit) = self.wait else { return Ok(Started { accepted: true, job, ended: None, elapsed_ms: None }) };
         if link.is_dry() {
@@ -331,31 +337,6 @@ impl Command for Start {
         let elapsed_ms = u64::try_from(began.elapsed().as_millis()).ok();
         Ok(Started { accepted: true, job, ended: Some(true), elapsed_ms })
     }
-}
-
-/// What the question says, and the name of the job, as far as the controller tells it.
-async fn selected(link: &mut Link) -> Result<(Change, Option<String>), Failure> {
-    let unnamed = || Change::new("start the selected job");
-    let unread = |failure: &Failure| {
-        let why = failure.message.trim_end_matches('.');
-        (unnamed().note(format!("Which job that is could not be read: {why}.")), None)
-    };
-    let question = ReadJob::new(link.model, 0).map_err(usage)?;
-    let info = match link.is_for("which job is selected").try_ask(&question).await {
-        Ok(Ok(info)) => info,
-        Ok(Err(refusal)) => return Ok(unread(&refusal.into())),
-        Err(failure) if failure.kind == Kind::Malformed => return Ok(unread(&failure)),
-        Err(failure) if failure.kind == Kind::NotKnown => return Ok((unnamed(), None)),
-        Err(failure) => return Err(failure),
-    };
-    if info.name.is_empty() {
-        return Ok((unnamed().note("The controller names no job."), None));
-    }
-    let job = link.encoding.decode(info.name.as_bytes());
-    let from = if info.line == 0 { String::new() } else { format!(" from line {} on", info.line) };
-    let percent = units::PERCENT.show_unsigned(info.speed_override);
-    let change = Change::new(format!("start job {job}{from}")).note(format!("The speed override is {percent} %."));
-    Ok((change, Some(job)))
 }
 
 /// Job and line for the eye, where there is one; a controller that refuses is not asked to explain here.

@@ -3,6 +3,7 @@
 mod alarm;
 mod axes;
 mod check;
+mod chosen;
 mod each;
 pub mod file;
 mod fitted;
