@@ -205,10 +205,8 @@ fn an_order_leaves_once_and_its_outcome_is_told_unknown() {
         for (order, hint) in ORDERS {
             scope.spawn(move || {
                 // What is asked before is refused, which says nothing against the order.
-                let controller = Controller::new(|asked| match asked.is_read() {
-                    true => Reaction::Refuse(0xA001),
-                    false => Reaction::Silence,
-                });
+                let controller =
+                    Controller::new(|asked| if asked.is_read() { Reaction::Refuse(0xA001) } else { Reaction::Silence });
                 let output = controller.run(&format!("{order} --timeout 700ms --retries 9"));
                 assert_eq!(output.status.code(), Some(6), "{order}: {}", stderr(&output));
                 assert_eq!(controller.changes().len(), 1, "{order}");

@@ -62,7 +62,9 @@ impl Command for Position {
         let questions: Vec<ReadPosition> = wanted.iter().map(question).collect::<Result<_, _>>().map_err(usage)?;
         let mut report = PositionReport::nowhere(self.group);
         let Some(outcomes) = link.ask_each(&questions).await.known()? else {
-            wanted.iter().for_each(|coordinates| link.plan_fit(self.group, *coordinates));
+            for coordinates in wanted {
+                link.plan_fit(self.group, *coordinates);
+            }
             return Err(unknown());
         };
         for (coordinates, outcome) in wanted.iter().zip(outcomes) {

@@ -25,10 +25,10 @@ impl Lists {
     /// Asks for the lists that tell about these files; `None` in a dry run, which notes the requests.
     pub async fn ask<'a>(
         link: &mut Link,
-        named: impl IntoIterator<Item = &'a FileName>,
+        asked: impl IntoIterator<Item = &'a FileName>,
     ) -> Result<Option<Self>, Failure> {
         let mut types: Vec<FileType> = Vec::new();
-        for kind in named.into_iter().filter_map(FileName::file_type) {
+        for kind in asked.into_iter().filter_map(FileName::file_type) {
             if !types.contains(&kind) {
                 types.push(kind);
             }

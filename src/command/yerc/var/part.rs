@@ -126,7 +126,9 @@ pub fn plan_reads(link: &mut Link, words: &Words) {
 pub fn plan_writes(link: &mut Link, words: &Words) -> Result<(), Failure> {
     for (reference, words) in words {
         let write = |mut position: Position| {
-            words.iter().for_each(|word| word.set(&mut position));
+            for word in words {
+                word.set(&mut position);
+            }
             WriteVariable::new(reference.number, Value::Position(position)).map_err(usage)
         };
         // Two positions of which no byte is the same.
