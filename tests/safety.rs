@@ -204,10 +204,12 @@ fn an_order_leaves_once_and_its_outcome_is_told_unknown() {
     std::thread::scope(|scope| {
         for (order, hint) in ORDERS {
             scope.spawn(move || {
-                let controller = Controller::new(|_| Reaction::Silence);
+                // What is asked before is refused, which says nothing against the order.
+                let controller =
+                    Controller::new(|asked| if asked.is_read() { Reaction::Refuse(0xA001) } else { Reaction::Silence });
                 let output = controller.run(&format!("{order} --timeout 700ms --retries 9"));
                 assert_eq!(output.status.code(), Some(6), "{order}: {}", stderr(&output));
-                assert_eq!(controller.asked.lock().unwrap().len(), 1, "{order}");
+                assert_eq!(controller.changes().len(), 1, "{order}");
                 assert!(stderr(&output).contains(hint), "{order}: {}", stderr(&output));
             });
         }

@@ -317,7 +317,7 @@ fn a_job_under_another_name_is_warned_of_and_a_plain_last_ack_is_looked_after() 
         let is_list = request.division == Division::File && request.service == 0x32;
         if is_list { refused(request, 0x2110) } else { None }
     });
-    let (exit, _, error) = run(folder.path(), &unlisted, "file put NEW.JBI");
+    let (exit, _, error) = run(folder.path(), &unlisted, "file put NEW.JBI --yes");
     assert_eq!(exit, 6, "{error}");
 }
 

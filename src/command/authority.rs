@@ -1,5 +1,7 @@
 //! Asks for a yes where the gate wants one, before a command begins and while it runs.
 
+use std::sync::{Mutex, PoisonError};
+
 use super::interrupt::{catch_interrupts, interruptible};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
@@ -48,11 +50,16 @@ impl<'a> Authority<'a> {
         Authority { gate: self.gate, screen, robot, most: self.most, grant: self.grant.clone() }
     }
 
+    /// Whether a person is asked before a change: then time passes, in which others may change something.
+    pub fn asks(&self) -> bool {
+        self.gate.needs_yes(self.robot, self.most) && self.grant.get() < self.most
+    }
+
     /// Asks whether `change` shall be made, and lets it through. Nothing has been changed so far; what changes nothing
     /// that a person wrote or taught is let through without a question.
     pub async fn confirm(&self, change: &Change) -> Result<(), Failure> {
         let risk = self.most;
-        if !change.is_empty() && self.gate.needs_yes(self.robot, risk) && self.grant.get() < risk {
+        if !change.is_empty() && self.asks() {
             let text = change.in_a_line();
             if !self.screen.can_ask() {
                 return Err(unasked(self.robot, risk, &text));
@@ -72,6 +79,9 @@ enum Question {
     Word(String, &'static str),
 }
 
+/// Who asks.
+static TURN: Mutex<()> = Mutex::new(());
+
 /// Asks on a thread of its own, so that Ctrl-C is heard meanwhile. `otherwise` is how things are after a no.
 async fn ask(
     screen: &Screen,
@@ -85,6 +95,8 @@ async fn ask(
     let screen = *screen;
     let who = format!("REAL CONTROLLER: {} ({}, {})", robot.name, robot.family, robot.target.value.url());
     let asked = tokio::task::spawn_blocking(move || {
+        // Several robots may have something to ask: one after the other.
+        let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         screen.ask_note(&who);
         lines.iter().for_each(|line| screen.ask_note(line));
         match question {

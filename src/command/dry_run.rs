@@ -147,8 +147,8 @@ impl Report for DryRun {
             explained.row([(index + 1).into(), purpose(frame).unwrap_or_default().into(), shown.into()]);
         }
         if let Some(then) = &self.then {
-            plain.row(["...".into(), then.as_str().into()]);
-            explained.row(["...".into(), then.as_str().into(), "".into()]);
+            plain.row(["…".into(), then.as_str().into()]);
+            explained.row(["…".into(), then.as_str().into(), "".into()]);
         }
         let has_purpose = self.frames.iter().any(|frame| purpose(frame).is_some());
         View::table(if has_purpose { explained } else { plain })

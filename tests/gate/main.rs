@@ -4,7 +4,10 @@
 
 #[path = "../support/simulator.rs"]
 mod simulator;
+#[path = "../support/terminal.rs"]
+mod terminal;
 
 mod desk;
 mod frame;
+mod yerc;
 mod yrcx;

@@ -9,6 +9,7 @@ use super::each::{Denied, Outcome, Round};
 use super::link::Link;
 use super::numbers::within;
 use super::orders::usage;
+use crate::command::dry_run::Reason;
 use crate::command::items::{self, ItemError, ItemOutcome};
 use crate::command::orders::Done;
 use crate::command::{Command, Context, Report, commands, sample};
@@ -55,7 +56,8 @@ impl Command for List {
         let link = context.link;
         let mut texts = !self.no_texts;
         let question = |slot, texts| ReadAlarm::new(slot, texts).map_err(usage);
-        link.rehearse(&(1..=SLOTS).map(|slot| question(slot, texts)).collect::<Result<Vec<_>, _>>()?)?;
+        let all = (1..=SLOTS).map(|slot| question(slot, texts)).collect::<Result<Vec<_>, _>>()?;
+        plan(link, &all, texts, &question(1, false)?)?;
         let mut alarms = Vec::new();
         let mut round = Round::default();
         for slot in 1..=SLOTS {
@@ -131,7 +133,9 @@ impl Command for History {
         let classes = CLASSES.iter().filter(|row| self.class == Class::All || self.class == row.0);
         let question = |class, number, texts| ReadAlarmHistory::new(class, number, texts).map_err(usage);
         let all = classes.clone().flat_map(|row| numbers.clone().map(|number| question(row.1, number, texts)));
-        link.rehearse(&all.collect::<Result<Vec<_>, _>>()?)?;
+        let all = all.collect::<Result<Vec<_>, _>>()?;
+        let first = classes.clone().next().map_or(query::AlarmClass::Major, |row| row.1);
+        plan(link, &all, texts, &question(first, self.from, false)?)?;
         let mut alarms = Vec::new();
         let mut asked = 0;
         let mut round = Round::default();
@@ -174,6 +178,16 @@ pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Res
         }
     }
     Ok(alarms)
+}
+
+/// Notes in a dry run all questions, and the first one of those that an older controller is asked instead.
+fn plan<Q: Query>(link: &mut Link, all: &[Q], texts: bool, older: &Q) -> Result<(), Failure> {
+    let noted = link.dry_run(all);
+    if texts && link.is_dry() {
+        let about = "without texts, if the controller has none: from there on all are asked so";
+        link.plan_if(&older.request(), Reason::about(about).depending_on("whether the request before is refused"));
+    }
+    noted
 }
 
 /// Reads an alarm with its texts; without, as soon as the controller has shown that it may not know the command.
@@ -438,7 +452,7 @@ mod tests {
     fn present_alarms_are_asked_with_texts_in_four_slots() {
         assert_eq!(
             frames("alarm list").unwrap(),
-            ["0a03010000010000", "0a03020000010000", "0a03030000010000", "0a03040000010000"]
+            ["0a03010000010000", "0a03020000010000", "0a03030000010000", "0a03040000010000", "7000010000010000"]
         );
         assert_eq!(frames("alarm list --no-texts").unwrap()[0], golden("R01"));
     }
@@ -453,9 +467,16 @@ mod tests {
         let all = frames("alarm history --limit 1").unwrap();
         assert_eq!(
             all,
-            ["0b03010000010000", "0b03e90300010000", "0b03d10700010000", "0b03b90b00010000", "0b03a10f00010000"]
+            [
+                "0b03010000010000",
+                "0b03e90300010000",
+                "0b03d10700010000",
+                "0b03b90b00010000",
+                "0b03a10f00010000",
+                "7100010000010000"
+            ]
         );
-        assert_eq!(frames("alarm history").unwrap().len(), 50);
+        assert_eq!(frames("alarm history").unwrap().len(), 51);
         assert!(objection("alarm history --from 101").contains("1..=100"));
     }
 

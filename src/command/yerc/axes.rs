@@ -11,6 +11,7 @@ use super::Family;
 use super::each::existing;
 use super::orders::usage;
 use super::position::ByAxis;
+use crate::command::dry_run::{Known as _, unknown};
 use crate::command::items::{self, ItemError};
 use crate::command::{Command, Context, Report};
 use crate::controller::text::Encoding;
@@ -177,7 +178,11 @@ macro_rules! by_axis {
 
             async fn run(&self, context: Context<'_, Family>) -> Result<$report, Failure> {
                 let link = context.link;
-                let axes = link.ask(&$query::new(link.model, self.group).map_err(usage)?).await?;
+                let question = $query::new(link.model, self.group).map_err(usage)?;
+                let Some(axes) = link.ask(&question).await.known()? else {
+                    link.plan_fit(self.group, Coordinates::Pulse);
+                    return Err(unknown());
+                };
                 let (axes, fitted) = link.fit(self.group, Coordinates::Pulse, axes).await;
                 let is_robot = matches!(self.group, Group::Robot(_));
                 Ok($report { group: self.group.to_string(), $field: ByAxis::new(axes, is_robot, fitted) })
@@ -246,8 +251,9 @@ mod tests {
 
     #[test]
     fn error_and_torque_of_a_group() {
-        assert_eq!(frames("position-error").unwrap(), [golden("R15")]);
-        assert_eq!(frames("torque --group B8").unwrap(), ["7700120000010000"]);
+        let axes = "7400010000010000".to_owned();
+        assert_eq!(frames("position-error").unwrap(), [golden("R15"), axes]);
+        assert_eq!(frames("torque --group B8").unwrap(), ["7700120000010000", "7400120000010000"]);
     }
 
     #[test]

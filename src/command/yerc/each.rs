@@ -76,7 +76,7 @@ impl Round {
 impl Link {
     /// Asks several questions; each has its own outcome. A dry run notes them all.
     pub async fn ask_each<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Outcome<Q::Answer>>, Failure> {
-        self.rehearse(queries)?;
+        self.dry_run(queries)?;
         let mut round = Round::default();
         let mut outcomes = Vec::with_capacity(queries.len());
         for query in queries {

@@ -2,9 +2,10 @@
 //! configuration (0x74), asked once on a link, tells which of them exist.
 
 use super::link::Link;
+use crate::command::dry_run::Reason;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{Axes, AxisNames, MAX_AXES};
-use crate::controller::yerc::query::{Coordinates, ReadAxes};
+use crate::controller::yerc::query::{Coordinates, Query as _, ReadAxes};
 
 /// The axes that exist, a bit each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,6 +50,17 @@ impl Link {
         }
         let fitted = self.fitted(group, coordinates).await;
         (fitted.of(axes), fitted)
+    }
+
+    /// Notes in a dry run that [`Link::fit`] may ask for the axes.
+    pub fn plan_fit(&mut self, group: Group, coordinates: Coordinates) {
+        let is_noted = self.fitted.iter().any(|known| (known.0, known.1) == (group, coordinates));
+        let Ok(question) = ReadAxes::new(self.model, group, coordinates) else { return };
+        if !is_noted {
+            let reason = Reason::about("which axes exist, if all eight are answered");
+            self.plan_if(&question.request(), reason.depending_on("how many axes the answer before has"));
+            self.fitted.push((group, coordinates, Fitted::ALL));
+        }
     }
 
     async fn fitted(&mut self, group: Group, coordinates: Coordinates) -> Fitted {

@@ -9,12 +9,14 @@ use serde::Serialize;
 use tokio::time::Instant;
 
 use super::Family;
+use super::chosen::Chosen;
 use super::each::{Denied, Outcome};
 use super::link::Link;
-use super::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost};
+use super::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost, plan_alarm};
 use super::numbers::within;
 use super::orders::{refuse_controls, usage};
 use crate::command::ValueKind;
+use crate::command::dry_run::unknown;
 use crate::command::items::{self, ItemError};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -25,6 +27,7 @@ use crate::controller::yerc::payload::{ControllerStatus, JobInfo};
 use crate::controller::yerc::query::{Query, ReadJob, ReadStatus, SelectJob, Selection, StartJob};
 use crate::controller::yerc::status::{self, is_absent};
 use crate::failure::{Failure, Kind};
+use crate::gate::Confirmation;
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::settings::duration;
 
@@ -290,10 +293,26 @@ impl Command for Start {
         "start the selected job".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Started, Failure> {
         let link = context.link;
-        link.ask(&StartJob).await?;
-        let Some(limit) = self.wait else { return Ok(Started { accepted: true, ended: None, elapsed_ms: None }) };
+        let chosen = Chosen::ask(link).await?;
+        let is_asked = context.authority.asks();
+        context.authority.confirm(&chosen.change(link.encoding)).await?;
+        if is_asked {
+            chosen.check_again(link).await?;
+        }
+        let job = chosen.name(link.encoding);
+        link.is_for("starts it").ask(&StartJob).await?;
+        let Some(limit) = self.wait else { return Ok(Started { accepted: true, job, ended: None, elapsed_ms: None }) };
+        if link.is_dry() {
+            link.plan(&ReadStatus.request(), "again and again until the job has ended");
+            plan_alarm(link)?;
+            return Err(unknown());
+        }
         let progress = context.screen.spinner("the job runs");
         let began = Instant::now();
         let mut watch = Watch::new(limit);
@@ -316,7 +335,7 @@ impl Command for Start {
             tokio::time::sleep(LOOK_EVERY).await;
         }
         let elapsed_ms = u64::try_from(began.elapsed().as_millis()).ok();
-        Ok(Started { accepted: true, ended: Some(true), elapsed_ms })
+        Ok(Started { accepted: true, job, ended: Some(true), elapsed_ms })
     }
 }
 
@@ -388,6 +407,8 @@ impl Watch {
 pub struct Started {
     /// The controller took the order.
     accepted: bool,
+    /// Its name, as the controller told it before; null if it did not.
+    job: Option<String>,
     /// Whether it has ended; null if nobody waited.
     ended: Option<bool>,
     /// From the acceptance to the end; null if nobody waited.
@@ -397,8 +418,15 @@ pub struct Started {
 impl Report for Started {
     fn view(&self) -> View {
         match self.elapsed_ms {
-            None => View::fields([("job", Cell::from("started").tone(Tone::Good))]),
-            Some(ms) => View::fields([("job", Cell::from("ended").tone(Tone::Good)), ("elapsed (ms)", ms.into())]),
+            None => View::fields([
+                ("job", Cell::maybe(self.job.as_deref())),
+                ("state", Cell::from("started").tone(Tone::Good)),
+            ]),
+            Some(ms) => View::fields([
+                ("job", Cell::maybe(self.job.as_deref())),
+                ("state", Cell::from("ended").tone(Tone::Good)),
+                ("elapsed (ms)", ms.into()),
+            ]),
         }
     }
 }
@@ -449,8 +477,11 @@ mod tests {
 
     #[test]
     fn a_start_is_one_frame_and_a_motion() {
-        assert_eq!(frames("job start").unwrap(), ["860001000110000001000000"]);
-        assert_eq!(frames("job start --wait 2m").unwrap(), ["860001000110000001000000"]);
+        let start = ["7300010000010000".to_owned(), "860001000110000001000000".to_owned()];
+        assert_eq!(frames("job start").unwrap(), start);
+        let waiting = frames("job start --wait 2m").unwrap();
+        assert_eq!(waiting[..2], start);
+        assert_eq!(waiting[2..], ["7200010000010000", "7000010000010000"], "the status until it has ended");
         assert_eq!(intent("job start"), "start the selected job");
         assert_eq!(StartJob.risk(), Risk::Motion);
     }

@@ -60,6 +60,8 @@ pub struct Link {
     totals: Totals,
     /// The last download, in case its final ACK got lost.
     finished: Option<Download>,
+    /// What the next request is for, in a dry run.
+    purpose: Option<&'static str>,
     /// Which axes groups have, as far as it was asked.
     pub(super) fitted: Vec<(Group, Coordinates, Fitted)>,
 }
@@ -105,6 +107,7 @@ impl Family for Yerc {
             trace: Trace::open(&access, screen)?,
             totals: Totals::default(),
             finished: None,
+            purpose: None,
             fitted: Vec::new(),
         })
     }
@@ -164,7 +167,7 @@ impl Link {
     pub async fn try_ask<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Failure> {
         let request = query.request();
         if self.is_dry() && request.risk() > Risk::Read {
-            self.granted.check(request.risk(), &format!("request {:#04x}", request.command))?;
+            self.authorize(&request)?;
             self.note(&request, Reason::default());
             // What is accepted bears no data.
             return query.decode(&[]).map(Ok).map_err(|_| unknown());
@@ -182,7 +185,7 @@ impl Link {
 
     /// Asks several questions, one after the other; the first refusal or failure ends it. A dry run notes them all.
     pub async fn ask_all<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Q::Answer>, Failure> {
-        self.rehearse(queries)?;
+        self.dry_run(queries)?;
         let mut answers = Vec::with_capacity(queries.len());
         for query in queries {
             answers.push(self.ask(query).await?);
@@ -192,7 +195,7 @@ impl Link {
 
     /// Asks several questions of things that need not exist; a refusal is an answer. A dry run notes them all.
     pub async fn try_ask_all<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Result<Q::Answer, Refusal>>, Failure> {
-        self.rehearse(queries)?;
+        self.dry_run(queries)?;
         let mut answers = Vec::with_capacity(queries.len());
         for query in queries {
             answers.push(self.try_ask(query).await?);
@@ -201,12 +204,14 @@ impl Link {
     }
 
     /// In a dry run, notes all the questions, whose answers are not known then.
-    pub fn rehearse<Q: Query>(&mut self, queries: &[Q]) -> Result<(), Failure> {
+    pub fn dry_run<Q: Query>(&mut self, queries: &[Q]) -> Result<(), Failure> {
         if !self.is_dry() || queries.is_empty() {
             return Ok(());
         }
         for query in queries {
-            self.note(&query.request(), Reason::default());
+            let request = query.request();
+            self.authorize(&request)?;
+            self.note(&request, Reason::default());
         }
         Err(unknown())
     }
@@ -291,7 +296,7 @@ impl Link {
         mut give: impl FnMut() -> Result<Vec<u8>, Failure>,
     ) -> Result<UploadEnd, Failure> {
         if let Transport::Notes(_) = self.transport {
-            self.foresee_upload(request, give)?;
+            self.plan_upload(request, Reason::default(), give)?;
             return Err(unknown());
         }
         self.admit(request).await?;
@@ -363,14 +368,20 @@ impl Link {
         matches!(self.transport, Transport::Notes(_))
     }
 
+    /// Says what the next request is for, where a dry run notes it.
+    pub fn is_for(&mut self, purpose: &'static str) -> &mut Self {
+        self.purpose = self.is_dry().then_some(purpose);
+        self
+    }
+
     /// Notes in a dry run what is sent after an answer, and what it is about.
-    pub fn foresee(&mut self, request: &Request, about: &str) {
+    pub fn plan(&mut self, request: &Request, about: &str) {
         self.note(request, Reason::about(about));
     }
 
     /// Notes in a dry run a request whose bytes, or whose sending, an answer before it decides. `other` is the same
     /// request with other answers: where both differ nothing is known.
-    pub fn foresee_depending(&mut self, request: &Request, other: &Request, reason: Reason<'_>) {
+    pub fn plan_depending(&mut self, request: &Request, other: &Request, reason: Reason<'_>) {
         let id = self.ids.next_id();
         if let Transport::Notes(plan) = &mut self.transport {
             plan.note(json!({ "hex": masked(&request.frame(id), &other.frame(id)) }), reason);
@@ -384,24 +395,31 @@ impl Link {
         }
     }
 
+    /// Notes in a dry run a request that an answer before it decides whether it is sent.
+    pub fn plan_if(&mut self, request: &Request, reason: Reason<'_>) {
+        self.note(request, reason);
+    }
+
     /// Notes in a dry run a request that follows whatever the answers before it are.
-    pub fn foresee_next(&mut self, request: &Request) {
+    pub fn plan_next(&mut self, request: &Request) {
         self.note(request, Reason::default());
     }
 
     /// Notes in a dry run what [`Link::upload`] would send.
-    pub fn foresee_upload(
+    pub fn plan_upload(
         &mut self,
         request: &Request,
+        reason: Reason<'_>,
         mut give: impl FnMut() -> Result<Vec<u8>, Failure>,
     ) -> Result<(), Failure> {
-        let id = self.note(request, Reason::default());
-        self.note_blocks(id, &mut give)
+        self.authorize(request)?;
+        let id = self.note(request, reason);
+        self.note_blocks(id, reason.depends_on, &mut give)
     }
 
     /// The last check before anything leaves; a dry run notes it instead, and has no answer.
     async fn admit(&mut self, request: &Request) -> Result<(), Failure> {
-        self.granted.check(request.risk(), &format!("request {:#04x}", request.command))?;
+        self.authorize(request)?;
         if self.is_dry() {
             self.note(request, Reason::default());
             return Err(unknown());
@@ -415,8 +433,13 @@ impl Link {
         Ok(())
     }
 
+    fn authorize(&self, request: &Request) -> Result<(), Failure> {
+        self.granted.check(request.risk(), &format!("request {:#04x}", request.command))
+    }
+
     fn note(&mut self, request: &Request, reason: Reason<'_>) -> u8 {
         let id = self.ids.next_id();
+        let reason = Reason { about: reason.about.or(self.purpose.take()), ..reason };
         if let Transport::Notes(plan) = &mut self.transport {
             plan.note(json!({ "hex": hex(&request.frame(id)) }), reason);
         }
@@ -424,7 +447,12 @@ impl Link {
     }
 
     /// The data blocks of an upload, which are known beforehand.
-    fn note_blocks(&mut self, id: u8, give: &mut dyn FnMut() -> Result<Vec<u8>, Failure>) -> Result<(), Failure> {
+    fn note_blocks(
+        &mut self,
+        id: u8,
+        depends_on: Option<&str>,
+        give: &mut dyn FnMut() -> Result<Vec<u8>, Failure>,
+    ) -> Result<(), Failure> {
         let Transport::Notes(plan) = &mut self.transport else { return Ok(()) };
         let mut content = Vec::new();
         loop {
@@ -437,7 +465,7 @@ impl Link {
         let blocks: Vec<&[u8]> = content.chunks(MAX_DATA).collect();
         for (number, block) in (1u32..).zip(&blocks) {
             let last = if number as usize == blocks.len() { LAST_BLOCK } else { 0 };
-            plan.note(json!({ "hex": hex(&data_frame(id, number | last, block)) }), Reason::default());
+            plan.note(json!({ "hex": hex(&data_frame(id, number | last, block)) }), Reason { about: None, depends_on });
         }
         Ok(())
     }

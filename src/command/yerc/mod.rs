@@ -3,9 +3,12 @@
 mod alarm;
 mod axes;
 mod check;
+mod chosen;
 mod each;
 pub mod file;
 mod fitted;
+#[cfg(test)]
+mod gated;
 mod hours;
 mod info;
 mod io;

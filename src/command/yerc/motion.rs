@@ -5,8 +5,9 @@ use std::time::Duration;
 use super::alarm;
 use super::link::Link;
 use super::orders::usage;
+use crate::command::dry_run::Reason;
 use crate::controller::yerc::payload::{ControllerStatus, StatusBit};
-use crate::controller::yerc::query::ReadAlarm;
+use crate::controller::yerc::query::{Query as _, ReadAlarm};
 use crate::failure::{Failure, Kind};
 
 /// Pause between two looks: a controller answers in 5 to 20 ms, and nothing is gained by pressing it.
@@ -90,6 +91,15 @@ async fn present_alarm(link: &mut Link) -> String {
         Ok(_) => "an alarm came up and is gone again".to_owned(),
         Err(failure) => format!("an alarm came up, which could not be read: {failure}"),
     }
+}
+
+/// Notes in a dry run what is asked if an alarm ends it.
+pub(super) fn plan_alarm(link: &mut Link) -> Result<(), Failure> {
+    let question = ReadAlarm::new(1, false).map_err(usage)?;
+    let reason =
+        Reason::about("which alarm, if one comes up").depending_on("whether the status says that there is one");
+    link.plan_if(&question.request(), reason);
+    Ok(())
 }
 
 /// Contact lost while waiting: what was `done` goes on unseen, so its outcome is unknown.

@@ -340,7 +340,7 @@ impl PulseTarget {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yerc::testing::{frames, frames_on, golden, intent, objection, reports};
+    use crate::command::yerc::testing::{DX200, frames, frames_on, golden, intent, objection, reports};
     use crate::failure::Kind;
 
     /// Head of a frame, and the words of its data.
@@ -351,19 +351,42 @@ mod tests {
         (&frame[..16], words.collect())
     }
 
+    /// The one order among the frames of a dry run.
+    fn order_on(target: &str, line: &str) -> String {
+        let sent = frames_on(target, line).unwrap();
+        let orders: Vec<&String> =
+            sent.iter().filter(|frame| frame.starts_with("8a") || frame.starts_with("8b")).collect();
+        let [order] = orders[..] else { panic!("{line}: {sent:?}") };
+        order.clone()
+    }
+
+    fn order(line: &str) -> String {
+        order_on(DX200, line)
+    }
+
+    #[test]
+    fn a_dry_run_shows_what_is_asked_before_and_after() {
+        let heads = |line: &str| frames(line).unwrap().iter().map(|frame| frame[..8].to_owned()).collect::<Vec<_>>();
+        // Where the base stands and which axes it has, where the robot stands and which it has; the order; the looks.
+        let before = ["75000b00", "74000b00", "75006500", "74006500"];
+        let after = ["72000100", "75006500", "70000100"];
+        assert_eq!(heads(FAR), [&before[..], &["8a000200"], &after].concat());
+        assert_eq!(heads(&format!("{FAR} --no-wait")), [&before[..2], &["8a000200"]].concat());
+    }
+
     #[test]
     fn a_straight_move_is_the_golden_frame() {
         for line in [
             "move linear --to 185,0,125,180,0,0 --speed 70mm/s --tool 1",
             "move linear --x 185.000 --y 0 --z 125 --rx 180 --ry -0 --rz 0 --speed 70.0mm/s --tool 1 --no-wait",
         ] {
-            assert_eq!(frames(line).unwrap(), [golden("R75")], "{line}");
+            assert_eq!(order(line), golden("R75"), "{line}");
         }
     }
 
     #[test]
     fn a_pulse_move_is_the_golden_frame() {
-        assert_eq!(frames("move pulse joint --pulses 0,0,0,0,-90000,0 --speed 10%").unwrap(), [golden("R77")]);
+        assert_eq!(order("move pulse joint --pulses 0,0,0,0,-90000,0 --speed 10%"), golden("R77"));
     }
 
     #[test]
@@ -373,20 +396,20 @@ mod tests {
         let expected =
             [2, 0, 0, 5000, 18, -1000, 2000, -3000, 40_000, -50_000, 60_000, 0, 0, 0b10_0111, 0b1_0000, 8, 7];
         let axes = [1500, -2000, 0, 0, 0, 0, 0, 0, 0];
-        let sent = frames(line).unwrap();
-        assert_eq!(words(&sent[0]), ("8a00010001020000", [&expected[..], &axes[..]].concat()));
+        let sent = order(line);
+        assert_eq!(words(&sent), ("8a00010001020000", [&expected[..], &axes[..]].concat()));
         // FS 3.3.39 prints one reserved word less.
-        let sent = frames_on("udp://h?model=fs100&move_words=25", line).unwrap();
-        assert_eq!(words(&sent[0]).1, [&expected[..11], &expected[12..], &axes[..]].concat());
+        let sent = order_on("udp://h?model=fs100&move_words=25", line);
+        assert_eq!(words(&sent).1, [&expected[..11], &expected[12..], &axes[..]].concat());
     }
 
     #[test]
     fn distances_not_given_are_zero_but_not_all() {
-        let sent = frames("move relative --z -50 --rz 0.5 --speed 20deg/s --coordinate tool").unwrap();
-        let (head, data) = words(&sent[0]);
+        let sent = order("move relative --z -50 --rz 0.5 --speed 20deg/s --coordinate tool");
+        let (head, data) = words(&sent);
         assert_eq!(head, "8a00030001020000");
         assert_eq!(data[..11], [1, 0, 2, 200, 19, 0, 0, -50_000, 0, 0, 5000]);
-        assert_eq!(frames("move relative --by 0,0,-50,0,0,0.5 --speed 20deg/s --coordinate tool").unwrap(), sent);
+        assert_eq!(order("move relative --by 0,0,-50,0,0,0.5 --speed 20deg/s --coordinate tool"), sent);
         for nothing in ["--x 0", "--by 0,0,0,0,0,0", "--base-axes 0"] {
             let failure = frames(&format!("move relative {nothing} --speed 1mm/s")).unwrap_err();
             assert_eq!((failure.kind, &failure.message[..19]), (Kind::Usage, "every distance is 0"));
@@ -396,8 +419,8 @@ mod tests {
 
     #[test]
     fn a_station_moves_by_its_own_axes() {
-        let sent = frames("move pulse joint --group S2 --station-axes 100,-200 --speed 5%").unwrap();
-        let (_, data) = words(&sent[0]);
+        let sent = order("move pulse joint --group S2 --station-axes 100,-200 --speed 5%");
+        let (_, data) = words(&sent);
         assert_eq!(data[..4], [0, 2, 0, 500]);
         assert_eq!(data[4..16], [0; 12]);
         assert_eq!(data[16..], [100, -200, 0, 0, 0, 0]);

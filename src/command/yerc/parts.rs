@@ -30,7 +30,7 @@ pub async fn read_in_parts<S: PlannedRead>(
         return Ok(HashMap::new());
     }
     let mut steps: VecDeque<S> = plan(wanted)?.into();
-    link.rehearse(steps.make_contiguous())?;
+    link.dry_run(steps.make_contiguous())?;
     let mut round = Round::default();
     let mut known: HashMap<S::Item, Outcome<S::Value>> = HashMap::with_capacity(wanted.len());
     while let Some(step) = steps.pop_front() {

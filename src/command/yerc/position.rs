@@ -10,6 +10,7 @@ use super::Family;
 use super::fitted::Fitted;
 use super::link::Link;
 use super::orders::usage;
+use crate::command::dry_run::{Known as _, unknown};
 use crate::command::items::{self, ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report};
 use crate::controller::units::{self, Unit};
@@ -60,7 +61,12 @@ impl Command for Position {
         let question = |coordinates: &Coordinates| ReadPosition::new(link.model, self.group, *coordinates);
         let questions: Vec<ReadPosition> = wanted.iter().map(question).collect::<Result<_, _>>().map_err(usage)?;
         let mut report = PositionReport::nowhere(self.group);
-        let outcomes = link.ask_each(&questions).await?;
+        let Some(outcomes) = link.ask_each(&questions).await.known()? else {
+            for coordinates in wanted {
+                link.plan_fit(self.group, *coordinates);
+            }
+            return Err(unknown());
+        };
         for (coordinates, outcome) in wanted.iter().zip(outcomes) {
             let position = match outcome {
                 Ok(position) => {
@@ -82,7 +88,11 @@ pub(super) async fn ask(
     group: Group,
     coordinates: Coordinates,
 ) -> Result<(payload::Position, PositionReport), Failure> {
-    let position = link.ask(&ReadPosition::new(link.model, group, coordinates).map_err(usage)?).await?;
+    let question = ReadPosition::new(link.model, group, coordinates).map_err(usage)?;
+    let Some(position) = link.ask(&question).await.known()? else {
+        link.plan_fit(group, coordinates);
+        return Err(unknown());
+    };
     let (axes, fitted) = link.fit(group, coordinates, position.axes).await;
     let position = payload::Position { axes, ..position };
     let mut report = PositionReport::nowhere(group);
@@ -397,9 +407,10 @@ mod tests {
 
     #[test]
     fn a_robot_is_read_in_both_coordinates_and_others_in_pulses() {
-        assert_eq!(frames("position").unwrap(), ["7500010000010000".to_owned(), golden("R13")]);
-        assert_eq!(frames("position --coordinates base --group r2").unwrap(), ["7500660000010000"]);
-        assert_eq!(frames("position --group S24").unwrap(), ["75002c0000010000"]);
+        let axes = ["7400010000010000", "7400650000010000"].map(ToOwned::to_owned);
+        assert_eq!(frames("position").unwrap(), [&["7500010000010000".to_owned(), golden("R13")], &axes[..]].concat());
+        assert_eq!(frames("position --coordinates base --group r2").unwrap(), ["7500660000010000", "7400660000010000"]);
+        assert_eq!(frames("position --group S24").unwrap(), ["75002c0000010000", "74002c0000010000"]);
         for wrong in ["position --group B1 --coordinates base", "position --group S1 --coordinates both"] {
             assert_eq!(frames(wrong).unwrap_err().kind, Kind::Usage, "{wrong}");
         }

@@ -102,6 +102,10 @@ impl Command for Raw {
 
     fn intent(&self) -> String {
         let request = self.request();
+        if let (true, Ok(file)) = (self.file, std::str::from_utf8(&request.data)) {
+            let what = if request.service == service::DELETE { "delete the file" } else { "ask for the file" };
+            return format!("{what} {:?} by a raw request (file service {:#04x})", file, request.service);
+        }
         let name = request.row().map_or("unknown to armctl", |row| row.name);
         format!(
             "send a raw request ({name}: command {:#04x}, instance {}, attribute {}, service {:#04x})",

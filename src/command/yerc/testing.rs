@@ -31,14 +31,14 @@ pub(super) fn intent(words: &str) -> String {
 
 /// What `armctl yerc -t TARGET WORDS…` would send: the `data.frames` of a dry run. A command line that cannot be parsed
 /// fails with the parser's message.
-pub(super) fn rehearse(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
+pub(super) fn dry_run(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
     let (robot, command) = resolved(target, words)?;
     Ok(testing::frames(&planned(&robot, &*command, |_| ())?))
 }
 
 /// The frames of a dry run, in hexadecimal, without the header: command, instance, attribute, service, padding, data.
 pub(super) fn frames_on(target: &str, words: &str) -> Result<Vec<String>, Failure> {
-    let frames = rehearse(target, &words.split_ascii_whitespace().collect::<Vec<_>>())?;
+    let frames = dry_run(target, &words.split_ascii_whitespace().collect::<Vec<_>>())?;
     Ok(frames.iter().map(without_header).collect())
 }
 
@@ -55,7 +55,7 @@ pub(super) fn golden(id: &str) -> String {
 /// Demands that a command line sends one frame, and that this is the golden one; only the request id is taken over.
 #[track_caller]
 pub(super) fn same(id: &str, target: &str, words: &[&str]) {
-    let frames = rehearse(target, words).unwrap_or_else(|failure| panic!("{words:?}: {failure:?}"));
+    let frames = dry_run(target, words).unwrap_or_else(|failure| panic!("{words:?}: {failure:?}"));
     let (golden, sent) = (golden_frame(id), frames.iter().map(digits).collect::<Vec<_>>());
     let golden = digits(&golden);
     let sent = sent.iter().map(|frame| format!("{}{}{}", &frame[..22], &golden[22..24], &frame[24..]));
@@ -124,7 +124,7 @@ fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
 }
 
 /// Robot and command of a line.
-fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Family>>), Failure> {
+pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Family>>), Failure> {
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let flags = Options { encoding: cli.globals.encoding, ..Options::default() };

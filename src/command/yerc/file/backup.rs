@@ -89,8 +89,9 @@ impl Command for Backup {
         let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
         let (types, only) = asked(&scope);
         if link.is_dry() {
-            link.foresee_next(&Controller::question(link)?.request());
-            transfer::foresee_all(link, types.iter().map(|kind| files::list(*kind)));
+            link.plan_next(&Controller::question(link)?.request());
+            transfer::plan_all(link, types.iter().map(|kind| files::list(*kind)));
+            link.then("fetches every file that the lists name (service 0x16)");
             return Ok(BackedUp::new(&folder, Results::new(Vec::new(), SHAPE), &scope, false));
         }
         let controller = Controller::ask(link).await?;

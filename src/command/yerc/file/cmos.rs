@@ -65,9 +65,9 @@ impl Command for Cmos {
         let path = if several { folder.join(name) } else { file.to_owned() };
         let target = Target::new(path, self.force)?;
         if link.is_dry() {
-            link.foresee_next(&files::batch_backup());
+            link.plan_next(&files::batch_backup());
             if !self.download_only {
-                link.foresee(&files::batch_backup(), "once the backup has been made");
+                link.plan(&files::batch_backup(), "once the backup has been made");
             }
             return Ok(BatchBackup { path: None, bytes: None });
         }

@@ -2,15 +2,19 @@
 
 use clap::Args;
 
+use super::lists::{Lists, There};
 use super::name::{self, Shown};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
 use crate::command::ValueKind;
+use crate::command::dry_run::Reason;
 use crate::command::yerc::Family;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
+use crate::controller::text::Encoding;
 use crate::controller::yerc::files::FileName;
 use crate::failure::Failure;
+use crate::gate::{Change, Confirmation};
 
 /// Deletes files on the controller.
 #[derive(Debug, Args)]
@@ -35,21 +39,55 @@ impl Command for Delete {
         "delete files".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Results, Failure> {
-        let Context { link, .. } = context;
+        let Context { link, authority, .. } = context;
         let files = name::all_typed(link.encoding, &self.names)?;
         let pending = |file: &FileName| FileResult::pending(Shown::new(link.encoding, file.as_bytes()), None);
         let mut results: Vec<FileResult> = files.iter().map(pending).collect();
-        if link.is_dry() {
-            transfer::foresee_all(link, files.iter().map(FileName::delete));
+        let lists = Lists::ask(link, &files).await?;
+        authority.confirm(&change(link.encoding, lists.as_ref(), &files)).await?;
+        let Some(lists) = lists else {
+            for file in &files {
+                let reason = Reason::about("if the list has it").depending_on("whether the list has the file");
+                link.plan_if(&file.delete(), reason);
+            }
             return Ok(Results::new(results, SHAPE));
-        }
+        };
         for (file, result) in files.iter().zip(&mut results) {
-            let outcome = transfer::remove(link, file).await;
+            let outcome = match lists.tell(file) {
+                There::No => Err(transfer::not_listed()),
+                There::Yes | There::Untold => transfer::remove(link, file).await,
+            };
             if !result.settle(outcome.map(|()| None)) {
                 break;
             }
         }
         Results::new(results, SHAPE).report()
     }
+}
+
+/// What is deleted, and what is not there to be.
+fn change(encoding: Encoding, lists: Option<&Lists>, files: &[FileName]) -> Change {
+    let tell = |file: &FileName| lists.map_or(There::No, |lists| lists.tell(file));
+    let name = |file: &FileName| encoding.decode(file.as_bytes());
+    let mut items = Vec::new();
+    let mut missing = Vec::new();
+    for file in files {
+        match tell(file) {
+            There::Yes => items.push(name(file)),
+            There::Untold => items.push(format!("{}; whether it is there was not told", name(file))),
+            There::No => missing.push(name(file)),
+        }
+    }
+    if items.is_empty() {
+        return Change::nothing();
+    }
+    let plural = if items.len() == 1 { "" } else { "s" };
+    let change = Change::new(format!("delete {} file{plural} on the controller", items.len()));
+    let change = items.into_iter().fold(change, Change::item);
+    if missing.is_empty() { change } else { change.note(format!("Not there: {}.", missing.join(", "))) }
 }

@@ -6,13 +6,17 @@ use std::path::{Path, PathBuf};
 
 use super::compare::{Comparer, Comparison};
 use super::content::Content;
+use super::lists::{Lists, There};
 use super::results::FileResult;
 use super::transfer;
+use crate::command::authority::Authority;
+use crate::command::dry_run::Reason;
 use crate::command::local::{Target, folder_of, local_name};
 use crate::command::yerc::link::Link;
 use crate::controller::text::Encoding;
-use crate::controller::yerc::files::FileName;
+use crate::controller::yerc::files::{FileName, FileType};
 use crate::failure::{Failure, Kind};
+use crate::gate::Change;
 use crate::output::Screen;
 
 /// A file to send.
@@ -33,6 +37,53 @@ pub struct Manner {
     pub ignore_header: bool,
     /// Delete a job of that name that the controller does not overwrite by itself.
     pub replace: bool,
+}
+
+/// Asks for a yes if files are overwritten: those that the controller lists, or does not list a type of.
+pub async fn confirm<'a>(
+    authority: &Authority<'_>,
+    encoding: Encoding,
+    lists: Option<&Lists>,
+    deliveries: impl IntoIterator<Item = &'a Delivery>,
+) -> Result<(), Failure> {
+    let mut replaced = Vec::new();
+    let mut has_machine_data = false;
+    for Delivery { file, content } in deliveries {
+        let untold = match lists.map_or(There::No, |lists| lists.tell(file)) {
+            There::Yes => "",
+            There::Untold => "; whether it is there was not told",
+            There::No => continue,
+        };
+        let (name, path) = (encoding.decode(file.as_bytes()), content.path().display());
+        has_machine_data |= matches!(file.file_type(), Some(FileType::Prm | FileType::Sys));
+        replaced.push(format!("{name}, by the {} bytes of {path}{untold}", content.size()));
+    }
+    if replaced.is_empty() {
+        return authority.confirm(&Change::nothing()).await;
+    }
+    let plural = if replaced.len() == 1 { "" } else { "s" };
+    let change = Change::new(format!("overwrite {} file{plural} on the controller", replaced.len()));
+    let change = replaced.into_iter().fold(change, Change::item);
+    let change =
+        if has_machine_data { change.note("Parameters and system data change the controller itself.") } else { change };
+    authority.confirm(&change).await
+}
+
+/// Notes in a dry run what [`deliver`] would send.
+pub fn plan(link: &mut Link, delivery: &mut Delivery, manner: Manner, reason: Reason<'_>) -> Result<(), Failure> {
+    let Delivery { file, content } = delivery;
+    transfer::plan_send(link, file, content, reason)?;
+    if manner.replace && file.file_type() == Some(FileType::Jbi) {
+        let if_refused =
+            |about| Reason::about(about).depending_on("whether the controller overwrites the job by itself");
+        link.plan_if(&file.save(), if_refused("if it does not overwrite the job: a copy of the old one"));
+        link.plan_if(&file.delete(), if_refused("if it does not overwrite the job: deletes the old one"));
+        transfer::plan_send(link, file, content, if_refused("if it does not overwrite the job: sends the new one"))?;
+    }
+    if manner.verify {
+        link.plan_if(&file.save(), Reason { about: Some("reads it back"), ..reason });
+    }
+    Ok(())
 }
 
 /// Sends a file and notes in `result` what was done.

@@ -44,7 +44,7 @@ impl Command for List {
         let requests = filters.iter().map(|(filter, _)| files::list_by(filter));
         let requests: Vec<_> = requests.collect::<Result<_, _>>().map_err(usage)?;
         if link.is_dry() {
-            transfer::foresee_all(link, requests);
+            transfer::plan_all(link, requests);
             return Ok(Listing::default());
         }
         let mut listing = Listing { asked: filters.len(), ..Listing::default() };

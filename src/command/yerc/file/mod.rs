@@ -9,6 +9,7 @@ mod deliver;
 mod diff;
 mod get;
 mod list;
+mod lists;
 mod manifest;
 mod name;
 mod put;

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::content::{Content, JobRules};
-use super::deliver::{Delivery, Manner, deliver};
+use super::deliver::{self, Delivery, Manner, deliver};
+use super::lists::{Lists, There};
 use super::name::{self, Shown};
 use super::results::{FileResult, Results, Shape};
-use super::transfer;
+use crate::command::dry_run::Reason;
 use crate::command::local::controller_name;
 use crate::command::yerc::Family;
 use crate::command::{Command, Context};
@@ -16,6 +17,7 @@ use crate::controller::Risk;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::files::{FileName, FileType};
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 
 /// Sends files to the controller.
 #[derive(Debug, Args)]
@@ -59,8 +61,12 @@ impl Command for Put {
         "overwrite files of the same name".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Results, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         let mut deliveries = self.deliveries(link.encoding)?;
         let mut results: Vec<FileResult> = Vec::with_capacity(deliveries.len());
         for delivery in &deliveries {
@@ -76,15 +82,19 @@ impl Command for Put {
             }
             results.push(result);
         }
-        if link.is_dry() {
-            for Delivery { file, content } in &mut deliveries {
-                transfer::foresee_send(link, file, content)?;
+        let manner = Manner { verify: self.verify, ignore_header: self.ignore_header, replace: self.replace };
+        let lists = Lists::ask(link, deliveries.iter().map(|delivery| &delivery.file)).await?;
+        deliver::confirm(&authority, link.encoding, lists.as_ref(), &deliveries).await?;
+        let Some(lists) = lists else {
+            for delivery in &mut deliveries {
+                deliver::plan(link, delivery, manner, Reason::default())?;
             }
             return Ok(Results::new(results, SHAPE));
-        }
-        let manner = Manner { verify: self.verify, ignore_header: self.ignore_header, replace: self.replace };
+        };
         for (delivery, result) in deliveries.iter_mut().zip(&mut results) {
-            let outcome = deliver(link, screen, delivery, manner, result).await;
+            // What nobody knew of is not deleted.
+            let replace = manner.replace && lists.tell(&delivery.file) != There::No;
+            let outcome = deliver(link, screen, delivery, Manner { replace, ..manner }, result).await;
             if !result.settle(outcome) {
                 break;
             }

@@ -3,14 +3,18 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use serde_json::Value;
 
 use super::content::Content;
-use super::deliver::{Delivery, Manner, deliver};
+use super::deliver::{self, Delivery, Manner, deliver};
+use super::lists::{Lists, There};
 use super::manifest::{Manifest, controller_file};
 use super::name::{self, Shown, TypeArg};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
+use crate::command::authority::Authority;
 use crate::command::backup::{Only, Restoring};
+use crate::command::dry_run::Reason;
 use crate::command::local::own_folder;
 use crate::command::manifest::{self, Entry, MANIFEST, State};
 use crate::command::yerc::Family;
@@ -19,6 +23,8 @@ use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yerc::files::{FileName, FileType};
 use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation};
+use crate::output::Screen;
 
 /// Sends the files of a backup back.
 #[derive(Debug, Args)]
@@ -97,9 +103,14 @@ impl Command for Restore {
         "overwrite files by those of the backup".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Results, Failure> {
-        let Context { link, screen, robot, several, .. } = context;
+        let Context { link, screen, robot, several, authority } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
+        manifest::admit(&manifest::existing::<Value>(&folder)?, robot, self.force)?;
         let manifest: Manifest = manifest::existing(&folder)?;
         let model = &manifest.controller.model;
         if *model != link.model.to_string() && !self.force {
@@ -122,41 +133,86 @@ impl Command for Restore {
         for Delivery { file, content } in &deliveries {
             results.push(FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(content.path())));
         }
-        if link.is_dry() {
-            for Delivery { file, content } in &mut deliveries {
-                transfer::foresee_send(link, file, content)?;
-            }
-            return Ok(Results::new(results, SHAPE));
-        }
         let manner = Manner { verify: self.verify, ignore_header: self.ignore_header, replace: self.replace };
-        let total = deliveries.len();
-        for (number, (delivery, result)) in deliveries.iter_mut().zip(&mut results).enumerate() {
+        let lists = Lists::ask(link, deliveries.iter().map(|delivery| &delivery.file)).await?;
+        let Some(lists) = lists else {
+            self.plan(link, &mut deliveries, manner, &authority).await?;
+            return Ok(Results::new(results, SHAPE));
+        };
+        if self.differing && !self.compare(link, screen, &lists, &mut deliveries, &mut results).await? {
+            return Results::new(results, SHAPE).report();
+        }
+        // What is the same stays, and what could not be compared is not sent.
+        let mut open: Vec<(Delivery, &mut FileResult)> =
+            deliveries.into_iter().zip(&mut results).filter(|(_, result)| result.state == State::NotTried).collect();
+        deliver::confirm(&authority, link.encoding, Some(&lists), open.iter().map(|(delivery, _)| delivery)).await?;
+        let total = open.len();
+        for (number, (delivery, result)) in open.iter_mut().enumerate() {
             screen.step(&format!("{}/{total} {}", number + 1, result.name.name));
-            if self.differing {
-                match transfer::is_same(link, screen, &delivery.file, &mut delivery.content, self.ignore_header).await {
-                    Ok(true) => {
-                        result.state = State::Kept;
-                        continue;
-                    }
-                    Ok(false) => {}
-                    Err(failure) => {
-                        if result.settle(Err(failure)) {
-                            continue;
-                        }
-                        break;
-                    }
-                }
-            }
-            let outcome = deliver(link, screen, delivery, manner, result).await;
+            // What nobody knew of is not deleted.
+            let replace = manner.replace && lists.tell(&delivery.file) != There::No;
+            let outcome = deliver(link, screen, delivery, Manner { replace, ..manner }, result).await;
             if !result.settle(outcome) {
                 break;
             }
         }
-        Ok(Results::new(results, SHAPE))
+        drop(open);
+        Results::new(results, SHAPE).report()
     }
 }
 
 impl Restore {
+    /// Finds the files that are the same on the controller already; `false` if the work cannot go on.
+    async fn compare(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        lists: &Lists,
+        deliveries: &mut [Delivery],
+        results: &mut [FileResult],
+    ) -> Result<bool, Failure> {
+        for (Delivery { file, content }, result) in deliveries.iter_mut().zip(results) {
+            if lists.tell(file) == There::No {
+                continue;
+            }
+            match transfer::is_same(link, screen, file, content, self.ignore_header).await {
+                Ok(true) => result.state = State::Kept,
+                Ok(false) => {}
+                Err(failure) => {
+                    if !result.settle(Err(failure)) {
+                        return Ok(false);
+                    }
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    /// What a dry run shows behind the lists.
+    async fn plan(
+        &self,
+        link: &mut Link,
+        deliveries: &mut [Delivery],
+        manner: Manner,
+        authority: &Authority<'_>,
+    ) -> Result<(), Failure> {
+        authority.confirm(&Change::nothing()).await?;
+        let reason = if self.differing {
+            for Delivery { file, .. } in &*deliveries {
+                let reason =
+                    Reason::about("if the list has it: compares").depending_on("whether the list has the file");
+                link.plan_if(&file.save(), reason);
+            }
+            Reason::about("if it differs").depending_on("whether the file differs")
+        } else {
+            Reason::default()
+        };
+        for delivery in deliveries {
+            deliver::plan(link, delivery, manner, reason)?;
+        }
+        Ok(())
+    }
+
     /// The files to send, in the order of sending.
     fn chosen<'a>(&self, link: &Link, manifest: &'a Manifest) -> Result<Vec<(FileName, &'a Entry)>, Failure> {
         let only = name::all_typed(link.encoding, &self.only)?;

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use super::compare::Comparer;
 use super::content::Content;
+use crate::command::dry_run::Reason;
 use crate::command::yerc::link::{Link, Refusal};
 use crate::controller::yerc::files::{self, FileName, FileType, split_list};
 use crate::controller::yerc::request::Request;
@@ -154,21 +155,27 @@ async fn is_listed(link: &mut Link, file: &FileName) -> bool {
 }
 
 /// What a dry run would send for [`send`].
-pub fn foresee_send(link: &mut Link, file: &FileName, content: &mut Content) -> Result<(), Failure> {
+pub fn plan_send(link: &mut Link, file: &FileName, content: &mut Content, reason: Reason<'_>) -> Result<(), Failure> {
     let mut pieces = content.pieces()?;
-    link.foresee_upload(&file.load(), || pieces.next_piece())
+    link.plan_upload(&file.load(), reason, || pieces.next_piece())
 }
 
 /// Notes in a dry run what would be sent, one request after the other.
-pub fn foresee_all(link: &mut Link, requests: impl IntoIterator<Item = Request>) {
+pub fn plan_all(link: &mut Link, requests: impl IntoIterator<Item = Request>) {
     for request in requests {
-        link.foresee_next(&request);
+        link.plan_next(&request);
     }
 }
 
 /// Whether a controller refused a file because it has a job of that name.
 pub fn is_job_exists(failure: &Failure) -> bool {
     failure.kind == Kind::Refused && failure.code.as_deref() == Some(JOB_EXISTS)
+}
+
+/// A file that the controller does not list.
+pub fn not_listed() -> Failure {
+    Failure::new(Kind::Refused, "the controller lists no such file")
+        .hint("`yerc file list` shows the names; upper and lower case count")
 }
 
 /// A failure that begins with the file it is about.

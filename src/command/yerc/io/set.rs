@@ -14,6 +14,7 @@ use super::super::register::unsigned;
 use super::super::writes::{Order, runs, write_all};
 use super::signal;
 use super::{GroupState, SignalState, group_table, signal_table};
+use crate::command::dry_run::{Reason, unknown};
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -112,7 +113,7 @@ impl Command for Set {
             changes.iter().filter(|(_, change)| change.mask != u8::MAX).map(|(group, _)| *group).collect();
         let reads = plan_io_reads(model, &partial).map_err(usage)?;
         if link.is_dry() && !reads.is_empty() {
-            return foresee(link, &reads, &changes).await;
+            return Err(plan(link, &reads, &changes)?);
         }
         let plan = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
         let mut found = BTreeMap::new();
@@ -156,19 +157,26 @@ impl Set {
     }
 }
 
-/// The dry run of a change that depends on what is read first: signals that were not named show as off.
-async fn foresee(link: &mut Link, reads: &[IoStep], changes: &BTreeMap<u16, Change>) -> Result<Switched, Failure> {
+/// Notes in a dry run a change that depends on what is read first: signals that were not named are not known.
+fn plan(link: &mut Link, reads: &[IoStep], changes: &BTreeMap<u16, Change>) -> Result<Failure, Failure> {
     for read in reads {
-        link.foresee(&read.request(), &format!("reads group {}", runs(read.wanted())));
+        link.plan(&read.request(), &format!("reads group {}", runs(read.wanted())));
     }
-    let values: Vec<(u16, u8)> = changes.iter().map(|(group, change)| (*group, change.apply(0))).collect();
-    for write in plan_io_writes(link.model, &values).map_err(usage)? {
-        let about = format!("writes group {}; signals that are not named keep what was read", runs(write.written()));
-        link.foresee(&write.request(), &about);
+    let writes = |byte: u8| {
+        let values: Vec<(u16, u8)> = changes.iter().map(|(group, change)| (*group, change.apply(byte))).collect();
+        plan_io_writes(link.model, &values).map_err(usage)
+    };
+    let steps: Vec<(WriteIoStep, WriteIoStep)> = writes(0)?.into_iter().zip(writes(u8::MAX)?).collect();
+    for (one, other) in steps {
+        let (one, other, groups) = (one.request(), other.request(), runs(one.written()));
+        if one == other {
+            link.plan(&one, &format!("writes group {groups}"));
+        } else {
+            let about = format!("writes group {groups}; signals that are not named keep what was read");
+            link.plan_depending(&one, &other, Reason::about(&about).depending_on("what was read"));
+        }
     }
-    // All that can be foreseen is noted: this does not return.
-    link.ask_all::<IoStep>(&[]).await?;
-    Ok(Switched { signals: Vec::new(), groups: Vec::new() })
+    Ok(unknown())
 }
 
 impl Order for WriteIoStep {

@@ -7,8 +7,9 @@ use serde::Serialize;
 use tokio::time::Instant;
 
 use crate::command::Report;
+use crate::command::dry_run::Known as _;
 use crate::command::yerc::link::{Link, Refusal};
-use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost};
+use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost, plan_alarm};
 use crate::command::yerc::orders::usage;
 use crate::command::yerc::position::{self, PositionReport, in_a_line};
 use crate::controller::units::{self, Unit};
@@ -122,17 +123,20 @@ impl<Q: Query<Answer = ()>> Going<Q> {
         let Self { order, group, mut goal, unnamed, no_wait } = self;
         let coordinates = goal.coordinates();
         let mut start = None;
-        if !link.is_dry() {
-            for (group, named, flag) in unnamed {
-                refuse_silent_zeros(link, group, named, flag).await?;
-            }
-            if !no_wait {
-                let (position, _) = position::ask(link, group, coordinates).await?;
-                goal = goal.from(&position);
-                start = Some(position);
-            }
+        for (group, named, flag) in unnamed {
+            refuse_silent_zeros(link, group, named, flag).await?;
         }
-        link.ask(&order).await?;
+        if !no_wait
+            && let Some((position, _)) =
+                position::ask(link.is_for("where it stands"), group, coordinates).await.known()?
+        {
+            goal = goal.from(&position);
+            start = Some(position);
+        }
+        link.is_for("orders the motion").ask(&order).await?;
+        if link.is_dry() && !no_wait {
+            plan_looks(link, group, coordinates)?;
+        }
         let mut moved =
             Moved { accepted: true, group: group.to_string(), at_target: None, reached: None, elapsed_ms: None };
         let Some(start) = start else { return Ok(moved) };
@@ -180,6 +184,14 @@ impl<Q: Query<Answer = ()>> Going<Q> {
     }
 }
 
+/// Notes in a dry run what is asked while the robot moves.
+fn plan_looks(link: &mut Link, group: Group, coordinates: Coordinates) -> Result<(), Failure> {
+    let about = "again and again until the motion has ended";
+    link.plan(&ReadStatus.request(), about);
+    link.plan(&ReadPosition::new(link.model, group, coordinates).map_err(usage)?.request(), about);
+    plan_alarm(link)
+}
+
 /// Looks that a robot gets to come to rest, two seconds.
 const LOOKS_TO_REST: u32 = 40;
 
@@ -211,7 +223,11 @@ async fn refuse_silent_zeros(link: &mut Link, group: Group, named: usize, flag: 
         return Ok(());
     }
     let question = ReadPosition::new(link.model, group, Coordinates::Pulse).map_err(usage)?;
-    match link.try_ask(&question).await? {
+    let Some(answer) = link.is_for("where axes stand that were not named").try_ask(&question).await.known()? else {
+        link.plan_fit(group, Coordinates::Pulse);
+        return Ok(());
+    };
+    match answer {
         Ok(position) => {
             let (axes, _) = link.fit(group, Coordinates::Pulse, position.axes).await;
             silent_zero(group, &Position { axes, ..position }, named, flag).map_or(Ok(()), Err)

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::command::dry_run::Reason;
 use crate::command::yerc::each::Denied;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::orders::usage;
@@ -114,17 +115,24 @@ async fn read(link: &mut Link, reference: Reference) -> Result<Position, Failure
 }
 
 /// Notes in a dry run what is read, and `then` what is written.
-pub fn foresee_reads(link: &mut Link, words: &Words) {
+pub fn plan_reads(link: &mut Link, words: &Words) {
     for reference in words.keys() {
         let question = ReadVariable::new(reference.kind, reference.number);
-        link.foresee(&question.request(), &format!("reads {reference}"));
+        link.plan(&question.request(), &format!("reads {reference}"));
     }
 }
 
-/// Notes in a dry run the positions that are written back; words that were not named show as 0.
-pub fn foresee_writes(link: &mut Link, words: &Words) -> Result<(), Failure> {
+/// Notes in a dry run the positions that are written back; words that were not named are not known.
+pub fn plan_writes(link: &mut Link, words: &Words) -> Result<(), Failure> {
     for (reference, words) in words {
-        let mut position = Position {
+        let write = |mut position: Position| {
+            for word in words {
+                word.set(&mut position);
+            }
+            WriteVariable::new(reference.number, Value::Position(position)).map_err(usage)
+        };
+        // Two positions of which no byte is the same.
+        let one = Position {
             kind: PositionKind::Pulse,
             form: Form(0),
             tool: 0,
@@ -132,14 +140,19 @@ pub fn foresee_writes(link: &mut Link, words: &Words) -> Result<(), Failure> {
             extended: ExtendedForm(0),
             axes: Axes::full([0; MAX_AXES]),
         };
-        for word in words {
-            word.set(&mut position);
-        }
-        let write = WriteVariable::new(reference.number, Value::Position(position)).map_err(usage)?;
+        let other = Position {
+            kind: PositionKind::Base,
+            form: Form(u32::MAX),
+            tool: u32::MAX,
+            user: u32::MAX,
+            extended: ExtendedForm(u32::MAX),
+            axes: Axes::full([-1; MAX_AXES]),
+        };
         let named: Vec<String> = words.iter().map(|word| format!("{}={}", word.name(), word.value())).collect();
         let about =
             format!("writes {reference} with {}; words that are not named keep what was read", named.join(", "));
-        link.foresee(&write.request(), &about);
+        let reason = Reason::about(&about).depending_on("what was read");
+        link.plan_depending(&write(one)?.request(), &write(other)?.request(), reason);
     }
     Ok(())
 }

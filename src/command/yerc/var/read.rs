@@ -29,6 +29,19 @@ pub async fn read_all(
         ))
         .hint("a controller has 100 of a kind (128 positions) unless its parameters say more"));
     }
+    read_whatever_told(link, references, progress).await
+}
+
+/// As [`read_all`], of as many as a file names.
+pub async fn read_whatever(link: &mut Link, references: &[Reference]) -> Result<Answers, Failure> {
+    read_whatever_told(link, references, |_, _| {}).await
+}
+
+async fn read_whatever_told(
+    link: &mut Link,
+    references: &[Reference],
+    progress: impl FnMut(&[Reference], usize),
+) -> Result<Answers, Failure> {
     let parts = |run: &[Reference]| {
         let is_position = run.first().is_some_and(|reference| reference.kind.is_position());
         if is_position { Parts::Single } else { Parts::Halves }

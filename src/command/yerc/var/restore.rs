@@ -12,16 +12,21 @@ use super::super::Family;
 use super::super::orders::usage;
 use super::super::writes::{Order, write_all};
 use super::dump::{FORMAT, VERSION};
-use super::entry::Reading;
+use super::entry::{Entry, Reading, is_undefined};
+use super::read::{Answers, read_whatever};
 use super::{listed, parse_kind};
+use crate::command::dry_run::{Known as _, Reason, unknown};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
+use crate::controller::yerc::payload::{Axes, Position};
+use crate::controller::yerc::query::Query as _;
 use crate::controller::yerc::variables::{Reference, Value, VariableKind, WriteStep, plan_writes};
 use crate::failure::Failure;
 use crate::files;
-use crate::output::view::View;
+use crate::gate::{Change, Confirmation};
+use crate::output::view::{Cell, View};
 
 /// What to write back.
 #[derive(Debug, Args)]
@@ -49,8 +54,12 @@ impl Command for Restore {
         "overwrite variables by those of the file".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         let shown = self.file.display().to_string();
         let wrong = |error: String| {
             Failure::usage(format!("{shown}: {error}")).hint("nothing was sent; correct the file, or take a new dump")
@@ -60,10 +69,9 @@ impl Command for Restore {
             dump.variables.into_iter().filter(|(reference, _)| self.wants(*reference)).collect();
         let undefined: Vec<Reference> =
             kept.iter().filter(|(_, value)| value.is_none()).map(|(reference, _)| *reference).collect();
-        let values: Vec<(u16, Value)> =
-            kept.into_iter().filter_map(|(reference, value)| Some((reference.number, value?))).collect();
-        let steps = plan_writes(&values).map_err(usage)?;
-        if steps.is_empty() {
+        let values: Vec<(Reference, Value)> =
+            kept.into_iter().filter_map(|(reference, value)| Some((reference, value?))).collect();
+        if values.is_empty() {
             return Err(Failure::usage(format!("{shown} holds no values of the kinds wanted"))
                 .hint("--only chooses the kinds; what is null in the file is left alone"));
         }
@@ -76,16 +84,72 @@ impl Command for Restore {
         if !undefined.is_empty() {
             screen.note(&format!("left alone, undefined in the dump: {}", listed(undefined.iter().copied())));
         }
+        let references: Vec<Reference> = values.iter().map(|(reference, _)| *reference).collect();
+        let known = read_whatever(link, &references).await.known()?;
+        let is_dry = known.is_none();
+        let known = known.unwrap_or_default();
+        let is_same = |(reference, value): &(Reference, Value)| {
+            known.get(reference).is_some_and(|old| old.as_ref().is_ok_and(|old| same(old, value)))
+        };
+        let (unchanged, differing): (Vec<_>, Vec<_>) = values.into_iter().partition(is_same);
+        authority.confirm(&change(&known, &differing, dump.encoding)).await?;
+        let numbered: Vec<(u16, Value)> =
+            differing.iter().map(|(reference, value)| (reference.number, value.clone())).collect();
+        let steps = plan_writes(&numbered).map_err(usage)?;
+        if is_dry {
+            for step in &steps {
+                let about = format!("writes {}", listed(step.written().iter().copied()));
+                let reason = Reason::about(&about).depending_on("which values differ: only those are written");
+                link.plan_if(&step.request(), reason);
+            }
+            return Err(unknown());
+        }
         write_all(link, screen, &steps).await?;
+        let unchanged: Vec<Reference> = unchanged.into_iter().map(|(reference, _)| reference).collect();
         let written: Vec<Reference> = steps.iter().flat_map(WriteStep::written).copied().collect();
         Ok(Restored {
             file: shown,
             written: written.len(),
             written_names: listed(written),
+            unchanged: unchanged.len(),
+            unchanged_names: listed(unchanged),
             left_alone: undefined.len(),
             left_alone_names: listed(undefined),
             requests: steps.len(),
         })
+    }
+}
+
+/// What is overwritten. A variable that holds nothing yet is not.
+fn change(known: &Answers, differing: &[(Reference, Value)], encoding: Encoding) -> Change {
+    let mut overwritten = Vec::new();
+    for (reference, value) in differing {
+        let old = match known.get(reference) {
+            Some(Err(denied)) if is_undefined(denied) => continue,
+            Some(old @ Ok(_)) => Entry::new(*reference, old, encoding).shown(),
+            Some(Err(_)) => "not read".to_owned(),
+            None => continue,
+        };
+        overwritten.push((reference.to_string(), old, Entry::new(*reference, &Ok(value.clone()), encoding).shown()));
+    }
+    if overwritten.is_empty() {
+        return Change::nothing();
+    }
+    let plural = if overwritten.len() == 1 { "" } else { "s" };
+    let change = Change::new(format!("overwrite {} variable{plural}", overwritten.len()));
+    overwritten.iter().fold(change, |change, (name, old, new)| change.replaces(name, old, new))
+}
+
+/// Whether a controller that holds `old` would hold the same after `new` was written: axes that are not told are 0.
+fn same(old: &Value, new: &Value) -> bool {
+    match (old, new) {
+        (Value::Position(old), Value::Position(new)) => {
+            let full = |position: &Position| Position { axes: Axes::full(position.axes.padded()), ..*position };
+            full(old) == full(new)
+        }
+        // Zeros of both signs are equal, a number that is none is never.
+        (Value::Real(old), Value::Real(new)) => old.to_bits() == new.to_bits(),
+        (old, new) => old == new,
     }
 }
 
@@ -163,6 +227,9 @@ pub struct Restored {
     written: usize,
     /// Which, as in `B0..B99, I0..I99`.
     written_names: String,
+    /// How many the controller held like this already.
+    unchanged: usize,
+    unchanged_names: String,
     /// How many the dump has no value for.
     left_alone: usize,
     left_alone_names: String,
@@ -172,9 +239,11 @@ pub struct Restored {
 
 impl Report for Restored {
     fn view(&self) -> View {
+        let names = |count: usize, names: &str| if count == 0 { "-".into() } else { Cell::from(names) };
         View::fields([
-            ("written", self.written_names.as_str().into()),
-            ("left alone", if self.left_alone == 0 { "-".into() } else { self.left_alone_names.as_str().into() }),
+            ("written", names(self.written, &self.written_names)),
+            ("unchanged", names(self.unchanged, &self.unchanged_names)),
+            ("left alone", names(self.left_alone, &self.left_alone_names)),
             ("variables", self.written.into()),
             ("requests", self.requests.into()),
         ])

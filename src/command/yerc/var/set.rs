@@ -15,6 +15,7 @@ use super::entry::{Entry, Reading, position_in};
 use super::part::{self, Word, Words};
 use super::{in_form, listed};
 use crate::command::ValueKind;
+use crate::command::dry_run::unknown;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -190,13 +191,12 @@ impl Command for Set {
         let steps = plan_writes(&plain).map_err(usage)?;
         let mut changes: Vec<Change> = steps.into_iter().map(Change::Values).chain(fields).collect();
         if link.is_dry() && !words.is_empty() {
-            part::foresee_reads(link, &words);
+            part::plan_reads(link, &words);
             for change in &changes {
-                link.foresee(&change.request(), &format!("writes {}", Change::listed(change.items())));
+                link.plan(&change.request(), &format!("writes {}", Change::listed(change.items())));
             }
-            part::foresee_writes(link, &words)?;
-            // All that can be foreseen is noted: this does not return.
-            link.ask_all::<Change>(&[]).await?;
+            part::plan_writes(link, &words)?;
+            return Err(unknown());
         }
         for (reference, old, write) in part::changed(link, &words).await? {
             let words = words.get(&reference).into_iter().flatten();

@@ -1,0 +1,76 @@
+//! The job that a start runs: what the question about it says, and whether it is still the same after the answer.
+
+use super::link::Link;
+use super::orders::usage;
+use crate::controller::text::Encoding;
+use crate::controller::units;
+use crate::controller::yerc::payload::JobInfo;
+use crate::controller::yerc::query::ReadJob;
+use crate::failure::{Failure, Kind};
+use crate::gate::Change;
+
+/// The job that a start runs, as far as the controller tells it.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Chosen {
+    /// This one, at a line, with a speed override.
+    Job(JobInfo),
+    /// None.
+    None,
+    /// Why it could not be read.
+    Unread(String),
+}
+
+impl Chosen {
+    /// Asks what the master task would execute (FS and DX 3.3.4).
+    pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
+        let unread = |failure: &Failure| Self::Unread(failure.message.trim_end_matches('.').to_owned());
+        let question = ReadJob::new(link.model, 0).map_err(usage)?;
+        match link.is_for("which job is selected").try_ask(&question).await {
+            Ok(Ok(info)) if info.name.is_empty() => Ok(Self::None),
+            Ok(Ok(info)) => Ok(Self::Job(info)),
+            Ok(Err(refusal)) => Ok(unread(&refusal.into())),
+            Err(failure) if failure.kind == Kind::Malformed => Ok(unread(&failure)),
+            Err(failure) if failure.kind == Kind::NotKnown => Ok(Self::None),
+            Err(failure) => Err(failure),
+        }
+    }
+
+    /// Its name.
+    pub fn name(&self, encoding: Encoding) -> Option<String> {
+        match self {
+            Self::Job(info) => Some(encoding.decode(info.name.as_bytes())),
+            Self::None | Self::Unread(_) => None,
+        }
+    }
+
+    /// What the question says.
+    pub fn change(&self, encoding: Encoding) -> Change {
+        let unnamed = Change::new("start the selected job");
+        match self {
+            Self::None => unnamed.note("The controller names no job."),
+            Self::Unread(why) => unnamed.note(format!("Which job that is could not be read: {why}.")),
+            Self::Job(info) => {
+                let name = encoding.decode(info.name.as_bytes());
+                let from = if info.line == 0 { String::new() } else { format!(" from line {} on", info.line) };
+                let percent = units::PERCENT.show_unsigned(info.speed_override);
+                Change::new(format!("start job {name}{from}")).note(format!("The speed override is {percent} %."))
+            }
+        }
+    }
+
+    /// Refuses to start another job than the one that was asked about.
+    pub async fn check_again(&self, link: &mut Link) -> Result<(), Failure> {
+        let now = Self::ask(link).await?;
+        if now == *self {
+            return Ok(());
+        }
+        let encoding = link.encoding;
+        let shown = |chosen: &Self| chosen.name(encoding).unwrap_or_else(|| "no job that could be read".to_owned());
+        let message = match (shown(self), shown(&now)) {
+            (old, new) if old == new => format!("line or speed override of {old} changed since the question"),
+            (old, new) => format!("{new} is selected now, the question was about {old}"),
+        };
+        Err(Failure::new(Kind::RefusedHere, format!("{message}; nothing was started"))
+            .hint("somebody else is at work there: look, then repeat the command"))
+    }
+}

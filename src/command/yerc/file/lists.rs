@@ -1,0 +1,78 @@
+//! Which of some files the controller has, by its lists: so what is overwritten or deleted is known before it is.
+
+use super::transfer;
+use crate::command::backup::goes_on;
+use crate::command::yerc::link::Link;
+use crate::controller::yerc::files::{self, FileName, FileType};
+use crate::failure::Failure;
+
+/// What a list says about a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum There {
+    /// It is there.
+    Yes,
+    /// It is not.
+    No,
+    /// Nothing: there is no list of its type, or the controller refused it.
+    Untold,
+}
+
+/// The lists of some types.
+#[derive(Debug, Default)]
+pub struct Lists(Vec<(FileType, Option<Vec<Vec<u8>>>)>);
+
+impl Lists {
+    /// Asks for the lists that tell about these files; `None` in a dry run, which notes the requests.
+    pub async fn ask<'a>(
+        link: &mut Link,
+        asked: impl IntoIterator<Item = &'a FileName>,
+    ) -> Result<Option<Self>, Failure> {
+        let mut types: Vec<FileType> = Vec::new();
+        for kind in asked.into_iter().filter_map(FileName::file_type) {
+            if !types.contains(&kind) {
+                types.push(kind);
+            }
+        }
+        if link.is_dry() {
+            for kind in types {
+                link.plan(&files::list(kind), "which files are there");
+            }
+            return Ok(None);
+        }
+        let mut lists = Self::default();
+        for kind in types {
+            let names = match transfer::list(link, kind).await {
+                Ok(names) => Some(names),
+                Err(failure) if goes_on(&failure) => None,
+                Err(failure) => return Err(transfer::about(&kind.filter(), failure)),
+            };
+            lists.0.push((kind, names));
+        }
+        Ok(Some(lists))
+    }
+
+    /// Whether a file is there. A name in other letters counts: a controller may mean the same file.
+    pub fn tell(&self, file: &FileName) -> There {
+        let list = self.0.iter().find(|(kind, _)| Some(*kind) == file.file_type());
+        match list {
+            Some((_, Some(names))) if names.iter().any(|name| name.eq_ignore_ascii_case(file.as_bytes())) => There::Yes,
+            Some((_, Some(_))) => There::No,
+            Some((_, None)) | None => There::Untold,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refused_list_leaves_it_open() {
+        let file = |name: &str| FileName::new(name).unwrap();
+        let lists = Lists(vec![(FileType::Jbi, Some(vec![b"a.JBI".to_vec()])), (FileType::Prm, None)]);
+        assert_eq!(lists.tell(&file("A.JBI")), There::Yes);
+        assert_eq!(lists.tell(&file("B.JBI")), There::No);
+        assert_eq!(lists.tell(&file("ALL.PRM")), There::Untold);
+        assert_eq!(lists.tell(&file("A.DAT")), There::Untold);
+    }
+}

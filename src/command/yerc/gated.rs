@@ -1,0 +1,133 @@
+//! Every command line of the family before the gate: its risk, a read-only robot, a dry run that shows that risk.
+
+use std::collections::BTreeSet;
+
+use clap::CommandFactory as _;
+use serde_json::{Value, json};
+
+use super::testing::{Bench, DX200, dry_run, resolved};
+use crate::cli::Cli;
+use crate::command::testing::QUIET;
+use crate::controller::Risk::{self, Destroy, Motion, Read, Write};
+use crate::controller::text::unhex;
+use crate::controller::yerc::request::Request;
+use crate::controller::yerc::wire::RequestFrame;
+use crate::failure::Kind;
+use crate::gate::Gate;
+
+/// A line for each command, with files in `DIR`; its risk, and the most that a frame of it may be.
+const LINES: &[(&str, Risk, Risk)] = &[
+    ("status", Read, Read),
+    ("alarm list", Read, Read),
+    ("alarm history", Read, Read),
+    ("alarm reset", Write, Write),
+    ("alarm cancel", Write, Write),
+    ("job show", Read, Read),
+    ("job select A", Write, Write),
+    ("job start", Motion, Motion),
+    ("job start --wait", Motion, Motion),
+    ("file list", Read, Read),
+    ("file get A.JBI --output DIR/new", Read, Read),
+    ("file put DIR/A.JBI", Destroy, Destroy),
+    ("file put DIR/A.JBI --replace --verify", Destroy, Destroy),
+    ("file delete A.JBI", Destroy, Destroy),
+    ("file diff A.JBI DIR/A.JBI", Read, Read),
+    ("file backup DIR/new", Read, Read),
+    ("file restore DIR/backup --force", Destroy, Destroy),
+    ("file restore DIR/backup --force --differing", Destroy, Destroy),
+    ("file cmos --start-only", Write, Write),
+    ("position", Read, Read),
+    ("axes", Read, Read),
+    ("position-error", Read, Read),
+    ("torque", Read, Read),
+    ("var get B0", Read, Read),
+    ("var set B0=1 P1.tool=2", Write, Write),
+    ("var dump DIR/new.json", Read, Read),
+    // Each variable may be set again; to write back many replaces what is in them.
+    ("var restore DIR/dump.json", Destroy, Write),
+    ("io get 10010", Read, Read),
+    ("io set 27010=on", Write, Write),
+    ("register get 1", Read, Read),
+    ("register set 1=1", Write, Write),
+    ("servo on", Motion, Motion),
+    ("servo off", Write, Write),
+    ("hold on", Write, Write),
+    ("hold off", Write, Write),
+    ("hlock on", Write, Write),
+    ("cycle once", Write, Write),
+    ("say HELLO", Write, Write),
+    ("move joint --to 1,2,3,4,5,6 --speed 1%", Motion, Motion),
+    ("move linear --to 1,2,3,4,5,6 --speed 1mm/s", Motion, Motion),
+    ("move relative --z 1 --speed 1mm/s", Motion, Motion),
+    ("move pulse joint --pulses 1,2,3,4,5,6 --speed 1%", Motion, Motion),
+    ("move pulse linear --pulses 1,2,3,4,5,6 --speed 1mm/s", Motion, Motion),
+    ("hours", Read, Read),
+    ("info", Read, Read),
+    ("raw --command 0x72 --instance 1 --service 0x01", Read, Read),
+    ("raw --command 0x7A --instance 1 --attribute 1 --service 0x10 --data 01", Write, Write),
+    ("raw --file --service 0x09 --data 412e4a4249", Destroy, Destroy),
+    ("raw --command 0x90 --instance 1 --service 0x01", Motion, Motion),
+];
+
+/// The files that the lines name.
+fn prepare(folder: &std::path::Path) {
+    let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    std::fs::write(path("A.JBI"), "/JOB\r\n//NAME A\r\nNOP\r\nEND\r\n").unwrap();
+    let variables = json!([{ "name": "B0", "kind": "B", "number": 0, "value": 7 }]);
+    let dump = json!({ "format": "armctl-variables", "version": 1, "model": "dx200", "encoding": "shift_jis",
+                       "variables": variables });
+    std::fs::write(path("dump.json"), dump.to_string()).unwrap();
+    Bench::new("sim:").data(&["file", "backup", &path("backup")]);
+}
+
+/// The risk of a frame; bytes that an answer decides count as 0.
+fn risk_of(frame: &Value) -> Risk {
+    let bytes = unhex(&frame["hex"].as_str().expect("hexadecimal").replace("??", "00")).expect("hexadecimal");
+    let frame = RequestFrame::parse(&bytes).expect("a request");
+    Request::from(frame).risk()
+}
+
+#[test]
+fn every_command_passes_the_gate_by_its_risk() {
+    let folder = tempfile::tempdir().unwrap();
+    prepare(folder.path());
+    let place = folder.path().to_str().unwrap();
+    let mut reached = BTreeSet::new();
+    for (line, risk, most) in LINES {
+        let line = line.replace("DIR", place);
+        let words: Vec<&str> = line.split(' ').collect();
+        let (mut robot, command) = resolved(DX200, &words).unwrap();
+        reached.insert(command.id().to_owned());
+        let intent = command.intent(Some(&robot));
+        assert_eq!(intent.risk, *risk, "{line}");
+        assert!(*risk < Destroy || !intent.text.is_empty(), "{line}: what is asked says what will happen");
+        assert_eq!(intent.is_stop, line == "hold on", "{line}");
+
+        robot.read_only.value = true;
+        let passed = Gate { yes: true, ..Gate::default() }.must_ask(&QUIET, &robot, &intent);
+        if *risk == Read || intent.is_stop {
+            assert_eq!(passed, Ok(false), "{line}");
+        } else {
+            assert_eq!(passed.unwrap_err().kind, Kind::RefusedHere, "{line}");
+        }
+
+        let frames = dry_run(DX200, &words).unwrap_or_else(|failure| panic!("{line}: {failure:?}"));
+        let shown = frames.iter().map(risk_of).max();
+        assert_eq!(shown, Some(*most), "{line}: {frames:?}");
+    }
+    let cli = Cli::command();
+    let mut leaves = BTreeSet::new();
+    collect(cli.find_subcommand("yerc").expect("the family is there"), "yerc", &mut leaves);
+    assert_eq!(reached, leaves);
+}
+
+fn collect(command: &clap::Command, id: &str, all: &mut BTreeSet<String>) {
+    let mut subcommands =
+        command.get_subcommands().filter(|sub| !["repl", "help"].contains(&sub.get_name())).peekable();
+    if subcommands.peek().is_none() {
+        all.insert(id.to_owned());
+    }
+    for sub in subcommands {
+        collect(sub, &format!("{id}.{}", sub.get_name()), all);
+    }
+}

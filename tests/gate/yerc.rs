@@ -1,0 +1,158 @@
+//! What holds for Yaskawa.
+
+use serde_json::Value;
+
+use crate::desk::Desk;
+use crate::simulator::Simulator;
+use crate::terminal::Terminal;
+
+const JOB: &str = "/JOB\r\n//NAME NEW\r\n//POS\r\n///NPOS 0,0,0,0,0,0\r\n//INST\r\nNOP\r\nEND\r\n";
+
+fn desk(controller: &Simulator) -> Desk {
+    let desk = Desk::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n", controller.url));
+    std::fs::write(desk.folder.path().join("NEW.JBI"), JOB).unwrap();
+    std::fs::write(desk.folder.path().join("HOME.JBI"), JOB.replace("NEW", "HOME")).unwrap();
+    desk
+}
+
+/// The names of the jobs on the controller.
+fn jobs(desk: &Desk) -> Vec<String> {
+    let data = desk.data("-r cell yerc file list");
+    data["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap().to_owned()).collect()
+}
+
+/// The frames of a dry run: command, instance and service each, and whether something decides about it.
+fn frames(desk: &Desk, line: &str) -> Vec<(String, bool)> {
+    let data = desk.data(&format!("-r cell yerc {line} --dry-run"));
+    assert_eq!(data["complete"], true, "{line}");
+    let head = |frame: &Value| {
+        let hex = frame["hex"].as_str().unwrap();
+        (format!("{} {} {}", &hex[48..52], &hex[52..56], &hex[58..60]), frame["depends_on"].is_string())
+    };
+    data["frames"].as_array().unwrap().iter().map(head).collect()
+}
+
+#[test]
+fn files_are_overwritten_and_deleted_only_after_a_yes() {
+    let controller = Simulator::start("yerc");
+    let desk = desk(&controller);
+    let before = jobs(&desk);
+    desk.fails("-r cell yerc file delete HOME.JBI NONE.JBI", 7, "would delete 1 file on the controller (HOME.JBI)");
+    desk.fails(
+        "-r cell yerc file put HOME.JBI --replace",
+        7,
+        "would overwrite 1 file on the controller (HOME.JBI, by ",
+    );
+    assert_eq!(jobs(&desk), before, "nothing was done");
+
+    // What is not there is said, and what is new overwrites nothing.
+    desk.fails("-r cell yerc file delete NONE.JBI", 3, "lists no such file");
+    assert_eq!(desk.run("-r cell yerc file put NEW.JBI").exit, Some(0));
+    assert_eq!(desk.run("-r cell yerc file put HOME.JBI --replace --yes").exit, Some(0));
+    assert_eq!(desk.run("-r cell yerc file delete NEW.JBI --yes").exit, Some(0));
+    assert_eq!(jobs(&desk), before);
+}
+
+#[test]
+fn a_restore_asks_for_what_differs_alone() {
+    let controller = Simulator::start("yerc");
+    let desk = desk(&controller);
+    assert_eq!(desk.run("-r cell yerc file backup saved").exit, Some(0));
+    for restore in ["-r cell restore saved", "-r cell restore saved --machine"] {
+        assert_eq!(desk.run(restore).exit, Some(0), "{restore}: nothing differs, so nothing is overwritten");
+    }
+    assert_eq!(desk.run("-r cell yerc file put HOME.JBI --replace --yes").exit, Some(0));
+    for restore in
+        ["-r cell restore saved", "-r cell restore saved --machine", "-r cell yerc file restore saved --differing"]
+    {
+        desk.fails(restore, 7, "would overwrite 1 file on the controller (HOME.JBI, by ");
+    }
+    desk.fails("-r cell yerc file restore saved --type prm", 7, "would overwrite ");
+    assert_eq!(desk.run("-r cell restore saved --yes").exit, Some(0));
+    assert_eq!(desk.run("-r cell restore saved").exit, Some(0), "it is as it was");
+}
+
+/// Parameters of one controller do not go to another, whichever way they are sent.
+#[test]
+fn parameters_of_another_controller_are_refused_by_both_commands() {
+    let [one, other] = [Simulator::start("yerc"), Simulator::start("yerc")];
+    let desk = desk(&one);
+    assert_eq!(desk.run("-r cell yerc file backup saved").exit, Some(0));
+    let url = &other.url;
+    for restore in
+        ["restore saved --machine", "yerc file restore saved --type prm", "yerc file restore saved --type sys"]
+    {
+        desk.fails(&format!("-t {url} {restore} --yes"), 7, "the backup is of ");
+    }
+}
+
+#[test]
+fn variables_are_restored_after_a_yes_with_old_and_new() {
+    let controller = Simulator::start("yerc");
+    let desk = desk(&controller);
+    assert_eq!(desk.run("-r cell yerc var set B7=7 R3=1.5").exit, Some(0), "to set one is a write");
+    assert_eq!(desk.run("-r cell yerc var dump saved.json --kinds B,R").exit, Some(0));
+    let data = desk.data("-r cell yerc var restore saved.json");
+    assert_eq!((&data["written"], &data["unchanged"]), (&0.into(), &200.into()));
+    assert_eq!(desk.run("-r cell yerc var set B7=9").exit, Some(0));
+    desk.fails("-r cell yerc var restore saved.json", 7, "would overwrite 1 variable (B7: 9 -> 7)");
+    let data = desk.data("-r cell yerc var restore saved.json --yes");
+    assert_eq!((&data["written_names"], &data["unchanged"]), (&"B7".into(), &199.into()));
+}
+
+#[test]
+fn a_job_is_started_by_its_name() {
+    let controller = Simulator::start("yerc");
+    let desk = desk(&controller);
+    desk.fails("-r cell yerc job start", 7, "would start the selected job");
+    assert_eq!(desk.run("-r cell yerc servo on --yes").exit, Some(0));
+    assert_eq!(desk.run("-r cell yerc job select TESTJOB").exit, Some(0));
+    assert_eq!(desk.data("-r cell yerc job start --yes")["job"], "TESTJOB");
+    assert_eq!(frames(&desk, "job start"), [("7300 0100 01".to_owned(), false), ("8600 0100 10".to_owned(), false)]);
+}
+
+/// What a person said yes to is what is started.
+#[test]
+fn a_job_that_was_not_asked_about_is_not_started() {
+    let controller = Simulator::start("yerc");
+    let desk = desk(&controller);
+    assert_eq!(desk.run("-r cell yerc servo on --yes").exit, Some(0));
+    for (meanwhile, exit) in [("MAIN", 7), ("COUNT", 0)] {
+        assert_eq!(desk.run("-r cell yerc job select COUNT").exit, Some(0));
+        let mut terminal = Terminal::start(desk.command("-r cell yerc job start"), 100, 30).unwrap();
+        terminal.says("This will start job COUNT.");
+        terminal.says("Continue?");
+        assert_eq!(desk.run(&format!("-r cell yerc job select {meanwhile}")).exit, Some(0));
+        terminal.press("y\n");
+        assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
+    }
+}
+
+#[test]
+fn a_dry_run_goes_to_its_end() {
+    let controller = Simulator::start("yerc");
+    let desk = desk(&controller);
+    let shown = |line: &str| {
+        let told = |(head, depends): (String, bool)| if depends { format!("{head}?") } else { head };
+        frames(&desk, line).into_iter().map(told).collect::<Vec<_>>().join(", ")
+    };
+    let heads = [
+        ("status", "7200 0100 01"),
+        ("position", "7500 0100 01, 7500 6500 01, 7400 0100 01?, 7400 6500 01?"),
+        ("torque", "7700 0100 01, 7400 0100 01?"),
+        (
+            "move linear --to 1,2,3,4,5,6 --speed 1mm/s",
+            "7500 0b00 01, 7400 0b00 01?, 7500 6500 01, 7400 6500 01?, 8a00 0200 02, 7200 0100 01, 7500 6500 01, \
+             7000 0100 01?",
+        ),
+        ("io set 27010=on", "7800 8d0a 0e, 7800 8d0a 10?"),
+        ("var set P1.tool=2", "7f00 0100 01, 7f00 0100 02?"),
+        ("register set 1=1", "7900 0100 10"),
+        ("file put NEW.JBI", "0000 0000 32, 0000 0000 15, 0000 0000 15"),
+        ("file delete HOME.JBI", "0000 0000 32, 0000 0000 09?"),
+    ];
+    for (line, expected) in heads {
+        assert_eq!(shown(line), expected, "{line}");
+    }
+    assert!(jobs(&desk).contains(&"HOME.JBI".to_owned()), "nothing was sent");
+}
