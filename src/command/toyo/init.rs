@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::Family;
 use super::link::Link;
 use super::task;
+use crate::command::dry_run::Known as _;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -90,13 +91,7 @@ impl Command for Init {
         let Context { link, screen, .. } = context;
         let (name, number, words) = self.what.row();
         let clear = Request::of(table::Command::Mint, [Value::Word(number)]);
-        // A question would end a dry run.
-        let task = if link.is_dry() {
-            link.foresee(&Request::bare(table::Command::Mtsk), "which task it is about");
-            None
-        } else {
-            Some(task::current(link).await?)
-        };
+        let task = task::current(link).await.known()?;
         link.order(&clear).await?;
         let status = settled(link, screen).await.map_err(accepted)?;
         Ok(Cleared { cleared: name, about: words, task, needs_power_cycle: status.needs_power_cycle() })

@@ -144,7 +144,7 @@ async fn read(
     requests: &[Request],
     times: u8,
 ) -> Result<Answers, Failure> {
-    link.rehearse(requests)?;
+    link.dry_run(requests)?;
     let mut progress = (requests.len() > 1).then(|| screen.items_progress(what, requests.len() as u64));
     let mut answers = Answers::with_capacity(requests.len());
     let mut silence: Option<Failure> = None;

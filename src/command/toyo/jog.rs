@@ -181,16 +181,16 @@ impl Jog {
         jog(self.word(), Some(axis.index))
     }
 
-    fn foresee(&self, link: &mut Link, axis: &Known) {
-        link.foresee(&position(), "where it stands");
+    fn plan(&self, link: &mut Link, axis: &Known) {
+        link.plan(&position(), "where it stands");
         let steps = self.steps.unwrap_or(1);
         match self.within {
-            Some(time) => link.foresee(&self.order(axis), &format!("then {} pass", duration::display(time))),
-            None if steps > 1 => link.foresee(&self.order(axis), &format!("{steps} times, when the axis stands again")),
-            None => link.foresee(&self.order(axis), "once"),
+            Some(time) => link.plan(&self.order(axis), &format!("then {} pass", duration::display(time))),
+            None if steps > 1 => link.plan(&self.order(axis), &format!("{steps} times, when the axis stands again")),
+            None => link.plan(&self.order(axis), "once"),
         }
-        link.foresee(&status_page(0), "while it moves: whether there is an error");
-        link.foresee(&position(), "while it moves: where it is");
+        link.plan(&status_page(0), "while it moves: whether there is an error");
+        link.plan(&position(), "while it moves: where it is");
     }
 
     /// Moves until the time is over, or by all steps. Returns how many steps were done.
@@ -328,7 +328,7 @@ impl Command for Jog {
         let axis = Known { index, letter: letters.of(index).to_owned() };
         link.order(&jog("RS", None)).await?;
         if link.is_dry() {
-            self.foresee(link, &axis);
+            self.plan(link, &axis);
             link.stop(Moving::Jog).await?;
         }
         let start = Place::of(&link.read(&position()).await?);

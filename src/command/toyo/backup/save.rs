@@ -82,7 +82,7 @@ impl Command for Backup {
         let scope = self.scope();
         let earlier: Option<Manifest> = manifest::earlier(&folder, robot, scope.as_deref(), self.resume, self.force)?;
         if link.is_dry() {
-            return self.rehearse(link).await;
+            return self.dry_run(link).await;
         }
         let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
         if self.current_task && !scope.iter().any(|word| word == CURRENT_TASK) {
@@ -151,10 +151,10 @@ impl Backup {
         Ok(BackedUp::new(folder, controller, manifest.scope, complete, results))
     }
 
-    async fn rehearse(&self, link: &mut Link) -> Result<BackedUp, Failure> {
-        content::foresee_controller(link);
+    async fn dry_run(&self, link: &mut Link) -> Result<BackedUp, Failure> {
+        content::plan_controller(link);
         let mut first = |part: Part, about: &str| -> Result<(), Failure> {
-            link.foresee(&content::first_read(part)?, about);
+            link.plan(&content::first_read(part)?, about);
             Ok(())
         };
         first(Part::Parameters, "and so on, every parameter and every row of the tables")?;
@@ -166,8 +166,8 @@ impl Backup {
             tasks::choose(link, Some(1)).await?;
         }
         let of = if self.current_task { "of the current task" } else { "of each task, which is chosen before" };
-        link.foresee(&content::first_read(Part::Points(1))?, &format!("and so on, every point {of}"));
-        link.foresee(&content::first_read(Part::Program(1))?, &format!("and so on, every step {of}"));
+        link.plan(&content::first_read(Part::Points(1))?, &format!("and so on, every point {of}"));
+        link.plan(&content::first_read(Part::Program(1))?, &format!("and so on, every step {of}"));
         Err(unknown())
     }
 }

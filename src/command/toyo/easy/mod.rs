@@ -59,6 +59,13 @@ pub fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
     Ok(Cell { read: read(program)?, write, wanted })
 }
 
+/// The block that writes a program; `?` stands for values that are kept.
+fn sketch(program: i32, values: &[Option<Value>]) -> String {
+    let keys = [program, 0].map(|key| Some(Value::Number(key)));
+    let all: Vec<_> = keys.into_iter().chain(values.iter().cloned()).collect();
+    format!("@{}", Command::Wesy.row().requests[0].sketch(&all).unwrap_or_default())
+}
+
 /// An easy program.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Program {

@@ -19,6 +19,9 @@ pub(super) enum Host {
     Taken,
 }
 
+/// What decides whether the host is switched.
+const HOST: &str = "whether the host was ON";
+
 impl Link {
     /// Makes sure that the host commands, and remembers who did before.
     pub async fn take_host(&mut self) -> Result<(), Failure> {
@@ -27,7 +30,7 @@ impl Link {
         }
         if let Transport::Notes(_) = self.transport {
             self.note(&status_page(2), Reason::about("whether the host is ON"));
-            self.note(&Request::bare(Command::Hson), Reason::about("if it is not"));
+            self.note(&Request::bare(Command::Hson), Reason::default().depending_on(HOST));
             self.host = Host::Taken;
             return Ok(());
         }
@@ -52,14 +55,17 @@ impl Link {
         }
     }
 
-    /// Changes something for a while: `back` makes it as it was, in [`Link::put_back`] or when the link ends. A dry run
-    /// notes what it is about.
-    pub async fn borrow(&mut self, change: &Request, back: Request, about: &str) -> Result<(), Failure> {
-        if self.is_dry() {
-            self.note(change, Reason::about(about));
-            self.borrowed.push(back);
-            return Ok(());
-        }
+    /// Notes in a dry run that something is changed for a while; `back` is what puts it back, with `?` for what was found.
+    pub async fn plan_to_borrow(&mut self, change: &Request, back: &str, on: &str) -> Result<(), Failure> {
+        self.take_host().await?;
+        self.fence().await?;
+        self.plan_if(change, on);
+        self.owed.push(back.to_owned());
+        Ok(())
+    }
+
+    /// Changes something for a while: `back` makes it as it was, in [`Link::put_back`] or when the link ends.
+    pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Failure> {
         // Before it is sent: if the answer is lost, it may have been done.
         self.debts.push(&back.text());
         self.borrowed.push(back);
@@ -76,6 +82,11 @@ impl Link {
 
     /// Makes everything as it was before [`Link::borrow`]. All of it is tried; the first failure counts.
     pub async fn put_back(&mut self) -> Result<(), Failure> {
+        while let Some(back) = self.owed.pop() {
+            self.fence().await?;
+            let reason = Reason::about("to put back what was found");
+            self.plan_depending(&back, reason.depending_on("what was found"));
+        }
         let mut outcome = Ok(());
         while let Some(back) = self.borrowed.pop() {
             let text = back.text();
@@ -85,10 +96,6 @@ impl Link {
             };
             if self.is_gone {
                 self.screen.note(&kept("the line is gone".to_owned()).message);
-                continue;
-            }
-            if self.is_dry() {
-                self.note(&back, Reason::about("to put back what was found"));
                 continue;
             }
             // A line that is still out of order shows in what follows.
@@ -132,11 +139,14 @@ impl Link {
         }
     }
 
-    pub(super) fn note_host_off(&mut self) {
-        if self.host == Host::Taken {
-            self.host = Host::Unknown;
-            self.note(&Request::bare(Command::Hsof), Reason::about("if it was OFF before"));
+    /// Notes in a dry run what is sent when the link ends.
+    pub(super) fn plan_end(&mut self) {
+        if !self.is_dry() || self.host != Host::Taken {
+            return;
         }
+        self.host = Host::Unknown;
+        self.plan_fence();
+        self.note(&Request::bare(Command::Hsof), Reason::default().depending_on(HOST));
     }
 }
 

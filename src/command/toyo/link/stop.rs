@@ -45,12 +45,13 @@ impl Link {
     /// [`Kind::OutcomeUnknown`] if nothing tells that it stands, [`Kind::ConditionNotMet`] if it moves on.
     pub async fn stop(&mut self, moving: Moving) -> Result<Record, Failure> {
         if self.is_dry() {
-            self.foresee(&moving.stop(), "repeated until it stands");
-            self.foresee(&status_page(0), "whether it stands");
-            self.foresee(&Request::bare(Command::Mpst), "where it stands");
+            self.plan(&moving.stop(), "until it stands");
+            self.plan(&status_page(0), "until it stands: whether something is executed");
             if moving == Moving::Program {
-                self.foresee(&Moving::Jog.stop(), "if an axis moves on: it may be jogged");
+                self.plan_if(&Moving::Jog.stop(), "whether something is executed on: an axis may be jogged");
+                self.plan_if(&status_page(0), "whether something is executed on");
             }
+            self.plan(&Request::bare(Command::Mpst), "until it stands: where");
             return Err(unknown());
         }
         self.set_policy(Policy { timeout: SILENCE, retries: REPETITIONS, ..self.usual });

@@ -72,7 +72,13 @@ pub fn store(program: i32, record: &'static Pallet, values: Vec<Value>) -> Resul
         write: Request::write_pallet(program, record, &values).map_err(|error| wrong(&error))?,
         wanted: record.layout.record(values).map_err(|error| wrong(&error))?,
     };
-    Ok(Store { key: record.name.to_owned(), cell, is_optional: false, found: None })
+    Ok(Store::new(record.name, cell))
+}
+
+/// The block that writes a record; `?` stands for values that are kept.
+fn sketch(program: i32, record: &Pallet, values: &[Option<Value>]) -> String {
+    let body = record.layout.sketch(values).unwrap_or_default();
+    format!("@WPLT {program:02} SNO={:02} {body}", record.number)
 }
 
 /// A record of a program.

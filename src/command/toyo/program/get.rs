@@ -74,7 +74,7 @@ impl Command for Get {
         }
         let target = self.file.clone().map(|file| Target::new(file, self.force)).transpose()?;
         if link.is_dry() {
-            return self.rehearse(link).await;
+            return self.dry_run(link).await;
         }
         let outcome = self.read(link, screen).await;
         let (task, room, read) = tasks::done(link, outcome).await?;
@@ -117,10 +117,10 @@ impl Get {
         Ok((task, room, read))
     }
 
-    async fn rehearse(&self, link: &mut Link) -> Result<Got, Failure> {
+    async fn dry_run(&self, link: &mut Link) -> Result<Got, Failure> {
         tasks::choose(link, self.task).await?;
-        link.foresee(&steps::rooms_request(), "how many steps the task has");
-        link.foresee(&steps::read_request(self.from), "and so on, a step each");
+        link.plan(&steps::rooms_request(), "how many steps the task has");
+        link.plan(&steps::read_request(self.from), "and so on, a step each");
         Err(unknown())
     }
 }
