@@ -119,8 +119,9 @@ impl Gate {
         if !self.needs_yes(robot, intent.risk) {
             return Ok(false);
         }
-        // What is replaced is not known yet: perhaps nothing is.
-        if !screen.can_ask() && intent.confirmation != Confirmation::WhenKnown {
+        // What is replaced is not known yet: perhaps nothing is. A motion is one in any case.
+        let is_open = intent.confirmation == Confirmation::WhenKnown && intent.risk < Risk::Motion;
+        if !screen.can_ask() && !is_open {
             return Err(unasked(robot, intent.risk, &intent.text));
         }
         Ok(true)

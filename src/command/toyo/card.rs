@@ -137,7 +137,17 @@ mod tests {
     fn a_transfer_is_one_order_and_looks() {
         assert_eq!(
             all_blocks(&["card", "write"]).unwrap(),
-            ["@STAS SNO=2", "@HSON", "@WMCA", "@STAS SNO=3", "@STAS SNO=0", "@STAS SNO=1", "@HSOF"]
+            [
+                "@STAS SNO=2",
+                "@HSON",
+                "@STAS SNO=0",
+                "@WMCA",
+                "@STAS SNO=3",
+                "@STAS SNO=0",
+                "@STAS SNO=1",
+                "@STAS SNO=0",
+                "@HSOF"
+            ]
         );
         assert_eq!(blocks(&["card", "read", "--no-wait"]).unwrap(), ["@RMCA"]);
     }

@@ -1,7 +1,7 @@
 //! The connection to a controller: the one driver that moves characters between the session and a line.
 
 mod borrowed;
-mod fence;
+pub(super) mod fence;
 mod left;
 mod stop;
 
@@ -27,7 +27,7 @@ use crate::controller::toyo::layout::{Misfit, Record};
 use crate::controller::toyo::request::{Answer, BlockError, Request};
 use crate::controller::toyo::session::{Counters, Ended, Line, Policy};
 use crate::controller::toyo::status::Status;
-use crate::controller::toyo::table::commands::Command;
+use crate::controller::toyo::table::commands::{Command, Row};
 use crate::controller::{Risk, Session as _, Step};
 use crate::failure::{Failure, Kind, plain};
 use crate::gate::Grant;
@@ -251,6 +251,12 @@ impl Link {
         let line = InProcessLine::new(peer, Some(pace), None);
         let transport = Transport::Stream(Box::new(Stream::InProcess(Box::new(line))));
         Self::new(robot, access, screen, transport, pace.time(1))
+    }
+
+    /// Lets through what this does, from now on.
+    #[cfg(test)]
+    pub(super) fn grant(&mut self, grant: Grant) {
+        self.granted = grant;
     }
 
     /// Asks for data; a refusal is a failure.
@@ -525,7 +531,8 @@ impl Link {
     pub fn plan_depending(&mut self, text: &str, reason: Reason<'_>) {
         if let Transport::Notes(plan) = &mut self.transport {
             plan.note(json!({ "text": text }), reason);
-            self.is_fenced = Request::parse(text).is_ok_and(|request| request.risk() == Risk::Read);
+            let word = text.trim_start_matches('@').split(' ').next().unwrap_or_default();
+            self.is_fenced = Row::named(word).is_some_and(|row| row.risk == Risk::Read);
             self.hangs_on = reason.depends_on.map(ToOwned::to_owned);
         }
     }

@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn the_type_has_its_block() {
-        assert_eq!(blocks(&["robot-type", "1", "123"]).unwrap(), ["@TYPE AX1 RTYP=000123"]);
+        assert_eq!(blocks(&["robot-type", "1", "123"]).unwrap(), ["@TYPE AX1 RTYP=000123", "@STAS SNO=0"]);
         assert!(objection(&["robot-type", "5", "0"]).contains("1 to 4"));
         assert!(objection(&["robot-type", "1", "1000000"]).contains("999999"));
         assert!(intent(&["robot-type", "1", "123"]).contains("axis 1 of robot type 000123"));

@@ -319,7 +319,10 @@ mod tests {
 
     #[test]
     fn a_row_is_compared_before_it_is_written() {
-        assert_eq!(blocks(&["speed-table", "set", "5", "250"]).unwrap(), ["@RPAR T2 V05", "@WPAR T2 V05=0250.0"]);
+        assert_eq!(
+            blocks(&["speed-table", "set", "5", "250"]).unwrap(),
+            ["@RPAR T2 V05", "@WPAR T2 V05=0250.0", "@RPAR T2 V05"]
+        );
         assert_eq!(blocks(&["accel-table", "set", "5", "time=0.25"]).unwrap()[1], "@WPAR T3 A05=0.25");
         assert_eq!(blocks(&["torque-table", "set", "3", "2.5", "2"]).unwrap()[1], "@WPAR T5 LIM03 T=2.50 L=2.00");
         assert_eq!(

@@ -300,12 +300,16 @@ mod tests {
             [
                 "@STAS SNO=2",
                 "@HSON",
+                "@STAS SNO=0",
                 "@SPST 0012",
                 "@STAS SNO=0",
                 "@MPST",
                 "@STAS SNO=4",
                 "@RSTX 0000",
                 "@STAS SNO=1",
+                "@RSTX 0000",
+                "@STAS SNO=2",
+                "@RSTX ?",
                 "@HSOF"
             ]
         );

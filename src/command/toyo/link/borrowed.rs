@@ -82,11 +82,7 @@ impl Link {
 
     /// Makes everything as it was before [`Link::borrow`]. All of it is tried; the first failure counts.
     pub async fn put_back(&mut self) -> Result<(), Failure> {
-        while let Some(back) = self.owed.pop() {
-            self.fence().await?;
-            let reason = Reason::about("to put back what was found");
-            self.plan_depending(&back, reason.depending_on("what was found"));
-        }
+        self.plan_put_back();
         let mut outcome = Ok(());
         while let Some(back) = self.borrowed.pop() {
             let text = back.text();
@@ -139,8 +135,18 @@ impl Link {
         }
     }
 
+    /// Notes in a dry run what puts things back.
+    fn plan_put_back(&mut self) {
+        while let Some(back) = self.owed.pop() {
+            self.plan_fence();
+            let reason = Reason::about("to put back what was found");
+            self.plan_depending(&back, reason.depending_on("what was found"));
+        }
+    }
+
     /// Notes in a dry run what is sent when the link ends.
     pub(super) fn plan_end(&mut self) {
+        self.plan_put_back();
         if !self.is_dry() || self.host != Host::Taken {
             return;
         }

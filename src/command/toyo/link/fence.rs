@@ -12,6 +12,9 @@ use crate::failure::{Failure, Kind};
 
 use super::borrowed::Host;
 
+/// What it is about.
+pub const FENCE: &str = "whether the line is at peace";
+
 impl Link {
     /// Asks something harmless before an order, unless an answered question was the last on the line.
     pub(super) async fn fence(&mut self) -> Result<(), Failure> {
@@ -33,7 +36,7 @@ impl Link {
         if self.is_fenced {
             return;
         }
-        let about = Reason::about("whether the line is at peace");
+        let about = Reason::about(FENCE);
         let on = self.hangs_on.take();
         let reason = on.as_deref().map_or(about, |on| about.depending_on(on));
         self.plan_depending(&status_page(0).text(), reason);

@@ -64,7 +64,7 @@ impl Command for Delete {
             );
         }
         if link.is_dry() {
-            return self.dry_run(link, last).await;
+            return self.dry_run(link, &authority, last).await;
         }
         let outcome = self.delete(link, screen, &authority, last).await;
         tasks::done(link, outcome).await
@@ -119,7 +119,7 @@ impl Delete {
         Ok(Deleted { task, deleted })
     }
 
-    async fn dry_run(&self, link: &mut Link, last: u16) -> Result<Deleted, Failure> {
+    async fn dry_run(&self, link: &mut Link, authority: &Authority<'_>, last: u16) -> Result<Deleted, Failure> {
         tasks::choose(link, self.task).await?;
         link.plan(&steps::rooms_request(), "how many steps the task has");
         for step in self.step..=last {
@@ -127,6 +127,7 @@ impl Delete {
         }
         let behind = steps::read_request(last.saturating_add(1).min(5000));
         link.plan_if(&behind, "whether there is one behind");
+        authority.confirm(&Change::nothing()).await?;
         steps::plan_open(link).await?;
         link.order(&self.order(last)).await?;
         link.plan(&steps::read_request(self.step), "what is there now");

@@ -61,7 +61,7 @@ impl Command for Insert {
         let Context { link, screen, authority, .. } = context;
         let instruction = self.instruction()?;
         if link.is_dry() {
-            return self.dry_run(link, &instruction).await;
+            return self.dry_run(link, &authority, &instruction).await;
         }
         let outcome = self.insert(link, screen, &authority, &instruction).await;
         tasks::done(link, outcome).await
@@ -123,12 +123,18 @@ impl Insert {
         Ok(Inserted { task, inserted: Step::of(step.into(), instruction) })
     }
 
-    async fn dry_run(&self, link: &mut Link, instruction: &Record) -> Result<Inserted, Failure> {
+    async fn dry_run(
+        &self,
+        link: &mut Link,
+        authority: &Authority<'_>,
+        instruction: &Record,
+    ) -> Result<Inserted, Failure> {
         tasks::choose(link, self.task).await?;
         link.plan(&steps::rooms_request(), "how many steps the task has");
         link.plan(&steps::read_request(self.step), "what moves on");
         let last = Reason::about("the last step, which falls out").depending_on("how many steps the task has");
         link.plan_depending("@RSTX ?", last);
+        authority.confirm(&Change::nothing()).await?;
         steps::plan_open(link).await?;
         link.order(&self.order()).await?;
         if self.step < 5000 {
