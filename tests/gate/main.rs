@@ -7,3 +7,4 @@ mod simulator;
 
 mod desk;
 mod frame;
+mod toyo;

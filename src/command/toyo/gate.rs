@@ -13,7 +13,6 @@ use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::commands::Row;
 use crate::failure::Kind;
 use crate::gate::{Confirmation, Gate};
-use crate::settings::setting::Setting;
 
 /// Every command, and the most that it does. `FOLDER` is a folder with what [`prepared`] puts there.
 #[rustfmt::skip]
@@ -66,15 +65,17 @@ const BEFORE: [&str; 5] = [
 ];
 
 /// A controller with somebody's work, files for it in a folder, and what it hears from now on.
-fn prepared() -> (Bench, Heard, tempfile::TempDir) {
+fn prepared(line: &str) -> (Bench, Heard, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("parameters.toml", "[parameters]\nM09 = 'J'\nE06 = { ax1 = 900, ax2 = 900, ax3 = 900, ax4 = 900 }\n");
     write("points.csv", "point,x_mm,y_mm,z_mm,r_mm\n1,5,5,5,5\n2,6,6,6,6\n");
     write("program.txt", "TAG TAG=005\nSPD V=05\nEND\n");
     let (mut bench, heard) = Bench::spoilt(STATE, |_, _| Fate::Pass);
-    let backup = folder.path().join("backup");
-    bench.data(&["backup", backup.to_str().unwrap()]);
+    if line.starts_with("restore") {
+        let backup = folder.path().join("backup");
+        bench.data(&["backup", backup.to_str().unwrap()]);
+    }
     for line in BEFORE.iter().chain(&["point set 1 9 9 9 9"]) {
         bench.data(&line.split(' ').collect::<Vec<_>>());
     }
@@ -101,7 +102,7 @@ fn risk(block: &str) -> Risk {
 #[test]
 fn every_command_is_here() {
     let here: BTreeSet<&str> = {
-        let (_, _, folder) = prepared();
+        let (_, _, folder) = prepared("");
         let id = |line: &str| {
             let words = words(line, &folder);
             gated(&words.iter().map(String::as_str).collect::<Vec<_>>()).2
@@ -118,13 +119,13 @@ fn every_command_is_here() {
 fn nothing_is_changed_that_was_not_confirmed() {
     let mut wrong = Vec::new();
     for (line, risk_of_it) in LINES {
-        let (mut bench, heard, folder) = prepared();
+        let (mut bench, heard, folder) = prepared(line);
         let words = words(line, &folder);
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let (robot, intent, _) = gated(&words);
         assert_eq!(intent.risk, *risk_of_it, "{line}");
-        let read_only =
-            crate::settings::Robot { read_only: Setting { value: true, ..robot.read_only.clone() }, ..robot };
+        let mut read_only = robot;
+        read_only.read_only.value = true;
         let refused = Gate::default().must_ask(&QUIET, &read_only, &intent);
         let is_refused =
             refused.is_err_and(|failure| failure.kind == Kind::RefusedHere && failure.message.contains("read-only"));
@@ -156,7 +157,7 @@ fn nothing_is_changed_that_was_not_confirmed() {
 fn a_dry_run_is_what_is_sent() {
     let mut wrong = Vec::new();
     for (line, risk_of_it) in LINES {
-        let (mut bench, heard, folder) = prepared();
+        let (mut bench, heard, folder) = prepared(line);
         let words = words(line, &folder);
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let report = match plan(&words) {
@@ -241,7 +242,7 @@ fn fits(planned: &str, sent: &str) -> bool {
 
 #[test]
 fn a_question_shows_old_and_new_and_spares_what_nobody_wrote() {
-    let (mut bench, heard, _folder) = prepared();
+    let (mut bench, heard, _folder) = prepared("");
     let mut refused = |line: &str| {
         let words: Vec<&str> = line.split(' ').collect();
         let failure = bench.unasked(&words).expect_err(line);

@@ -115,7 +115,7 @@ impl Link {
     }
 
     /// Gives the host back as it was found.
-    pub(super) async fn give_back(&mut self) -> Result<(), Failure> {
+    pub(in crate::command::toyo) async fn give_back(&mut self) -> Result<(), Failure> {
         if self.host != Host::Taken || self.is_dry() || self.is_gone {
             return Ok(());
         }
