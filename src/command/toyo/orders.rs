@@ -232,12 +232,17 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_waits_for_nothing_and_takes_no_host() {
+    fn a_stop_waits_for_nothing() {
+        // Only if a controller refuses to stop a jog without it.
+        let host = ["@STAS SNO=2", "@HSON", "@JGST X=SP Y=SP Z=SP R=SP", "@STAS SNO=0", "@HSOF"];
         assert_eq!(
             all_blocks(&["stop"]).unwrap(),
-            ["@STOP", "@STAS SNO=0", "@JGST X=SP Y=SP Z=SP R=SP", "@STAS SNO=0", "@MPST"]
+            [&["@STOP", "@STAS SNO=0", "@JGST X=SP Y=SP Z=SP R=SP", "@STAS SNO=0", "@MPST"], &host[..]].concat()
         );
-        assert_eq!(all_blocks(&["stop", "--jog"]).unwrap(), ["@JGST X=SP Y=SP Z=SP R=SP", "@STAS SNO=0", "@MPST"]);
+        assert_eq!(
+            all_blocks(&["stop", "--jog"]).unwrap(),
+            [&["@JGST X=SP Y=SP Z=SP R=SP", "@STAS SNO=0", "@MPST"], &host[..]].concat()
+        );
     }
 
     #[test]

@@ -106,7 +106,7 @@ impl Kind for Speed {
     const TABLE: &'static str = "T2";
     const IDS: [&'static str; 2] = ["toyo.speed-table.get", "toyo.speed-table.set"];
     type Content = SpeedRow;
-    const COLUMNS: &'static [&'static str] = &["row", "speed (mm/s)"];
+    const COLUMNS: &'static [&'static str] = &["a row", "speed (mm/s)"];
 
     fn content(record: &Record) -> SpeedRow {
         SpeedRow { speed_mm_s: decimal(record, "speed") }
@@ -117,7 +117,7 @@ impl Kind for Accel {
     const TABLE: &'static str = "T3";
     const IDS: [&'static str; 2] = ["toyo.accel-table.get", "toyo.accel-table.set"];
     type Content = AccelRow;
-    const COLUMNS: &'static [&'static str] = &["row", "time (s)"];
+    const COLUMNS: &'static [&'static str] = &["a row", "time (s)"];
 
     fn content(record: &Record) -> AccelRow {
         AccelRow { time_s: decimal(record, "time") }
@@ -128,7 +128,7 @@ impl Kind for Torque {
     const TABLE: &'static str = "T5";
     const IDS: [&'static str; 2] = ["toyo.torque-table.get", "toyo.torque-table.set"];
     type Content = TorqueRow;
-    const COLUMNS: &'static [&'static str] = &["row", "limit", "load"];
+    const COLUMNS: &'static [&'static str] = &["a row", "limit", "load"];
 
     fn content(record: &Record) -> TorqueRow {
         TorqueRow { limit: decimal(record, "limit"), load: decimal(record, "load") }
@@ -163,7 +163,7 @@ fn table<K: Kind>() -> &'static Parameter {
     Parameter::named(K::TABLE).expect("every kind of table is in the table of parameters")
 }
 
-const WORK: Work = Work { doing: "storing rows", noun: "row", things: ["row", "rows"], resumes: false };
+const WORK: Work = Work { doing: "storing rows", noun: "row", things: ["a row", "rows"], resumes: false };
 
 /// The number of a row.
 pub fn row_field(table: &'static Parameter) -> &'static Field {

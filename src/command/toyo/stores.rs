@@ -1,6 +1,7 @@
 //! Many cells of the EEPROM in a row, with an exact account of what was done when one of them fails.
 
-use super::cells::{Cell, Cells, THERE};
+use super::cells::{Cell, Cells};
+use super::items::plan_twice;
 use super::link::Link;
 use super::values::{self, Shown};
 use crate::command::interrupt::interruptible;
@@ -19,7 +20,7 @@ pub struct Work {
     pub doing: &'static str,
     /// What stands before a key in messages, for several with an s: `point`; nothing where a key says enough.
     pub noun: &'static str,
-    /// One of them, and several.
+    /// One of them, with its article, and several.
     pub things: [&'static str; 2],
     /// Whether the command takes `--resume=KEY`.
     pub resumes: bool,
@@ -121,7 +122,7 @@ pub fn replacing(work: Work, stores: &[Store], of: &str) -> Change {
 pub fn overwriting([one, several]: [&str; 2], replaced: &[Replaced], of: &str) -> Change {
     let change = match replaced.len() {
         0 => return Change::nothing(),
-        1 => Change::new(format!("overwrite a {one}{of}")),
+        1 => Change::new(format!("overwrite {one}{of}")),
         many => Change::new(format!("overwrite {many} {several}{of}")),
     };
     replaced.iter().fold(change, |change, [what, old, new]| change.replaces(what, old, new))
@@ -151,7 +152,7 @@ pub fn unwritten(failure: Failure) -> Failure {
 
 async fn found(link: &mut Link, store: &Store) -> Result<Found, Failure> {
     if link.is_dry() {
-        link.plan(&store.cell.read, THERE);
+        plan_twice(link, &store.cell.read);
         return Ok(Found::NotKnown);
     }
     if store.is_optional {
@@ -318,7 +319,7 @@ fn span(work: Work, stores: &[Store]) -> String {
 mod tests {
     use super::*;
 
-    const WORK: Work = Work { doing: "storing points", noun: "point", things: ["point", "points"], resumes: true };
+    const WORK: Work = Work { doing: "storing points", noun: "point", things: ["a point", "points"], resumes: true };
 
     fn stores() -> Vec<Store> {
         let parameter = Parameter::named("T1").unwrap();

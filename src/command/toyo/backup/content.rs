@@ -265,11 +265,11 @@ impl Content {
     /// The work in words.
     pub fn work(&self) -> Work {
         let (doing, noun, things) = match self {
-            Self::Parameters(_) => ("storing parameters", "", ["parameter", "parameters"]),
-            Self::Points(_) => ("storing points", "point", ["point", "points"]),
-            Self::Program(_) => ("storing steps", "step", ["step", "steps"]),
-            Self::Palletizing(..) => ("storing records", "", ["record", "records"]),
-            Self::Easy(_) => ("storing easy programs", "program", ["program", "programs"]),
+            Self::Parameters(_) => ("storing parameters", "", ["a parameter", "parameters"]),
+            Self::Points(_) => ("storing points", "point", ["a point", "points"]),
+            Self::Program(_) => ("storing steps", "step", ["a step", "steps"]),
+            Self::Palletizing(..) => ("storing records", "", ["a record", "records"]),
+            Self::Easy(_) => ("storing easy programs", "program", ["a program", "programs"]),
         };
         Work { doing, noun, things, resumes: false }
     }

@@ -70,10 +70,11 @@ struct Job {
 const MACHINE: Work = Work {
     doing: "storing machine parameters",
     noun: "",
-    things: ["machine or special parameter", "machine and special parameters"],
+    things: ["a machine or special parameter", "machine and special parameters"],
     resumes: false,
 };
-const SPEED: Work = Work { doing: "storing the override", noun: "", things: ["override", "overrides"], resumes: false };
+const SPEED: Work =
+    Work { doing: "storing the override", noun: "", things: ["the override", "overrides"], resumes: false };
 /// Values that a question shows one by one; more are counted by parts.
 const SHOWN: usize = 10;
 
@@ -335,7 +336,8 @@ fn replacing(machine: &[Store], looked: &[Looked<'_>], speed: &[Store]) -> Chang
     parts.iter().fold(change, |change, (part, [one, several], replaced)| {
         if total > SHOWN {
             let count = replaced.len();
-            return change.item(format!("{part}: {count} {}", if count == 1 { one } else { several }));
+            let what = if count == 1 { (*one).to_owned() } else { format!("{count} {several}") };
+            return change.item(format!("{part}: {what}"));
         }
         replaced.iter().fold(change, |change, [what, old, new]| change.replaces(&format!("{part}, {what}"), old, new))
     })

@@ -31,7 +31,7 @@ pub struct Set {
 const WORK: Work = Work {
     doing: "storing an easy program",
     noun: "program",
-    things: ["easy program", "easy programs"],
+    things: ["an easy program", "easy programs"],
     resumes: false,
 };
 

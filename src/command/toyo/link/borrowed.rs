@@ -17,6 +17,8 @@ pub(super) enum Host {
     Found,
     /// This link switched it ON, and gives it back.
     Taken,
+    /// In a dry run: it was asked, and switched ON, if an answer before wants that.
+    Perhaps,
 }
 
 /// What decides whether the host is switched.
@@ -25,13 +27,11 @@ const HOST: &str = "whether the host was ON";
 impl Link {
     /// Makes sure that the host commands, and remembers who did before.
     pub async fn take_host(&mut self) -> Result<(), Failure> {
-        if self.host != Host::Unknown {
+        if let Transport::Notes(_) = self.transport {
+            self.plan_to_take_host(None);
             return Ok(());
         }
-        if let Transport::Notes(_) = self.transport {
-            self.note(&status_page(2), Reason::about("whether the host is ON"));
-            self.note(&Request::bare(Command::Hson), Reason::default().depending_on(HOST));
-            self.host = Host::Taken;
+        if self.host != Host::Unknown {
             return Ok(());
         }
         let status = self.status_of(&[2]).await?;
@@ -55,9 +55,23 @@ impl Link {
         }
     }
 
+    /// Notes in a dry run that the host is taken, if an answer before wants that.
+    pub(super) fn plan_to_take_host(&mut self, on: Option<&str>) {
+        let asked = Reason::about("whether the host is ON");
+        let asked = match (self.host, on) {
+            (Host::Taken | Host::Found, _) => return,
+            (_, Some(on)) => asked.depending_on(on),
+            (Host::Perhaps, None) => asked.depending_on("whether it was asked before"),
+            (Host::Unknown, None) => asked,
+        };
+        self.note(&status_page(2), asked);
+        self.note(&Request::bare(Command::Hson), Reason::default().depending_on(HOST));
+        self.host = if on.is_some() { Host::Perhaps } else { Host::Taken };
+    }
+
     /// Notes in a dry run that something is changed for a while; `back` is what puts it back, with `?` for what was found.
     pub async fn plan_to_borrow(&mut self, change: &Request, back: &str, on: &str) -> Result<(), Failure> {
-        self.take_host().await?;
+        self.plan_to_take_host(Some(on));
         self.fence().await?;
         self.plan_if(change, on);
         self.owed.push(back.to_owned());
@@ -147,7 +161,7 @@ impl Link {
     /// Notes in a dry run what is sent when the link ends.
     pub(super) fn plan_end(&mut self) {
         self.plan_put_back();
-        if !self.is_dry() || self.host != Host::Taken {
+        if !self.is_dry() || !matches!(self.host, Host::Taken | Host::Perhaps) {
             return;
         }
         self.host = Host::Unknown;

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
+use super::borrowed::Host;
 use super::{Link, Moving, SILENCE, jog, status_page};
 use crate::command::dry_run::unknown;
 use crate::command::toyo::refusal;
@@ -52,6 +53,11 @@ impl Link {
                 self.plan_if(&status_page(0), "whether something is executed on");
             }
             self.plan(&Request::bare(Command::Mpst), "until it stands: where");
+            if self.host == Host::Unknown {
+                let on = "whether the stop of a jog is refused, as it may be while the host is OFF";
+                self.plan_to_take_host(Some(on));
+                self.plan_if(&Moving::Jog.stop(), on);
+            }
             return Err(unknown());
         }
         self.set_policy(Policy { timeout: SILENCE, retries: REPETITIONS, ..self.usual });

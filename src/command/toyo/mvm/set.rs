@@ -39,7 +39,7 @@ pub struct Set {
 /// What shall become of the values of a sheet.
 type Changes = Vec<Option<Value>>;
 
-const WORK: Work = Work { doing: "storing sheets", noun: "", things: ["sheet", "sheets"], resumes: false };
+const WORK: Work = Work { doing: "storing sheets", noun: "", things: ["a sheet", "sheets"], resumes: false };
 
 impl Command for Set {
     type Family = Family;

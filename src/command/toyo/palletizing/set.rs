@@ -50,7 +50,7 @@ pub struct Set {
     from: Option<PathBuf>,
 }
 
-const WORK: Work = Work { doing: "storing records", noun: "", things: ["record", "records"], resumes: false };
+const WORK: Work = Work { doing: "storing records", noun: "", things: ["a record", "records"], resumes: false };
 
 impl Command for Set {
     type Family = Family;

@@ -67,7 +67,7 @@ const ORDER: [(Part, Group); 5] = [
 /// What is written if nobody says which.
 const USUAL: [Part; 3] = [Part::Mode, Part::Axis, Part::Table];
 
-const WORK: Work = Work { doing: "storing parameters", noun: "", things: ["parameter", "parameters"], resumes: true };
+const WORK: Work = Work { doing: "storing parameters", noun: "", things: ["a parameter", "parameters"], resumes: true };
 
 impl Command for Restore {
     type Family = Family;

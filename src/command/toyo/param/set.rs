@@ -38,7 +38,8 @@ pub struct Set {
     values: Vec<String>,
 }
 
-const WORK: Work = Work { doing: "storing a parameter", noun: "", things: ["parameter", "parameters"], resumes: false };
+const WORK: Work =
+    Work { doing: "storing a parameter", noun: "", things: ["a parameter", "parameters"], resumes: false };
 
 impl Command for Set {
     type Family = Family;

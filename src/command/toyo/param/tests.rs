@@ -13,7 +13,10 @@ fn parameters_are_read_by_name_or_id() {
         ["@RPAR P01", "@RPAR P01", "@RPAR M09"]
     );
     assert_eq!(blocks(&["param", "list", "--group", "special"]).unwrap(), ["@RPAR U03", "@RPAR U21", "@RPAR U22"]);
-    assert_eq!(blocks(&["param", "list"]).unwrap().len(), 74);
+    // Those that only some controllers have are asked twice, if they are refused.
+    let mut all = blocks(&["param", "list"]).unwrap();
+    all.dedup();
+    assert_eq!(all.len(), 74);
     let error = objection(&["param", "get", "soft-limit-pluss"]);
     assert!(error.contains("there is no such parameter; did you mean soft-limit-plus?"), "{error}");
     let error = objection(&["param", "get", "t4.s1"]);

@@ -53,7 +53,7 @@ pub struct Set {
     resume: Option<String>,
 }
 
-const WORK: Work = Work { doing: "storing points", noun: "point", things: ["point", "points"], resumes: true };
+const WORK: Work = Work { doing: "storing points", noun: "point", things: ["a point", "points"], resumes: true };
 
 impl Command for Set {
     type Family = Family;

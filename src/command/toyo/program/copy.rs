@@ -147,7 +147,7 @@ impl Copy {
         let lost = lost.filter(|(_, (wanted, found))| wanted != found && **found != steps::nop());
         let lost: Vec<Replaced> =
             lost.map(|(step, (wanted, found))| [format!("step {step}"), found.written(), wanted.written()]).collect();
-        authority.confirm(&overwriting(["step", "steps"], &lost, &format!(" of task {target}"))).await?;
+        authority.confirm(&overwriting(["a step", "steps"], &lost, &format!(" of task {target}"))).await?;
         steps::open(link).await?;
         link.order(&self.order(source, target)).await?;
         let found = steps::read_all(link, screen, self.at..=self.end()).await?;

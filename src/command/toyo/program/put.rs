@@ -205,7 +205,7 @@ fn replacing(edits: &[Edit], task: u8) -> Change {
     let lost: Vec<Replaced> = lost
         .map(|Edit { step, instruction, found }| [format!("step {step}"), found.written(), instruction.written()])
         .collect();
-    overwriting(["step", "steps"], &lost, &format!(" of task {task}"))
+    overwriting(["a step", "steps"], &lost, &format!(" of task {task}"))
 }
 
 fn last_of(first: u16, program: &Program) -> u16 {
