@@ -106,7 +106,7 @@ impl Kind for Speed {
     const TABLE: &'static str = "T2";
     const IDS: [&'static str; 2] = ["toyo.speed-table.get", "toyo.speed-table.set"];
     type Content = SpeedRow;
-    const COLUMNS: &'static [&'static str] = &["a row", "speed (mm/s)"];
+    const COLUMNS: &'static [&'static str] = &["row", "speed (mm/s)"];
 
     fn content(record: &Record) -> SpeedRow {
         SpeedRow { speed_mm_s: decimal(record, "speed") }
@@ -117,7 +117,7 @@ impl Kind for Accel {
     const TABLE: &'static str = "T3";
     const IDS: [&'static str; 2] = ["toyo.accel-table.get", "toyo.accel-table.set"];
     type Content = AccelRow;
-    const COLUMNS: &'static [&'static str] = &["a row", "time (s)"];
+    const COLUMNS: &'static [&'static str] = &["row", "time (s)"];
 
     fn content(record: &Record) -> AccelRow {
         AccelRow { time_s: decimal(record, "time") }
@@ -128,7 +128,7 @@ impl Kind for Torque {
     const TABLE: &'static str = "T5";
     const IDS: [&'static str; 2] = ["toyo.torque-table.get", "toyo.torque-table.set"];
     type Content = TorqueRow;
-    const COLUMNS: &'static [&'static str] = &["a row", "limit", "load"];
+    const COLUMNS: &'static [&'static str] = &["row", "limit", "load"];
 
     fn content(record: &Record) -> TorqueRow {
         TorqueRow { limit: decimal(record, "limit"), load: decimal(record, "load") }
