@@ -147,7 +147,9 @@ async fn read(
     times: u8,
 ) -> Result<Answers, Failure> {
     if times > 1 && link.is_dry() {
-        requests.iter().for_each(|request| plan_twice(link, request));
+        for request in requests {
+            plan_twice(link, request);
+        }
         return Err(unknown());
     }
     link.dry_run(requests)?;
