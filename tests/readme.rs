@@ -290,6 +290,7 @@ fn shell(script: &str, folder: &Path) -> Result<String, String> {
     }
     command.env("PATH", path.map_err(|error| error.to_string())?);
     command.env("HOME", folder).env("XDG_CONFIG_HOME", folder.join(".config")).env("NO_COLOR", "1").env("TZ", "UTC");
+    command.env("XDG_STATE_HOME", folder.join(".state"));
     let output = command.output().map_err(|error| format!("sh: {error}"))?;
     String::from_utf8(output.stdout).map_err(|error| error.to_string())
 }

@@ -9,5 +9,6 @@ mod terminal;
 
 mod desk;
 mod frame;
+mod toyo;
 mod yerc;
 mod yrcx;

@@ -109,7 +109,8 @@ fn every_command_is_held_by_the_gate() {
         let is_stop = STOPS.contains(line);
         let refused =
             |outcome: &Result<(), Failure>| outcome.as_ref().is_err_and(|failure| failure.kind == Kind::RefusedHere);
-        let is_asked = *risk >= Destroy && intent.confirmation != crate::gate::Confirmation::WhenKnown;
+        let is_when_known = intent.confirmation == crate::gate::Confirmation::WhenKnown;
+        let is_asked = *risk == Motion || *risk == Destroy && !is_when_known;
         for (what, is_right) in [
             ("its risk", intent.risk == *risk),
             ("whether it is a stop", intent.is_stop == is_stop),
@@ -126,7 +127,7 @@ fn every_command_is_held_by_the_gate() {
                 refused(&read_only) == (*risk > Read && !is_stop) || matches!(*line, "backup folder" | "diff folder"),
             ),
             ("a fleet", refused(&fleet) == (*risk >= Destroy || (*risk > Read && !is_stop && refused(&read_only)))),
-            ("its first grant", intent.granted_at_first() <= if is_asked { *risk } else { (*risk).min(Write) }),
+            ("its first grant", intent.granted_at_first() <= if is_when_known { (*risk).min(Write) } else { *risk }),
         ] {
             if !is_right {
                 wrong.push(format!("{line}: {what} ({:?}, {:?})", intent.risk, intent.confirmation));

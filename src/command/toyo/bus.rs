@@ -29,7 +29,7 @@ impl Command for Bus {
     async fn run(&self, context: Context<'_, Family>) -> Result<CcLink, Failure> {
         let page = |form| Request::in_form(table::Command::Mbus, form, Vec::new()).map_err(|error| wrong(&error));
         let (settings, errors) = (page(0)?, page(1)?);
-        context.link.rehearse(&[settings.clone(), errors.clone()])?;
+        context.link.dry_run(&[settings.clone(), errors.clone()])?;
         let settings = context.link.read(&settings).await?;
         let errors = context.link.read(&errors).await?;
         let hex = |name| format!("{:02X}", errors.byte(name).unwrap_or(0));

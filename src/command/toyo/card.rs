@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::Family;
 use super::waiting::{Accepted, Work};
+use crate::command::dry_run::{Known as _, unknown};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
@@ -93,7 +94,10 @@ async fn transfer(context: Context<'_, Family>, work: Accepted, no_wait: bool) -
     if no_wait {
         return Ok(Transferred { accepted: true, elapsed_ms: None, needs_power_cycle: None });
     }
-    let end = work.wait(link, context.screen).await?;
+    let Some(end) = work.wait(link, context.screen).await.known()? else {
+        link.status_of(&[0]).await?;
+        return Err(unknown());
+    };
     let needs_power_cycle = link.status_of(&[0]).await?.needs_power_cycle();
     Ok(Transferred { accepted: true, elapsed_ms: end.elapsed_ms, needs_power_cycle: Some(needs_power_cycle) })
 }
@@ -133,7 +137,17 @@ mod tests {
     fn a_transfer_is_one_order_and_looks() {
         assert_eq!(
             all_blocks(&["card", "write"]).unwrap(),
-            ["@STAS SNO=2", "@HSON", "@WMCA", "@STAS SNO=3", "@STAS SNO=0", "@STAS SNO=1", "@HSOF"]
+            [
+                "@STAS SNO=2",
+                "@HSON",
+                "@STAS SNO=0",
+                "@WMCA",
+                "@STAS SNO=3",
+                "@STAS SNO=0",
+                "@STAS SNO=1",
+                "@STAS SNO=0",
+                "@HSOF"
+            ]
         );
         assert_eq!(blocks(&["card", "read", "--no-wait"]).unwrap(), ["@RMCA"]);
     }

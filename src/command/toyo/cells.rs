@@ -8,9 +8,10 @@ use serde::Serialize;
 
 use super::link::Link;
 use super::refusal;
+use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
-use crate::controller::toyo::table::Command;
+use crate::controller::toyo::table::{Command, Op};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
@@ -34,6 +35,11 @@ pub struct Cells {
     pub cells_unchanged: u32,
 }
 
+/// What is asked before something is written.
+pub const THERE: &str = "what is there";
+/// What decides whether it is.
+const DIFFERS: &str = "whether it differs from what is there";
+
 impl Cells {
     /// In words: `2 cells written, 1 unchanged`.
     pub fn in_words(self) -> String {
@@ -55,10 +61,8 @@ impl Link {
     /// something else is there afterwards.
     pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<(), Failure> {
         if self.is_dry() {
-            self.foresee(&cell.read, "to compare");
-            self.take_host().await?;
-            self.foresee(&cell.write, "if it differs");
-            return Ok(());
+            self.plan(&cell.read, THERE);
+            return self.plan_overwriting(&cell.read, &cell.write.text()).await;
         }
         if self.holds(cell).await? {
             cells.cells_unchanged += 1;
@@ -67,25 +71,12 @@ impl Link {
         self.overwrite(screen, cell, cells).await
     }
 
-    /// Stores one cell of which it is known what it holds, unless that is the same. A dry run is [`Link::store`]'s.
-    ///
-    /// # Errors
-    /// As those of [`Link::store`].
-    pub async fn store_over(
-        &mut self,
-        screen: &Screen,
-        cell: &Cell,
-        found: Option<&Record>,
-        cells: &mut Cells,
-    ) -> Result<(), Failure> {
-        match found.filter(|_| !self.is_dry()) {
-            None => self.store(screen, cell, cells).await,
-            Some(found) if cell.is(found) => {
-                cells.cells_unchanged += 1;
-                Ok(())
-            }
-            Some(_) => self.overwrite(screen, cell, cells).await,
-        }
+    /// Notes in a dry run what [`Link::overwrite`] sends, if the cell holds something else: the block that writes it, in
+    /// which `?` stands for what is kept, and the question that reads it back.
+    pub async fn plan_overwriting(&mut self, read: &Request, write: &str) -> Result<(), Failure> {
+        self.plan_order(write, DIFFERS).await?;
+        self.plan_if(read, DIFFERS);
+        Ok(())
     }
 
     /// Stores one cell that is known to hold something else, and reads it back.
@@ -119,10 +110,34 @@ impl Link {
 }
 
 impl Cell {
+    /// Whether it holds nothing that somebody wrote: a NOP, or zeros in a table that is cleared to zeros. What a parameter
+    /// holds from the factory is in no manual.
+    pub fn is_blank(&self, found: &Record) -> bool {
+        is_blank(&self.read, found)
+    }
+
     /// Whether what was read is what it should hold.
-    fn is(&self, found: &Record) -> bool {
+    pub fn is(&self, found: &Record) -> bool {
         // A step holds an instruction, and others have fields of the same names.
         let is_other = self.read.command() == Command::Rstx && found.layout() != self.wanted.layout();
         !is_other && self.wanted.pairs().all(|(field, wanted)| found.value(field.name) == Some(wanted))
+    }
+}
+
+/// [`Cell::is_blank`], of what was read by a request.
+pub fn is_blank(read: &Request, found: &Record) -> bool {
+    let content = read.content().ok().flatten();
+    let key = content.as_ref().unwrap_or(read.record());
+    let is_zero = || {
+        let values = found.pairs().filter(|(field, _)| key.value(field.name).is_none());
+        found.is_listed() && values.into_iter().all(|(_, value)| *value == Value::Number(0))
+    };
+    match read.command() {
+        Command::Rstx => found.layout() == Op::Nop.row().layout,
+        Command::Rpar => {
+            read.parameter().is_some_and(|table| table.id.starts_with("T1") || table.id.starts_with("T4")) && is_zero()
+        }
+        Command::Rplt | Command::Resy => is_zero(),
+        _ => false,
     }
 }

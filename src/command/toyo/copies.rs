@@ -3,15 +3,20 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::cells::Cells;
+use super::cells::{Cells, is_blank};
 use super::link::Link;
 use super::numbers::read_contents;
 use super::refusal;
+use super::values::{Shown, in_a_line, shown};
 use crate::command::Report;
+use crate::command::authority::Authority;
 use crate::command::dry_run::unknown;
+use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table::palletizing::RECORDS;
 use crate::failure::{Failure, Kind};
+use crate::gate::Change;
 use crate::output::Screen;
 use crate::output::view::View;
 
@@ -31,8 +36,9 @@ pub struct Copy {
 }
 
 impl Copy {
-    /// Copies, unless both places are the same already. What is there afterwards is read back.
-    pub async fn make(self, link: &mut Link, screen: &Screen) -> Result<Copied, Failure> {
+    /// Copies, unless both places are the same already, once it is confirmed that something is replaced. What is there
+    /// afterwards is read back.
+    pub async fn make(self, link: &mut Link, screen: &Screen, authority: &Authority<'_>) -> Result<Copied, Failure> {
         let Self { what, from, to, order, reads: [source, target] } = self;
         if from == to {
             return Err(
@@ -42,11 +48,13 @@ impl Copy {
         if link.is_dry() {
             for (reads, about) in [(&source, "what is copied"), (&target, "what it replaces")] {
                 for read in reads {
-                    link.foresee(read, about);
+                    link.plan(read, about);
                 }
             }
-            link.take_host().await?;
-            link.foresee(&order, "if they differ");
+            link.plan_order(&order.text(), DIFFER).await?;
+            for read in &target {
+                link.plan_if(read, DIFFER);
+            }
             return Err(unknown());
         }
         let wanted = read_contents(link, screen, "reading what is copied", &source).await?;
@@ -56,6 +64,7 @@ impl Copy {
         if differing == 0 {
             return Ok(Copied { what, from, to, cells: Cells { cells_written: 0, cells_unchanged: all } });
         }
+        authority.confirm(&replacing(what, (from, to), &target, (&wanted, &found))).await?;
         link.order(&order).await?;
         let found = read_contents(link, screen, "reading it back", &target).await.map_err(|failure| {
             let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
@@ -72,11 +81,45 @@ impl Copy {
     }
 }
 
+/// What decides whether it is made.
+const DIFFER: &str = "whether they differ";
+
+/// What a copy replaces, for a person to confirm.
+fn replacing(what: &str, (from, to): (i32, i32), reads: &[Request], (wanted, found): (&[Record], &[Record])) -> Change {
+    let lost = reads
+        .iter()
+        .zip(wanted.iter().zip(found))
+        .filter(|(read, (wanted, found))| content(wanted) != content(found) && !is_blank(read, found));
+    let lost: Vec<(usize, [String; 2])> = lost
+        .map(|(read, (wanted, found))| {
+            let record = read.record().number("record").unwrap_or_default();
+            let text = |record: &Record| {
+                let shown: Vec<Shown> =
+                    shown(record).into_iter().filter(|shown| !KEYS.contains(&&shown.name[..])).collect();
+                in_a_line(&shown)
+            };
+            (usize::try_from(record).unwrap_or_default(), [text(found), text(wanted)])
+        })
+        .collect();
+    if lost.is_empty() {
+        return Change::nothing();
+    }
+    let change = Change::new(format!("overwrite {what} {to} by {what} {from}"));
+    lost.iter().fold(change, |change, (record, [old, new])| {
+        let what = record.checked_sub(1).and_then(|index| RECORDS.get(index)).map_or(what, |record| record.name);
+        change.replaces(what, old, new)
+    })
+}
+
+/// What tells a program from the others, and no content of it.
+const KEYS: [&str; 2] = ["program", "st"];
+
+fn content(record: &Record) -> Vec<Value> {
+    record.pairs().filter(|(field, _)| !KEYS.contains(&field.name)).map(|(_, value)| value.clone()).collect()
+}
+
 /// How many of two rows of records differ by more than their program.
 fn differences(one: &[Record], other: &[Record]) -> u32 {
-    let content = |record: &Record| {
-        record.pairs().filter(|(field, _)| field.name != "program").map(|(_, value)| value.clone()).collect::<Vec<_>>()
-    };
     let differing = one.iter().zip(other).filter(|(one, other)| content(one) != content(other)).count();
     u32::try_from(differing).unwrap_or(u32::MAX)
 }

@@ -45,8 +45,8 @@ impl Command for Show {
     async fn run(&self, context: Context<'_, Family>) -> Result<Present, Failure> {
         let link = context.link;
         if link.is_dry() {
-            link.foresee(&status_page(0), "whether there is an error");
-            link.foresee(&status_page(1), "which");
+            link.plan(&status_page(0), "whether there is an error");
+            link.plan(&status_page(1), "which");
             return Err(unknown());
         }
         Ok(Present { error: present(link).await?.map(Explained::of) })
@@ -115,10 +115,10 @@ impl Command for History {
         let question = |number| Request::of(table::Command::Ehtr, [Value::Number(number)]);
         if link.is_dry() {
             for number in 1..=self.limit {
-                link.foresee(
-                    &question(number),
-                    if number == 1 { "the latest" } else { "unless the one before is empty" },
-                );
+                match number {
+                    1 => link.plan(&question(number), "the latest"),
+                    _ => link.plan_if(&question(number), "whether there is one before"),
+                }
             }
             return Err(unknown());
         }

@@ -103,7 +103,7 @@ mod tests {
     fn a_dry_run_shows_the_order_and_what_is_asked_meanwhile() {
         assert_eq!(
             all_blocks(&["home"]).unwrap(),
-            ["@STAS SNO=2", "@HSON", "@HOME", "@STAS SNO=0", "@MPST", "@STAS SNO=1", "@HSOF"]
+            ["@STAS SNO=2", "@HSON", "@STAS SNO=0", "@HOME", "@STAS SNO=0", "@MPST", "@STAS SNO=1", "@HSOF"]
         );
         assert_eq!(blocks(&["home", "--no-wait"]).unwrap(), ["@HOME"]);
         assert_eq!(blocks(&["home", "--sync", "2", "--no-wait"]).unwrap(), ["@SORG 2"]);

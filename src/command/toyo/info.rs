@@ -35,7 +35,7 @@ impl Command for Info {
         let (task, speed) = (Request::bare(table::Command::Mtsk), Request::bare(table::Command::Rovr));
         let versions = STATIONS.map(version);
         let all: Vec<Request> = [&system].into_iter().chain(&versions).chain([&task, &speed]).cloned().collect();
-        link.rehearse(&all)?;
+        link.dry_run(&all)?;
         // Every controller has this one; of the rest, each may be refused.
         let mut about = About::of(&link.read(&system).await?);
         for request in &all[1..] {

@@ -9,6 +9,8 @@ use serde::Serialize;
 use super::Family;
 use super::link::Link;
 use super::task;
+use super::waiting::status_page;
+use crate::command::dry_run::{Known as _, unknown};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -90,13 +92,7 @@ impl Command for Init {
         let Context { link, screen, .. } = context;
         let (name, number, words) = self.what.row();
         let clear = Request::of(table::Command::Mint, [Value::Word(number)]);
-        // A question would end a dry run.
-        let task = if link.is_dry() {
-            link.foresee(&Request::bare(table::Command::Mtsk), "which task it is about");
-            None
-        } else {
-            Some(task::current(link).await?)
-        };
+        let task = task::current(link).await.known()?;
         link.order(&clear).await?;
         let status = settled(link, screen).await.map_err(accepted)?;
         Ok(Cleared { cleared: name, about: words, task, needs_power_cycle: status.needs_power_cycle() })
@@ -108,6 +104,10 @@ const LOOK_EVERY: Duration = Duration::from_millis(200);
 
 /// Waits until the controller is done with what it accepted (ambiguity A3).
 async fn settled(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
+    if link.is_dry() {
+        link.plan(&status_page(0), "every 200 ms until it is done");
+        return Err(unknown());
+    }
     let _progress = screen.spinner("clearing");
     loop {
         let status = link.status_of(&[0]).await?;
@@ -120,6 +120,9 @@ async fn settled(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
 
 /// A failure to see the end.
 fn accepted(failure: Failure) -> Failure {
+    if failure.kind == Kind::NotKnown {
+        return failure;
+    }
     let message = format!("the controller accepted it, but whether it is done is unknown: {}", failure.message);
     Failure { kind: Kind::OutcomeUnknown, message, ..failure }
 }

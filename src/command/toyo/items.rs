@@ -5,9 +5,11 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::cells::THERE;
 use super::link::{Link, Refusal};
 use super::refusal;
 use super::values::NOT_IN_MANUAL;
+use crate::command::dry_run::unknown;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::failure::{Failure, Kind};
@@ -144,7 +146,13 @@ async fn read(
     requests: &[Request],
     times: u8,
 ) -> Result<Answers, Failure> {
-    link.rehearse(requests)?;
+    if times > 1 && link.is_dry() {
+        for request in requests {
+            plan_twice(link, request);
+        }
+        return Err(unknown());
+    }
+    link.dry_run(requests)?;
     let mut progress = (requests.len() > 1).then(|| screen.items_progress(what, requests.len() as u64));
     let mut answers = Answers::with_capacity(requests.len());
     let mut silence: Option<Failure> = None;
@@ -170,6 +178,14 @@ async fn read(
     match answers.first() {
         Some(Err(first)) if answers.iter().all(Result::is_err) => Err(first.clone()),
         _ => Ok(answers),
+    }
+}
+
+/// Notes in a dry run a question that is asked once more if it is refused: by a controller that does not have it.
+pub fn plan_twice(link: &mut Link, request: &Request) {
+    link.plan(request, THERE);
+    if request.parameter().is_some_and(|parameter| !parameter.only_on.is_empty()) {
+        link.plan_if(request, "whether it is refused, as a busy controller does, too");
     }
 }
 

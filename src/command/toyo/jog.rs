@@ -16,11 +16,13 @@ use super::link::{Link, Moving, jog};
 use super::position::{Place, titled};
 use super::refusal;
 use super::waiting::{LOOK_EVERY, position, present_error, status_page};
+use crate::command::dry_run::Reason;
 use crate::command::interrupt::abandoned;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
 use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 use crate::output::view::{Cell, View};
 use crate::settings::duration;
@@ -181,16 +183,41 @@ impl Jog {
         jog(self.word(), Some(axis.index))
     }
 
-    fn foresee(&self, link: &mut Link, axis: &Known) {
-        link.foresee(&position(), "where it stands");
+    /// Notes all of it, from the order on. An axis that was named by its letter is known when the controller has told the
+    /// letters.
+    fn plan(&self, link: &mut Link) {
+        link.plan(&position(), "where it stands");
         let steps = self.steps.unwrap_or(1);
-        match self.within {
-            Some(time) => link.foresee(&self.order(axis), &format!("then {} pass", duration::display(time))),
-            None if steps > 1 => link.foresee(&self.order(axis), &format!("{steps} times, when the axis stands again")),
-            None => link.foresee(&self.order(axis), "once"),
+        let about = match self.within {
+            Some(time) => format!("then {} pass", duration::display(time)),
+            None if steps > 1 => format!("{steps} times, when the axis stands again"),
+            None => "once".to_owned(),
+        };
+        match &self.axis {
+            Axis::Place(place) => link.plan(&jog(self.word(), Some(*place)), &about),
+            Axis::Letter(letter) => {
+                let about = format!("{} for axis {letter}, SP for the others; {about}", self.word());
+                let reason = Reason::about(&about).depending_on("which axis has that letter");
+                link.plan_depending("@JGST X=? Y=? Z=? R=?", reason);
+            }
         }
-        link.foresee(&status_page(0), "while it moves: whether there is an error");
-        link.foresee(&position(), "while it moves: where it is");
+        link.plan(&status_page(0), "until it is stopped: whether there is an error");
+        link.plan(&position(), "until it is stopped: where it is");
+    }
+
+    /// Completes "This will …", about this axis.
+    fn in_words(&self, axis: &str) -> String {
+        let way = if self.direction == Direction::Plus { "plus" } else { "minus" };
+        match (self.speed, self.within) {
+            (Speed::High, Some(time)) => {
+                format!("move axis {axis} fast in {way} direction for {}", duration::display(time))
+            }
+            (_, Some(time)) => format!("move axis {axis} slowly in {way} direction for {}", duration::display(time)),
+            (_, None) => match self.steps {
+                None | Some(1) => format!("move axis {axis} by a small step in {way} direction"),
+                Some(steps) => format!("move axis {axis} by {steps} small steps in {way} direction"),
+            },
+        }
     }
 
     /// Moves until the time is over, or by all steps. Returns how many steps were done.
@@ -301,18 +328,12 @@ impl Command for Jog {
     }
 
     fn intent(&self) -> String {
-        let axis = &self.axis;
-        let way = if self.direction == Direction::Plus { "plus" } else { "minus" };
-        match (self.speed, self.within) {
-            (Speed::High, Some(time)) => {
-                format!("move axis {axis} fast in {way} direction for {}", duration::display(time))
-            }
-            (_, Some(time)) => format!("move axis {axis} slowly in {way} direction for {}", duration::display(time)),
-            (_, None) => match self.steps {
-                None | Some(1) => format!("move axis {axis} by a small step in {way} direction"),
-                Some(steps) => format!("move axis {axis} by {steps} small steps in {way} direction"),
-            },
-        }
+        self.in_words(&self.axis.to_string())
+    }
+
+    /// The controller tells which axis has which letter.
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Jogged, Failure> {
@@ -322,17 +343,18 @@ impl Command for Jog {
         if self.steps.is_some() && self.speed != Speed::Inch {
             return Err(Failure::usage("only inching goes by steps").hint("give the time with --for"));
         }
-        let link = context.link;
+        let Context { link, screen, authority, .. } = context;
         let letters = link.letters().await?;
         let index = self.axis.place(&letters)?;
         let axis = Known { index, letter: letters.of(index).to_owned() };
+        authority.confirm(&Change::new(self.in_words(&format!("{} ({})", index + 1, axis.letter)))).await?;
         link.order(&jog("RS", None)).await?;
         if link.is_dry() {
-            self.foresee(link, &axis);
+            self.plan(link);
             link.stop(Moving::Jog).await?;
         }
         let start = Place::of(&link.read(&position()).await?);
-        let live = Live::new(context.screen);
+        let live = Live::new(screen);
         let began = Instant::now();
         let gone = tokio::select! {
             biased;

@@ -54,7 +54,8 @@ impl Link {
         }
         let system = Request::bare(Command::Sysp);
         if self.is_dry() {
-            self.foresee(&system, "the letters of the axes");
+            self.plan(&system, "the letters of the axes");
+            self.plan_if(&letters_request(), "whether that is refused");
             return Ok(Letters::default());
         }
         let letters = match unless_malformed(self.try_read(&system).await)? {

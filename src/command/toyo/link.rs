@@ -1,7 +1,7 @@
 //! The connection to a controller: the one driver that moves characters between the session and a line.
 
 mod borrowed;
-mod fence;
+pub(super) mod fence;
 mod left;
 mod stop;
 
@@ -27,7 +27,7 @@ use crate::controller::toyo::layout::{Misfit, Record};
 use crate::controller::toyo::request::{Answer, BlockError, Request};
 use crate::controller::toyo::session::{Counters, Ended, Line, Policy};
 use crate::controller::toyo::status::Status;
-use crate::controller::toyo::table::commands::Command;
+use crate::controller::toyo::table::commands::{Command, Row};
 use crate::controller::{Risk, Session as _, Step};
 use crate::failure::{Failure, Kind, plain};
 use crate::gate::Grant;
@@ -73,6 +73,10 @@ pub struct Link {
     again: Option<(Robot, Access)>,
     /// Whether nothing can come any more that answers what was asked before.
     is_fenced: bool,
+    /// In a dry run, what decides whether the last noted frame is sent.
+    hangs_on: Option<String>,
+    /// In a dry run, the blocks that put things back as they were found.
+    owed: Vec<String>,
     /// Letters of the axes, once they were asked for.
     letters: Option<Letters>,
     /// Writes to the EEPROM.
@@ -152,7 +156,7 @@ impl Family for Toyo {
     }
 
     fn rehearsed(link: &mut Link) -> Plan {
-        link.note_host_off();
+        link.plan_end();
         match &mut link.transport {
             Transport::Notes(plan) => std::mem::take(plan),
             Transport::Stream(_) => Plan::default(),
@@ -220,6 +224,8 @@ impl Link {
             left,
             again: None,
             is_fenced: false,
+            hangs_on: None,
+            owed: Vec::new(),
             letters: None,
             wear,
         })
@@ -247,6 +253,12 @@ impl Link {
         Self::new(robot, access, screen, transport, pace.time(1))
     }
 
+    /// Lets through what this does, from now on.
+    #[cfg(test)]
+    pub(super) fn grant(&mut self, grant: Grant) {
+        self.granted = grant;
+    }
+
     /// Asks for data; a refusal is a failure.
     pub async fn read(&mut self, request: &Request) -> Result<Record, Failure> {
         match self.try_read(request).await? {
@@ -270,7 +282,7 @@ impl Link {
     }
 
     /// In a dry run, notes all the questions, whose answers are not known then.
-    pub fn rehearse(&mut self, requests: &[Request]) -> Result<(), Failure> {
+    pub fn dry_run(&mut self, requests: &[Request]) -> Result<(), Failure> {
         if !self.is_dry() || requests.is_empty() {
             return Ok(());
         }
@@ -313,12 +325,12 @@ impl Link {
         if wants_host(request) {
             self.take_host().await?;
         }
+        self.fence().await?;
         if let Transport::Notes(_) = self.transport {
             self.granted.check(request.risk(), &request.text())?;
             self.note(request, Reason::default());
             return Ok(Ok(()));
         }
-        self.fence().await?;
         Ok(match self.exchange(request).await? {
             Answer::Refused => Err(Refusal(request.clone())),
             Answer::Done | Answer::Data(_) => Ok(()),
@@ -336,15 +348,12 @@ impl Link {
 
     /// All five pages of the status.
     pub async fn status(&mut self) -> Result<Status, Failure> {
-        let mut status = Status::default();
-        for page in 0..=4 {
-            status = status.with(page, self.status_page(page).await?);
-        }
-        Ok(status)
+        self.status_of(&[0, 1, 2, 3, 4]).await
     }
 
     /// Some pages of the status; the others are 0.
     pub async fn status_of(&mut self, pages: &[u8]) -> Result<Status, Failure> {
+        self.dry_run(&pages.iter().copied().map(status_page).collect::<Vec<_>>())?;
         let mut status = Status::default();
         for page in pages {
             status = status.with(*page, self.status_page(*page).await?);
@@ -508,16 +517,32 @@ impl Link {
         matches!(self.transport, Transport::Notes(_))
     }
 
-    /// Notes in a dry run a request that the command would send under a condition, or for a reason.
-    pub fn foresee(&mut self, request: &Request, about: &str) {
+    /// Notes in a dry run a request that the command sends for a reason.
+    pub fn plan(&mut self, request: &Request, about: &str) {
         self.note(request, Reason::about(about));
     }
 
-    /// Notes in a dry run a line of which an answer before it decides a part, that stands as `?`.
-    pub fn foresee_depending(&mut self, text: &str, reason: Reason<'_>) {
+    /// Notes in a dry run a request that an answer before it decides about.
+    pub fn plan_if(&mut self, request: &Request, on: &str) {
+        self.note(request, Reason::default().depending_on(on));
+    }
+
+    /// Notes in a dry run a block of which an answer before it decides a part, that stands as `?`, or whether it is sent.
+    pub fn plan_depending(&mut self, text: &str, reason: Reason<'_>) {
         if let Transport::Notes(plan) = &mut self.transport {
             plan.note(json!({ "text": text }), reason);
+            let word = text.trim_start_matches('@').split(' ').next().unwrap_or_default();
+            self.is_fenced = Row::named(word).is_some_and(|row| row.risk == Risk::Read);
+            self.hangs_on = reason.depends_on.map(ToOwned::to_owned);
         }
+    }
+
+    /// Notes in a dry run an order that an answer before it decides about, behind what goes before every order.
+    pub async fn plan_order(&mut self, text: &str, on: &str) -> Result<(), Failure> {
+        self.take_host().await?;
+        self.fence().await?;
+        self.plan_depending(text, Reason::default().depending_on(on));
+        Ok(())
     }
 
     /// Says in a dry run what follows that cannot be shown.
@@ -528,9 +553,7 @@ impl Link {
     }
 
     fn note(&mut self, request: &Request, reason: Reason<'_>) {
-        if let Transport::Notes(plan) = &mut self.transport {
-            plan.note(json!({ "text": request.text() }), reason);
-        }
+        self.plan_depending(&request.text(), reason);
     }
 
     /// An answer that makes no sense.

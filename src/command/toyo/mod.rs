@@ -14,6 +14,8 @@ mod debts;
 mod easy;
 mod error;
 mod files;
+#[cfg(test)]
+mod gate;
 mod home;
 mod host;
 mod info;

@@ -73,7 +73,7 @@ pub async fn ask_all(
     what: &str,
     requests: &[Request],
 ) -> Result<Vec<Record>, Failure> {
-    link.rehearse(requests)?;
+    link.dry_run(requests)?;
     let mut progress = (requests.len() > 1).then(|| screen.items_progress(what, requests.len() as u64));
     let mut answers = Vec::with_capacity(requests.len());
     for request in requests {

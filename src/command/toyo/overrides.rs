@@ -118,10 +118,10 @@ mod tests {
     #[test]
     fn the_override_is_compared_before_it_is_written() {
         assert_eq!(all_blocks(&["override", "get"]).unwrap(), ["@ROVR"]);
-        assert_eq!(blocks(&["override", "set", "5%"]).unwrap(), ["@ROVR", "@WOVR OV=005"]);
+        assert_eq!(blocks(&["override", "set", "5%"]).unwrap(), ["@ROVR", "@WOVR OV=005", "@ROVR"]);
         assert_eq!(
             all_blocks(&["override", "set", "100"]).unwrap(),
-            ["@ROVR", "@STAS SNO=2", "@HSON", "@WOVR OV=100", "@HSOF"]
+            ["@ROVR", "@STAS SNO=2", "@HSON", "@STAS SNO=0", "@WOVR OV=100", "@ROVR", "@HSOF"]
         );
     }
 

@@ -78,7 +78,7 @@ impl Command for Raw {
         let link = context.link;
         let answer = match &self.block {
             Block::Known(request) => {
-                link.rehearse(std::slice::from_ref(request))?;
+                link.dry_run(std::slice::from_ref(request))?;
                 link.exchange(request).await?.text()
             }
             Block::Unknown(text) => link.raw(text).await?,

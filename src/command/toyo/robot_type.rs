@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::Family;
 use super::numbers::number;
+use crate::command::dry_run::{Known as _, unknown};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
@@ -56,7 +57,11 @@ impl Command for RobotType {
     async fn run(&self, context: Context<'_, Family>) -> Result<InForce, Failure> {
         let Self { axis, robot_type } = *self;
         let order = Request::of(table::Command::Type, [Value::Number(axis), Value::Number(robot_type)]);
-        let answer = context.link.order_for(&order).await?;
+        let Some(answer) = context.link.order_for(&order).await.known()? else {
+            // Notes what follows, and ends.
+            context.link.status_of(&[0]).await?;
+            return Err(unknown());
+        };
         let shown = |number: i32| fields()[1].written(&Value::Number(number));
         let in_force = shown(answer.number("in_force").unwrap_or(0));
         let status = context.link.status_of(&[0]).await.map_err(|failure| {
@@ -105,7 +110,7 @@ mod tests {
 
     #[test]
     fn the_type_has_its_block() {
-        assert_eq!(blocks(&["robot-type", "1", "123"]).unwrap(), ["@TYPE AX1 RTYP=000123"]);
+        assert_eq!(blocks(&["robot-type", "1", "123"]).unwrap(), ["@TYPE AX1 RTYP=000123", "@STAS SNO=0"]);
         assert!(objection(&["robot-type", "5", "0"]).contains("1 to 4"));
         assert!(objection(&["robot-type", "1", "1000000"]).contains("999999"));
         assert!(intent(&["robot-type", "1", "123"]).contains("axis 1 of robot type 000123"));

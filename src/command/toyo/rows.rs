@@ -12,7 +12,7 @@ use super::cells::Cells;
 use super::items::{self, Item, read_each};
 use super::link;
 use super::numbers::{Numbers, number};
-use super::stores::parameter_cell;
+use super::stores::{self, Store, Work, parameter_cell, parameter_sketch};
 use super::values::{Changes, in_a_line, shown};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -21,6 +21,7 @@ use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::Parameter;
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 use crate::output::view::{Cell, Table, View};
 
 commands! {
@@ -162,6 +163,8 @@ fn table<K: Kind>() -> &'static Parameter {
     Parameter::named(K::TABLE).expect("every kind of table is in the table of parameters")
 }
 
+const WORK: Work = Work { doing: "storing rows", noun: "row", things: ["a row", "rows"], resumes: false };
+
 /// The number of a row.
 pub fn row_field(table: &'static Parameter) -> &'static Field {
     &table.key.fields[0]
@@ -197,18 +200,25 @@ impl<K: Kind> Command for Set<K> {
         "overwrite a row of a table".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored<K>, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         let table = table::<K>();
         let changes = Changes::read(&format!("row {}", self.row), &table.body(), &self.values)?;
         let read = Request::read_parameter(table, Some(self.row)).map_err(|error| link::wrong(&error))?;
-        let (values, found) = changes.completed(link, &read).await?;
+        let sketch = |values: &[Option<Value>]| parameter_sketch(table, Some(self.row), values);
+        let (values, found) = changes.completed(link, &read, sketch).await?;
         let body = table.body().record(values.clone()).map_err(|error| link::wrong(&error))?;
         let values = std::iter::once(Value::Number(self.row)).chain(values).collect();
         let cell = parameter_cell(table, values).map_err(|error| link::wrong(&error))?;
-        let mut cells = Cells::default();
-        link.store_over(screen, &cell, found.as_ref(), &mut cells).await?;
-        Ok(Stored { row: Row::of(&cell.wanted), cells, text: in_a_line(&shown(&body)) })
+        let row = Row::of(&cell.wanted);
+        let stores = [Store::new(self.row.to_string(), cell).over(found)];
+        authority.confirm(&stores::replacing(WORK, &stores, &format!(" of the {}", table.name))).await?;
+        let cells = stores::sum(&stores::store_all(link, screen, WORK, &stores, 0).await?);
+        Ok(Stored { row, cells, text: in_a_line(&shown(&body)) })
     }
 }
 
@@ -309,7 +319,10 @@ mod tests {
 
     #[test]
     fn a_row_is_compared_before_it_is_written() {
-        assert_eq!(blocks(&["speed-table", "set", "5", "250"]).unwrap(), ["@RPAR T2 V05", "@WPAR T2 V05=0250.0"]);
+        assert_eq!(
+            blocks(&["speed-table", "set", "5", "250"]).unwrap(),
+            ["@RPAR T2 V05", "@WPAR T2 V05=0250.0", "@RPAR T2 V05"]
+        );
         assert_eq!(blocks(&["accel-table", "set", "5", "time=0.25"]).unwrap()[1], "@WPAR T3 A05=0.25");
         assert_eq!(blocks(&["torque-table", "set", "3", "2.5", "2"]).unwrap()[1], "@WPAR T5 LIM03 T=2.50 L=2.00");
         assert_eq!(

@@ -8,6 +8,7 @@ use super::Family;
 use super::link::Link;
 use super::position::Place;
 use super::waiting::{Accepted, End, Work, step};
+use crate::command::dry_run::{Known as _, Reason, unknown};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -192,7 +193,8 @@ async fn go(context: Context<'_, Family>, start: &Request, no_wait: bool) -> Res
 
 async fn wait(link: &mut Link, screen: &Screen, order: table::Command) -> Result<Ran, Failure> {
     let work = Accepted { work: Work::Program, order, done: DONE, doing: "running" };
-    let End { place, elapsed_ms, is_paused } = work.wait(link, screen).await?;
+    let ended = work.wait(link, screen).await.known()?;
+    let Some(End { place, elapsed_ms, is_paused }) = ended else { return Err(plan_end(link, order)) };
     // A move to a point runs no steps.
     let last = match order {
         table::Command::Extp => None,
@@ -203,6 +205,18 @@ async fn wait(link: &mut Link, screen: &Screen, order: table::Command) -> Result
     }
     let (step, instruction) = last.unzip();
     Ok(Ran { accepted: true, stopped: Some(is_paused), step, instruction, position: place, elapsed_ms })
+}
+
+/// Notes in a dry run what is asked at the end.
+fn plan_end(link: &mut Link, order: table::Command) -> Failure {
+    let step = |step| Request::of(table::Command::Rstx, [Value::Number(step)]);
+    if order != table::Command::Extp {
+        link.plan(&step(0), "at which step it ended");
+    }
+    let stands = Reason::about("whether it was to stop there").depending_on("whether it is paused");
+    link.plan_depending("@STAS SNO=2", stands);
+    link.plan_depending("@RSTX ?", stands);
+    unknown()
 }
 
 const DONE: &str = "the start was accepted";
@@ -286,12 +300,16 @@ mod tests {
             [
                 "@STAS SNO=2",
                 "@HSON",
+                "@STAS SNO=0",
                 "@SPST 0012",
                 "@STAS SNO=0",
                 "@MPST",
                 "@STAS SNO=4",
                 "@RSTX 0000",
                 "@STAS SNO=1",
+                "@RSTX 0000",
+                "@STAS SNO=2",
+                "@RSTX ?",
                 "@HSOF"
             ]
         );

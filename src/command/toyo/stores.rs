@@ -1,13 +1,16 @@
 //! Many cells of the EEPROM in a row, with an exact account of what was done when one of them fails.
 
 use super::cells::{Cell, Cells};
+use super::items::plan_twice;
 use super::link::Link;
+use super::values::{self, Shown};
 use crate::command::interrupt::interruptible;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::{Misfit, Record};
 use crate::controller::toyo::request::Request;
-use crate::controller::toyo::table::Parameter;
+use crate::controller::toyo::table::{self, Parameter};
 use crate::failure::{Failure, Kind};
+use crate::gate::Change;
 use crate::output::Screen;
 
 /// Work on many cells, in words.
@@ -17,6 +20,8 @@ pub struct Work {
     pub doing: &'static str,
     /// What stands before a key in messages, for several with an s: `point`; nothing where a key says enough.
     pub noun: &'static str,
+    /// One of them, with its article, and several.
+    pub things: [&'static str; 2],
     /// Whether the command takes `--resume=KEY`.
     pub resumes: bool,
 }
@@ -30,8 +35,136 @@ pub struct Store {
     pub cell: Cell,
     /// Only some controllers have it: that another one refuses it stops nothing.
     pub is_optional: bool,
-    /// What it holds, where that was read a moment ago.
-    pub found: Option<Record>,
+    /// What it holds.
+    pub found: Found,
+}
+
+/// What a cell holds.
+#[derive(Debug, Clone)]
+pub enum Found {
+    /// It was not asked.
+    NotAsked,
+    /// It was asked in a dry run.
+    NotKnown,
+    /// The controller does not have it.
+    NotThere,
+    /// This, a moment ago.
+    This(Record),
+}
+
+impl From<Option<Record>> for Found {
+    fn from(found: Option<Record>) -> Self {
+        found.map_or(Self::NotKnown, Self::This)
+    }
+}
+
+/// Something that is replaced: what it is, what it holds, and what it shall hold.
+pub type Replaced = [String; 3];
+
+impl Store {
+    /// Something that every controller has.
+    pub fn new(key: impl Into<String>, cell: Cell) -> Self {
+        Self { key: key.into(), cell, is_optional: false, found: Found::NotAsked }
+    }
+
+    /// With what it holds; `None` in a dry run.
+    #[must_use]
+    pub fn over(self, found: Option<Record>) -> Self {
+        Self { found: found.into(), ..self }
+    }
+
+    /// Whether it is known to hold something else.
+    pub fn differs(&self) -> bool {
+        matches!(&self.found, Found::This(found) if !self.cell.is(found))
+    }
+
+    /// What is replaced, if it holds something else that somebody wrote.
+    fn replaced(&self, work: Work) -> Option<Replaced> {
+        let Self { key, cell, found: Found::This(found), .. } = self else { return None };
+        if cell.is(found) || cell.is_blank(found) {
+            return None;
+        }
+        let what = match (cell.read.parameter().filter(|parameter| parameter.row().is_none()), work.noun) {
+            (Some(parameter), _) => format!("{} ({})", parameter.id, parameter.name),
+            (None, "") => key.clone(),
+            (None, noun) => format!("{noun} {key}"),
+        };
+        let [old, new] = difference(cell, found);
+        Some([what, old, new])
+    }
+}
+
+/// What differs in a cell from what it shall hold, in words.
+fn difference(cell: &Cell, found: &Record) -> [String; 2] {
+    if cell.read.command() == table::Command::Rstx {
+        return [found.written(), cell.wanted.written()];
+    }
+    let (old, new) = (values::shown(found), values::shown(&cell.wanted));
+    let is_named = new.len() > 1;
+    let differ = |one: &[Shown], other: &[Shown]| {
+        let differing = one.iter().filter(|shown| !other.contains(shown)).cloned();
+        values::line(&differing.collect::<Vec<_>>(), is_named)
+    };
+    [differ(&old, &new), differ(&new, &old)]
+}
+
+/// What is replaced that somebody wrote.
+pub fn replaced(work: Work, stores: &[Store]) -> Vec<Replaced> {
+    stores.iter().filter_map(|store| store.replaced(work)).collect()
+}
+
+/// What is replaced, for a person to confirm; `of` says where: ` of task 1`.
+pub fn replacing(work: Work, stores: &[Store], of: &str) -> Change {
+    overwriting(work.things, &replaced(work, stores), of)
+}
+
+/// The same of any things.
+pub fn overwriting([one, several]: [&str; 2], replaced: &[Replaced], of: &str) -> Change {
+    let change = match replaced.len() {
+        0 => return Change::nothing(),
+        1 => Change::new(format!("overwrite {one}{of}")),
+        many => Change::new(format!("overwrite {many} {several}{of}")),
+    };
+    replaced.iter().fold(change, |change, [what, old, new]| change.replaces(what, old, new))
+}
+
+/// Reads what cells hold that were not asked yet. Nothing is written meanwhile, and a failure says so.
+pub async fn look(link: &mut Link, screen: &Screen, stores: &mut [Store]) -> Result<(), Failure> {
+    let count = stores.iter().filter(|store| matches!(store.found, Found::NotAsked)).count();
+    let mut progress = (count > 1).then(|| screen.items_progress("reading what is there", count as u64));
+    let looked = interruptible(async {
+        for store in stores.iter_mut().filter(|store| matches!(store.found, Found::NotAsked)) {
+            store.found = found(link, store).await?;
+            if let Some(progress) = &mut progress {
+                progress.advance(1);
+            }
+        }
+        Ok(())
+    });
+    looked.await.and_then(|looked| looked).map_err(unwritten)
+}
+
+/// What failed before anything was written.
+pub fn unwritten(failure: Failure) -> Failure {
+    let message = format!("{}; nothing was written", failure.message.trim_end_matches('.'));
+    Failure { message, ..failure }
+}
+
+async fn found(link: &mut Link, store: &Store) -> Result<Found, Failure> {
+    if link.is_dry() {
+        plan_twice(link, &store.cell.read);
+        return Ok(Found::NotKnown);
+    }
+    if store.is_optional {
+        return Ok(link.read_if_there(&store.cell.read).await?.map_or(Found::NotThere, Found::This));
+    }
+    Ok(Found::This(link.read_content(&store.cell.read).await?))
+}
+
+/// The block that writes a parameter, or a row of a table; `?` stands for values that are kept.
+pub fn parameter_sketch(parameter: &Parameter, row: Option<i32>, values: &[Option<Value>]) -> String {
+    let values: Vec<_> = row.map(|row| Some(Value::Number(row))).into_iter().chain(values.iter().cloned()).collect();
+    format!("@WPAR {}", parameter.layout.sketch(&values).unwrap_or_default())
 }
 
 /// What became of one cell.
@@ -124,12 +257,20 @@ pub fn sum(fates: &[Fate]) -> Cells {
 }
 
 async fn one(link: &mut Link, screen: &Screen, store: &Store) -> Result<Fate, Failure> {
-    if store.is_optional && !link.is_dry() && link.read_if_there(&store.cell.read).await?.is_none() {
-        return Ok(Fate::NotThere);
-    }
-    let mut cells = Cells::default();
-    link.store_over(screen, &store.cell, store.found.as_ref(), &mut cells).await?;
-    Ok(if cells.cells_written > 0 { Fate::Written } else { Fate::Unchanged })
+    let Store { cell, .. } = store;
+    let found = if let Found::NotAsked = store.found { found(link, store).await? } else { store.found.clone() };
+    Ok(match found {
+        Found::NotThere => Fate::NotThere,
+        Found::This(found) if cell.is(&found) => Fate::Unchanged,
+        Found::NotKnown => {
+            link.plan_overwriting(&cell.read, &cell.write.text()).await?;
+            Fate::Written
+        }
+        Found::This(_) | Found::NotAsked => {
+            link.overwrite(screen, cell, &mut Cells::default()).await?;
+            Fate::Written
+        }
+    })
 }
 
 /// The failure, and what became of each cell; it came up at the one behind the last fate.
@@ -178,18 +319,13 @@ fn span(work: Work, stores: &[Store]) -> String {
 mod tests {
     use super::*;
 
-    const WORK: Work = Work { doing: "storing points", noun: "point", resumes: true };
+    const WORK: Work = Work { doing: "storing points", noun: "point", things: ["a point", "points"], resumes: true };
 
     fn stores() -> Vec<Store> {
         let parameter = Parameter::named("T1").unwrap();
         let store = |row: i32| {
             let values = [row, 0, 0, 0, 0].map(Value::Number).into();
-            Store {
-                key: row.to_string(),
-                cell: parameter_cell(parameter, values).unwrap(),
-                is_optional: false,
-                found: None,
-            }
+            Store::new(row.to_string(), parameter_cell(parameter, values).unwrap())
         };
         (1..=5).map(store).collect()
     }

@@ -9,9 +9,10 @@ use crate::failure::{Failure, Kind};
 /// Asks which task is the current one, and makes another one that for a while; says which is the current one then.
 pub async fn choose(link: &mut Link, wanted: Option<u8>) -> Result<u8, Failure> {
     if link.is_dry() {
-        link.foresee(&Request::bare(Command::Mtsk), "which task is the current one");
+        link.plan(&Request::bare(Command::Mtsk), "which task is the current one");
         if let Some(task) = wanted {
-            link.foresee(&choice(task), "if another one is; the one that was found comes back at the end");
+            let back = format!("@{} TASK=?", Command::Ctsk.row().word);
+            link.plan_to_borrow(&choice(task), &back, "whether it is another one").await?;
         }
         return Ok(wanted.unwrap_or(1));
     }
@@ -20,7 +21,7 @@ pub async fn choose(link: &mut Link, wanted: Option<u8>) -> Result<u8, Failure> 
     let found = found.ok_or_else(|| link.malformed(&answer.written(), "there are tasks 1 to 4"))?;
     match wanted.filter(|wanted| *wanted != found) {
         Some(wanted) => {
-            link.borrow(&choice(wanted), choice(found), "").await?;
+            link.borrow(&choice(wanted), choice(found)).await?;
             Ok(wanted)
         }
         None => Ok(found),

@@ -11,12 +11,16 @@ use serde_json::Value;
 
 use super::Family;
 use super::link::Link;
+use super::link::fence::FENCE;
 use super::simulated::Simulated;
 use crate::cli::{Cli, OfToyo, Top, Verb};
-use crate::command::testing::{context, everything, frames, planned};
-use crate::command::{AnyCommand, Family as _, Noun as _};
+use crate::command::authority::Authority;
+use crate::command::testing::{QUIET, context, everything, frames, planned};
+use crate::command::{AnyCommand, Context, Family as _, Noun as _};
+use crate::controller::Risk;
 use crate::controller::toyo::simulator::Start;
 use crate::failure::Failure;
+use crate::gate::{Gate, Grant, Intent};
 use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::target::Family as Name;
 use crate::settings::{Robot, Selection, Sources};
@@ -28,22 +32,40 @@ pub(super) fn objection(words: &[&str]) -> String {
     parsed("sim:", words).expect_err("the parser objects").to_string()
 }
 
+/// What the gate is told of a command line.
+pub(super) fn gated(words: &[&str]) -> (Robot, Intent, &'static str) {
+    let (robot, command) = resolved("tcp://127.0.0.1:1", words).expect("a command line");
+    let intent = command.intent(Some(&robot));
+    (robot, intent, command.id())
+}
+
 /// The question before the command, without "This will".
 pub(super) fn intent(words: &[&str]) -> String {
     resolved("sim:", words).unwrap().1.intent(None).text
 }
 
-/// The blocks that `armctl toyo WORDS…` would send, those for the host apart.
+/// The blocks that `armctl toyo WORDS…` would send, those apart that go before and behind any order.
 pub(super) fn blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
-    let blocks = all_blocks(words)?;
-    Ok(blocks.into_iter().filter(|block| !matches!(&block[..], "@STAS SNO=2" | "@HSON" | "@HSOF")).collect())
+    let mut frames = frames(&plan(words)?);
+    frames.retain(|frame| frame["about"] != FENCE);
+    let blocks = frames.iter().map(text);
+    Ok(blocks.filter(|block| !matches!(&block[..], "@STAS SNO=2" | "@HSON" | "@HSOF")).collect())
 }
 
 /// All blocks that `armctl toyo WORDS…` would send.
 pub(super) fn all_blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
+    Ok(frames(&plan(words)?).iter().map(text).collect())
+}
+
+/// The report of a dry run.
+pub(super) fn plan(words: &[&str]) -> Result<Value, Failure> {
     let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
-    let blocks = frames(&planned(&robot, &*command, |_| ())?);
-    Ok(blocks.iter().map(|block| block["text"].as_str().expect("blocks are text").to_owned()).collect())
+    planned(&robot, &*command, |_| ())
+}
+
+/// The block of a frame of it.
+pub(super) fn text(frame: &Value) -> String {
+    frame["text"].as_str().expect("blocks are text").to_owned()
 }
 
 /// A simulated controller and a link to it that last for several command lines, in virtual time.
@@ -165,6 +187,15 @@ impl Bench {
         self.runtime.block_on(async { tokio::time::sleep(time).await });
     }
 
+    /// Puts back what the link has changed, as its end does; it may be used on.
+    pub(super) fn end(&mut self) {
+        let Self { runtime, link, .. } = self;
+        runtime.block_on(async {
+            link.put_back().await.unwrap_or_default();
+            link.give_back().await.unwrap_or_default();
+        });
+    }
+
     /// Closes the link.
     pub(super) fn close(self) -> Result<(), Failure> {
         self.runtime.block_on(Family::close(self.link, &quiet()))
@@ -184,6 +215,20 @@ impl Bench {
         let Self { runtime, robot, link } = self;
         let report = runtime.block_on(command.run(context(robot, link)))?;
         Ok((report.data()?, report.failure()))
+    }
+
+    /// Runs `armctl toyo WORDS…` on what counts as a real robot, where nobody can be asked.
+    pub(super) fn unasked(&mut self, words: &[&str]) -> Result<Value, Failure> {
+        let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
+        let intent = command.intent(Some(&robot));
+        Gate::default().must_ask(&QUIET, &robot, &intent)?;
+        let grant = Grant::of(intent.granted_at_first());
+        self.link.grant(grant.clone());
+        let authority = Authority::new(Gate::default(), &QUIET, &robot, intent.risk, grant);
+        let context = Context { robot: &robot, link: &mut self.link, screen: &QUIET, several: false, authority };
+        let came = self.runtime.block_on(command.run(context)).and_then(|report| report.data());
+        self.link.grant(Grant::of(Risk::Motion));
+        came
     }
 
     /// The data of a command line that must succeed.

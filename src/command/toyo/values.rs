@@ -9,6 +9,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::link::Link;
+use crate::command::dry_run::{Known as _, unknown};
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::{Field, Form, Number, Value};
 use crate::controller::toyo::layout::{Layout, Record, UNLISTED};
@@ -89,11 +90,16 @@ pub fn shown(record: &Record) -> Vec<Shown> {
 
 /// Values in a line as they may be typed, with their units behind: `low=10.0 high=100.0 mm/s`.
 pub fn in_a_line(shown: &[Shown]) -> String {
+    line(shown, shown.len() > 1)
+}
+
+/// The same; whether each has its name before it.
+pub fn line(shown: &[Shown], is_named: bool) -> String {
     let common =
         shown.first().and_then(|first| first.unit).filter(|unit| shown.iter().all(|one| one.unit == Some(unit)));
     let mut texts = Vec::with_capacity(shown.len() + 1);
     for one in shown {
-        let name = if shown.len() > 1 { format!("{}=", one.name) } else { String::new() };
+        let name = if is_named { format!("{}=", one.name) } else { String::new() };
         let meaning = one.meaning.map_or(String::new(), |meaning| format!(" ({meaning})"));
         let unit = one.unit.filter(|_| common.is_none()).map_or(String::new(), |unit| format!(" {unit}"));
         texts.push(format!("{name}{}{meaning}{unit}", one.text));
@@ -191,14 +197,24 @@ impl Changes {
         self.0.iter().cloned().collect()
     }
 
-    /// All values, with those that are left from what the controller answers to `read`, if any are; and that answer, so
-    /// that it is not read twice.
-    pub async fn completed(&self, link: &mut Link, read: &Request) -> Result<(Vec<Value>, Option<Record>), Failure> {
-        if let Some(values) = self.whole() {
-            return Ok((values, None));
+    /// All values, with those that are left from what the controller answers to `read`; and that answer, so that it is not
+    /// read twice. A dry run, which has none, ends here if something is kept: what would be written is noted as `sketch`
+    /// makes it from the values that are known.
+    pub async fn completed(
+        &self,
+        link: &mut Link,
+        read: &Request,
+        sketch: impl FnOnce(&[Option<Value>]) -> String,
+    ) -> Result<(Vec<Value>, Option<Record>), Failure> {
+        let found = link.read_content(read).await.known()?;
+        match (self.whole(), &found) {
+            (Some(values), _) => Ok((values, found)),
+            (None, Some(there)) => Ok((self.over(there)?, found)),
+            (None, None) => {
+                link.plan_overwriting(read, &sketch(&self.0)).await?;
+                Err(unknown())
+            }
         }
-        let found = link.read_content(read).await?;
-        Ok((self.over(&found)?, Some(found)))
     }
 
     /// All values, with those that are left from what was read.

@@ -7,7 +7,7 @@ use tokio::time::Instant;
 use super::link::Link;
 use super::position::Place;
 use super::refusal;
-use crate::command::dry_run::unknown;
+use crate::command::dry_run::{Reason, unknown};
 use crate::controller::toyo::errors;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
@@ -74,7 +74,7 @@ impl Accepted {
     /// [`Kind::ConditionNotMet`] if it did not get to its end, [`Kind::OutcomeUnknown`] if contact was lost.
     pub(super) async fn wait(self, link: &mut Link, screen: &Screen) -> Result<End, Failure> {
         if link.is_dry() {
-            self.foresee(link);
+            self.plan(link);
             return Err(unknown());
         }
         let mut teller = Teller::new(self.doing, screen);
@@ -133,18 +133,20 @@ impl Accepted {
         if matches!(self.work, Work::Card) { &[3, 0] } else { &[0] }
     }
 
-    fn foresee(self, link: &mut Link) {
+    fn plan(self, link: &mut Link) {
         for page in self.pages() {
-            link.foresee(&status_page(*page), "every 100 ms until it has ended");
+            link.plan(&status_page(*page), "every 100 ms until it has ended");
         }
         if self.work != Work::Card {
-            link.foresee(&position(), "where the axes are");
+            link.plan(&position(), "every 100 ms until it has ended: where the axes are");
         }
         if self.work == Work::Program {
-            link.foresee(&status_page(4), "now and then: whether it waits for an input");
-            link.foresee(&current_step(), "now and then, and at the end: which step");
+            let about = Reason::about("now and then until it has ended: whether it waits for an input, and which step");
+            for request in [status_page(4), current_step()] {
+                link.plan_depending(&request.text(), about.depending_on("how long it takes"));
+            }
         }
-        link.foresee(&status_page(1), "if an error comes up: which");
+        link.plan_if(&status_page(1), "whether an error comes up");
     }
 
     /// What kept it from its end.
@@ -217,7 +219,7 @@ pub(super) async fn becomes(
     is_so: impl Fn(Status) -> bool,
 ) -> Result<bool, Failure> {
     if link.is_dry() {
-        link.foresee(&status_page(page), about);
+        link.plan(&status_page(page), &format!("every 100 ms until it is so, at most 1s: {about}"));
         return Err(unknown());
     }
     let until = Instant::now() + BEGIN_WITHIN;

@@ -92,6 +92,17 @@ impl Layout {
         self.join(|index, field| Ok(field.emit(&values[index])?))
     }
 
+    /// The text with the values in it that are known, each in its form and range; `?` stands for the others.
+    pub fn sketch(&self, values: &[Option<Value>]) -> Result<String, Misfit> {
+        if values.len() != self.fields.len() {
+            return Err(Misfit::Count { expected: self.fields.len(), found: values.len() });
+        }
+        self.join(|index, field| match &values[index] {
+            Some(value) => Ok(field.emit(value)?),
+            None => Ok("?".to_owned()),
+        })
+    }
+
     /// The values in a text. Outer blanks, and more blanks than needed between items, do not matter (ambiguity A7).
     pub fn parse(&self, text: &str) -> Result<Record, LayoutError> {
         let mut values = Vec::with_capacity(self.fields.len());

@@ -65,12 +65,12 @@ pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
 }
 
 /// What a dry run notes of [`controller`].
-pub fn foresee_controller(link: &mut Link) {
-    link.foresee(&Request::bare(Command::Sysp), "what kind of controller it is");
-    link.foresee(&task_axes(), "which tasks have axes");
-    link.foresee(&letters_request(), "the letters of the axes");
-    link.foresee(&Request::bare(Command::Rovr), "the override");
-    link.foresee(&steps::rooms_request(), "how many steps the tasks have");
+pub fn plan_controller(link: &mut Link) {
+    link.plan(&Request::bare(Command::Sysp), "what kind of controller it is");
+    link.plan(&task_axes(), "which tasks have axes");
+    link.plan(&letters_request(), "the letters of the axes");
+    link.plan(&Request::bare(Command::Rovr), "the override");
+    link.plan(&steps::rooms_request(), "how many steps the tasks have");
 }
 
 /// The values of a record in a line.
@@ -264,14 +264,14 @@ impl Content {
 
     /// The work in words.
     pub fn work(&self) -> Work {
-        let (doing, noun) = match self {
-            Self::Parameters(_) => ("storing parameters", ""),
-            Self::Points(_) => ("storing points", "point"),
-            Self::Program(_) => ("storing steps", "step"),
-            Self::Palletizing(..) => ("storing records", ""),
-            Self::Easy(_) => ("storing easy programs", "program"),
+        let (doing, noun, things) = match self {
+            Self::Parameters(_) => ("storing parameters", "", ["a parameter", "parameters"]),
+            Self::Points(_) => ("storing points", "point", ["a point", "points"]),
+            Self::Program(_) => ("storing steps", "step", ["a step", "steps"]),
+            Self::Palletizing(..) => ("storing records", "", ["a record", "records"]),
+            Self::Easy(_) => ("storing easy programs", "program", ["a program", "programs"]),
         };
-        Work { doing, noun, resumes: false }
+        Work { doing, noun, things, resumes: false }
     }
 
     /// The steps that it needs room for: up to the last that is no NOP.
@@ -288,5 +288,5 @@ fn is_machine(setting: &Setting) -> bool {
 }
 
 fn stored(key: String, cell: Result<Cell, Failure>) -> Result<Store, Failure> {
-    Ok(Store { key, cell: cell?, is_optional: false, found: None })
+    Ok(Store::new(key, cell?))
 }

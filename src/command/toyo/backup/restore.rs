@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::content::{self, Content};
 use super::manifest::{Controller, Manifest};
 use super::parts::{self, Part, PartResult, Parts};
+use crate::command::authority::Authority;
 use crate::command::backup::{self, Item, Items, Only, POWER_CYCLE, Restoring};
 use crate::command::dry_run::unknown;
 use crate::command::local::own_folder;
@@ -16,15 +17,16 @@ use crate::command::manifest::{self, LeftOut, MANIFEST, State};
 use crate::command::toyo::cells::{Cell, Cells};
 use crate::command::toyo::link::{Link, wrong};
 use crate::command::toyo::program::steps;
-use crate::command::toyo::stores::{self, Fate, Store, Work};
+use crate::command::toyo::stores::{self, Fate, Found, Store, Work};
 use crate::command::toyo::values::NOT_IN_MANUAL;
-use crate::command::toyo::{Family, tasks};
+use crate::command::toyo::{Family, param, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
-use crate::controller::toyo::table;
+use crate::controller::toyo::table::{self, Group, Parameter};
 use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 use crate::output::view::View;
 
@@ -45,7 +47,7 @@ pub struct Restore {
     /// These parts only, such as parameters,points-1,program
     #[arg(long, value_name = "PART", value_delimiter = ',')]
     only: Vec<Parts>,
-    /// Write machine and special parameters, too; needs --yes
+    /// Write machine and special parameters, too
     #[arg(long)]
     machine: bool,
     /// Go on with a restore that was cut off; with a part, those before it are not even compared
@@ -65,8 +67,24 @@ struct Job {
     content: Content,
 }
 
-const MACHINE: Work = Work { doing: "storing machine parameters", noun: "", resumes: false };
-const SPEED: Work = Work { doing: "storing the override", noun: "", resumes: false };
+const MACHINE: Work = Work {
+    doing: "storing machine parameters",
+    noun: "",
+    things: ["a machine or special parameter", "machine and special parameters"],
+    resumes: false,
+};
+const SPEED: Work =
+    Work { doing: "storing the override", noun: "", things: ["the override", "overrides"], resumes: false };
+/// Values that a question shows one by one; more are counted by parts.
+const SHOWN: usize = 10;
+
+/// A part of which is known what is there.
+struct Looked<'j> {
+    /// Its place among the jobs.
+    index: usize,
+    job: &'j Job,
+    stores: Vec<Store>,
+}
 
 impl Command for Restore {
     type Family = Family;
@@ -81,8 +99,12 @@ impl Command for Restore {
         "overwrite what the controller stores by the backup".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
-        let Context { link, screen, robot, several, .. } = context;
+        let Context { link, screen, robot, several, authority } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
         let manifest: Manifest = manifest::existing(&folder)?;
         // Whether robot and address are those of the backup; the machine itself is asked later.
@@ -100,9 +122,9 @@ impl Command for Restore {
             }
         }
         if link.is_dry() {
-            return self.rehearse(link, screen, &manifest.controller, &jobs).await;
+            return self.dry_run(link, screen, &manifest.controller, &jobs).await;
         }
-        let outcome = self.restore(link, screen, &manifest.controller, &jobs).await;
+        let outcome = self.restore((link, screen, &authority), &manifest.controller, &jobs).await;
         match outcome {
             // Nothing more is sent then but what puts things back at the end of the link.
             Ok(report) if report.is_interrupted() => Ok(report),
@@ -150,8 +172,7 @@ impl Restore {
 
     async fn restore(
         &self,
-        link: &mut Link,
-        screen: &Screen,
+        (link, screen, authority): (&mut Link, &Screen, &Authority<'_>),
         backup: &Controller,
         jobs: &[Job],
     ) -> Result<Restored, Failure> {
@@ -160,72 +181,171 @@ impl Restore {
             identify(backup, &found, self.machine)?;
         }
         let mut results: Vec<PartResult> = jobs.iter().map(|job| pending(job.part)).collect();
-        if !self.machine {
+        let mut machine = self.machine_stores(jobs)?;
+        stores::look(link, screen, &mut machine).await?;
+        let changed: Vec<&Parameter> = machine.iter().filter(|store| store.differs()).filter_map(parameter).collect();
+        let needs_power_cycle = changed.iter().any(|parameter| parameter.group() == Group::Machine);
+        let (mut looked, mut speed) = (Vec::new(), Vec::new());
+        if !needs_power_cycle {
             check_room(jobs, &found)?;
+            looked = look_at(link, screen, jobs, &found, &mut results).await?;
+            speed.extend(self::speed(backup)?.filter(|_| self.is_whole()));
+            stores::look(link, screen, &mut speed).await?;
         }
+        let mut change = replacing(&machine, &looked, &speed);
+        if needs_power_cycle {
+            change = change.note(param::consequence_of(&changed));
+        }
+        authority.confirm(&change).await?;
         steps::open(link).await?;
-        let mut report = Restored { parts: Vec::new(), needs_power_cycle: false };
-        if self.machine {
-            report.needs_power_cycle = machine(link, screen, jobs, &mut results).await?;
-            if report.needs_power_cycle || results.iter().any(|result| result.state == State::Failed) {
-                report.parts = results;
-                return Ok(report);
+        let stored = stores::store_all(link, screen, MACHINE, &machine, 0).await;
+        if needs_power_cycle || stored.is_err() {
+            let parameters = jobs.iter().position(|job| job.part == Part::Parameters);
+            let needs_power_cycle = stored.is_ok();
+            if let Some(result) = parameters.and_then(|index| results.get_mut(index)) {
+                match stored {
+                    Ok(fates) => result.cells = Some(stores::sum(&fates)),
+                    Err(failure) => {
+                        result.fail(failure);
+                    }
+                }
             }
-            // Those of them that took hold at once.
-            check_room(jobs, &content::controller(link).await?)?;
+            return Ok(Restored { parts: results, needs_power_cycle });
         }
-        let total = jobs.len();
-        for (number, (job, result)) in jobs.iter().zip(&mut results).enumerate() {
-            screen.step(&format!("{}/{total} {}", number + 1, job.part));
-            let outcome = store(link, screen, job, &found).await;
-            if !settle(result, outcome) {
+        for Looked { index, job, stores } in &looked {
+            let outcome = store(link, screen, job, stores).await;
+            if !settle(&mut results[*index], outcome) {
                 break;
             }
         }
-        if self.is_whole()
-            && let Some(store) = speed(backup)?
-        {
+        if !speed.is_empty() {
             let mut result = PartResult::pending("override");
             if results.iter().all(|result| matches!(result.state, State::Done | State::Failed)) {
-                settle(&mut result, store_all(link, screen, SPEED, &[store]).await);
+                settle(&mut result, store_all(link, screen, SPEED, &speed).await);
             }
             results.push(result);
         }
-        report.parts = results;
-        Ok(report)
+        Ok(Restored { parts: results, needs_power_cycle: false })
     }
 
-    async fn rehearse(
+    /// Machine and special parameters, where they are wanted.
+    fn machine_stores(&self, jobs: &[Job]) -> Result<Vec<Store>, Failure> {
+        let stores = jobs.iter().filter(|_| self.machine).map(|job| job.content.machine_stores());
+        Ok(stores.collect::<Result<Vec<_>, _>>()?.concat())
+    }
+
+    async fn dry_run(
         &self,
         link: &mut Link,
         screen: &Screen,
         backup: &Controller,
         jobs: &[Job],
     ) -> Result<Restored, Failure> {
-        content::foresee_controller(link);
-        steps::foresee_open(link).await?;
-        if self.machine {
-            for job in jobs {
-                stores::store_all(link, screen, MACHINE, &job.content.machine_stores()?, 0).await?;
+        content::plan_controller(link);
+        let mut machine = self.machine_stores(jobs)?;
+        stores::look(link, screen, &mut machine).await?;
+        let mut looked = Vec::new();
+        for (index, job) in jobs.iter().enumerate() {
+            choose(link, job.part).await?;
+            let mut stores = job.content.stores(job.content.steps())?;
+            stores::look(link, screen, &mut stores).await?;
+            if let Part::Program(_) = job.part {
+                let behind = steps::read_request(job.content.steps().saturating_add(1).min(5000));
+                link.plan(&behind, "and so on to the end of the task");
+            }
+            looked.push(Looked { index, job, stores });
+        }
+        let mut speed: Vec<Store> = speed(backup)?.filter(|_| self.is_whole()).into_iter().collect();
+        stores::look(link, screen, &mut speed).await?;
+        steps::plan_open(link).await?;
+        stores::store_all(link, screen, MACHINE, &machine, 0).await?;
+        for Looked { job, stores, .. } in &looked {
+            choose(link, job.part).await?;
+            stores::store_all(link, screen, job.content.work(), stores, 0).await?;
+            if let Part::Program(_) = job.part {
+                link.then(&format!("steps behind those of {} that are no NOP become one", job.part));
             }
         }
-        for Job { part, content } in jobs {
-            if let Part::Points(task) | Part::Program(task) = part {
-                tasks::choose(link, Some(*task)).await?;
-            }
-            let steps = content.steps();
-            stores::store_all(link, screen, content.work(), &content.stores(steps)?, 0).await?;
-            if let Part::Program(_) = part {
-                let rest = "and so on to the end of the task: what is no NOP becomes one";
-                link.foresee(&steps::read_request(steps.saturating_add(1).min(5000)), rest);
-            }
-        }
-        if let Some(store) = speed(backup)?.filter(|_| self.is_whole()) {
-            stores::store_all(link, screen, SPEED, &[store], 0).await?;
-        }
+        stores::store_all(link, screen, SPEED, &speed, 0).await?;
         link.put_back().await?;
         Err(unknown())
     }
+}
+
+/// Makes the task of a part the current one, where it has one.
+async fn choose(link: &mut Link, part: Part) -> Result<(), Failure> {
+    if let Part::Points(task) | Part::Program(task) = part {
+        tasks::choose(link, Some(task)).await?;
+    }
+    Ok(())
+}
+
+/// What is there of all parts. One that cannot be read fails alone; nothing of it is written.
+async fn look_at<'j>(
+    link: &mut Link,
+    screen: &Screen,
+    jobs: &'j [Job],
+    found: &Controller,
+    results: &mut [PartResult],
+) -> Result<Vec<Looked<'j>>, Failure> {
+    let (mut looked, total) = (Vec::new(), jobs.len());
+    for ((index, job), result) in jobs.iter().enumerate().zip(results) {
+        screen.step(&format!("{}/{total} {}", index + 1, job.part));
+        match look_at_one(link, screen, job, found).await {
+            Ok(stores) => looked.push(Looked { index, job, stores }),
+            Err(failure) if failure.kind == Kind::Interrupted => return Err(failure),
+            Err(failure) => {
+                if !result.fail(failure) {
+                    looked.clear();
+                    break;
+                }
+            }
+        }
+    }
+    Ok(looked)
+}
+
+async fn look_at_one(link: &mut Link, screen: &Screen, job: &Job, found: &Controller) -> Result<Vec<Store>, Failure> {
+    let Job { part, content } = job;
+    choose(link, *part).await?;
+    let room = match part {
+        Part::Points(task) | Part::Program(task) => found.task_steps[usize::from(*task) - 1],
+        _ => 0,
+    };
+    for (step, text) in content.unlisted_steps() {
+        must_be_there(link, step, &text).await?;
+    }
+    let mut stores = content.stores(room)?;
+    stores::look(link, screen, &mut stores).await?;
+    Ok(stores)
+}
+
+/// What is replaced, for a person to confirm: a few values one by one, many by parts.
+fn replacing(machine: &[Store], looked: &[Looked<'_>], speed: &[Store]) -> Change {
+    let of = |part: String, work: Work, stores: &[Store]| (part, work.things, stores::replaced(work, stores));
+    let mut parts = vec![of("machine".to_owned(), MACHINE, machine)];
+    parts.extend(looked.iter().map(|Looked { job, stores, .. }| of(job.part.to_string(), job.content.work(), stores)));
+    parts.push(of("override".to_owned(), SPEED, speed));
+    parts.retain(|(_, _, replaced)| !replaced.is_empty());
+    let total: usize = parts.iter().map(|(_, _, replaced)| replaced.len()).sum();
+    let values = if total == 1 { "a value" } else { &format!("{total} values") };
+    let change = match total {
+        0 => return Change::nothing(),
+        _ => Change::new(format!("overwrite {values} by the backup")),
+    };
+    parts.iter().fold(change, |change, (part, [one, several], replaced)| {
+        if total > SHOWN {
+            let count = replaced.len();
+            let what = if count == 1 { (*one).to_owned() } else { format!("{count} {several}") };
+            return change.item(format!("{part}: {what}"));
+        }
+        replaced.iter().fold(change, |change, [what, old, new]| change.replaces(&format!("{part}, {what}"), old, new))
+    })
+}
+
+/// The parameter of a cell.
+fn parameter(store: &Store) -> Option<&'static Parameter> {
+    store.cell.read.parameter()
 }
 
 /// A part before it is tried.
@@ -243,7 +363,7 @@ fn speed(backup: &Controller) -> Result<Option<Store>, Failure> {
         write: Request::new(table::Command::Wovr, values).map_err(|error| wrong(&error))?,
         wanted: wanted.map_err(|error| wrong(&error))?,
     };
-    Ok(Some(Store { key: "override".to_owned(), cell, is_optional: true, found: None }))
+    Ok(Some(Store { key: "override".to_owned(), cell, is_optional: true, found: Found::NotAsked }))
 }
 
 /// Whether the controller is the machine that the backup is of: its robot type (SYSP), which task has which axes (E19), and
@@ -286,44 +406,15 @@ fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Stores machine and special parameters, and says whether the controller wants its power to be cycled.
-async fn machine(link: &mut Link, screen: &Screen, jobs: &[Job], results: &mut [PartResult]) -> Result<bool, Failure> {
-    for (job, result) in jobs.iter().zip(results) {
-        let stores = job.content.machine_stores()?;
-        match stores::store_all(link, screen, MACHINE, &stores, 0).await {
-            Ok(fates) => {
-                let changed = |(store, fate): (&Store, &Fate)| store.key.starts_with('E') && *fate == Fate::Written;
-                if stores.iter().zip(&fates).any(changed) {
-                    result.cells = Some(stores::sum(&fates));
-                    return Ok(true);
-                }
-            }
-            Err(failure) => {
-                result.fail(failure);
-                return Ok(false);
-            }
-        }
-    }
-    Ok(false)
-}
-
 /// Stores a part.
 async fn store(
     link: &mut Link,
     screen: &Screen,
     job: &Job,
-    found: &Controller,
+    stores: &[Store],
 ) -> Result<(Cells, Vec<LeftOut>), Failure> {
-    let Job { part, content } = job;
-    let mut room = 0;
-    if let Part::Points(task) | Part::Program(task) = part {
-        tasks::choose(link, Some(*task)).await?;
-        room = found.task_steps[usize::from(*task) - 1];
-    }
-    for (step, text) in content.unlisted_steps() {
-        must_be_there(link, step, &text).await?;
-    }
-    store_all(link, screen, content.work(), &content.stores(room)?).await
+    choose(link, job.part).await?;
+    store_all(link, screen, job.content.work(), stores).await
 }
 
 /// A step that the manual does not list is not written. Where something else is in its place, the program would be another

@@ -18,6 +18,8 @@ use crate::command::toyo::link::Link;
 use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::view::View;
@@ -82,7 +84,7 @@ impl Command for Backup {
         let scope = self.scope();
         let earlier: Option<Manifest> = manifest::earlier(&folder, robot, scope.as_deref(), self.resume, self.force)?;
         if link.is_dry() {
-            return self.rehearse(link).await;
+            return self.dry_run(link).await;
         }
         let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
         if self.current_task && !scope.iter().any(|word| word == CURRENT_TASK) {
@@ -151,23 +153,18 @@ impl Backup {
         Ok(BackedUp::new(folder, controller, manifest.scope, complete, results))
     }
 
-    async fn rehearse(&self, link: &mut Link) -> Result<BackedUp, Failure> {
-        content::foresee_controller(link);
-        let mut first = |part: Part, about: &str| -> Result<(), Failure> {
-            link.foresee(&content::first_read(part)?, about);
-            Ok(())
-        };
-        first(Part::Parameters, "and so on, every parameter and every row of the tables")?;
-        first(Part::Easy, "and so on, every easy program")?;
-        first(Part::Palletizing(1), "and so on, every record of the palletizing programs")?;
-        if self.current_task {
-            tasks::choose(link, None).await?;
-        } else {
+    async fn dry_run(&self, link: &mut Link) -> Result<BackedUp, Failure> {
+        content::plan_controller(link);
+        link.plan(&Request::bare(table::Command::Mtsk), "which task is the current one");
+        link.plan(&content::first_read(Part::Parameters)?, "the first of the parameters");
+        if !self.current_task {
             tasks::choose(link, Some(1)).await?;
         }
-        let of = if self.current_task { "of the current task" } else { "of each task, which is chosen before" };
-        link.foresee(&content::first_read(Part::Points(1))?, &format!("and so on, every point {of}"));
-        link.foresee(&content::first_read(Part::Program(1))?, &format!("and so on, every step {of}"));
+        let points =
+            if self.current_task { "of the current task" } else { "of every task, which is made the current one" };
+        link.then(&format!(
+            "every parameter, row, easy program and record is read, then every point and step {points}"
+        ));
         Err(unknown())
     }
 }

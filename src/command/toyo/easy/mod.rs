@@ -59,6 +59,13 @@ pub fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
     Ok(Cell { read: read(program)?, write, wanted })
 }
 
+/// The block that writes a program; `?` stands for values that are kept.
+fn sketch(program: i32, values: &[Option<Value>]) -> String {
+    let keys = [program, 0].map(|key| Some(Value::Number(key)));
+    let all: Vec<_> = keys.into_iter().chain(values.iter().cloned()).collect();
+    format!("@{}", Command::Wesy.row().requests[0].sketch(&all).unwrap_or_default())
+}
+
 /// An easy program.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Program {
@@ -107,9 +114,12 @@ mod tests {
         let read = "@RESY PNO=01 ST=000";
         assert_eq!(
             blocks(&["easy", "set", "1", "10", "5", "20"]).unwrap(),
-            [read, "@WESY PNO=01 ST=000 START=010 LOOP=0005 END=020"]
+            [read, "@WESY PNO=01 ST=000 START=010 LOOP=0005 END=020", read]
         );
-        assert_eq!(blocks(&["easy", "set", "1", "loop=7"]).unwrap(), [read]);
+        assert_eq!(
+            blocks(&["easy", "set", "1", "loop=7"]).unwrap(),
+            [read, "@WESY PNO=01 ST=000 START=? LOOP=0007 END=?", read]
+        );
         assert_eq!(
             blocks(&["easy", "set", "1", "10", "5", "1000"]).unwrap_err().message,
             "easy program 1: end: 1000 is out of range (a number, 0 to 999)"

@@ -14,6 +14,7 @@ use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 
 /// Copies a program over another one, unless they are the same already.
 #[derive(Debug, Args)]
@@ -47,13 +48,17 @@ impl Command for Copy {
         "overwrite an easy program".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Copied, Failure> {
         let Self { from, to } = *self;
         let order = Request::new(table::Command::Cesy, vec![Value::Number(from), Value::Number(to)]);
         let order = order.map_err(|error| link::wrong(&error))?;
         let reads = [vec![read(from)?], vec![read(to)?]];
         let copy = copies::Copy { what: "easy program", from, to, order, reads };
-        copy.make(context.link, context.screen).await
+        copy.make(context.link, context.screen, &context.authority).await
     }
 }
 

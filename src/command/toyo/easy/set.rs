@@ -4,14 +4,16 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Program, cell, field, read, values};
+use super::{Program, cell, field, read, sketch, values};
 use crate::command::toyo::Family;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::numbers::number;
+use crate::command::toyo::stores::{self, Store, Work};
 use crate::command::toyo::values::Changes;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 use crate::output::view::View;
 
 /// A program, and what it shall be.
@@ -26,6 +28,13 @@ pub struct Set {
     values: Vec<String>,
 }
 
+const WORK: Work = Work {
+    doing: "storing an easy program",
+    noun: "program",
+    things: ["an easy program", "easy programs"],
+    resumes: false,
+};
+
 impl Command for Set {
     type Family = Family;
     type Report = Stored;
@@ -39,14 +48,21 @@ impl Command for Set {
         "overwrite an easy program".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         let changes = Changes::read(&format!("easy program {}", self.program), &values(), &self.values)?;
-        let (values, found) = changes.completed(link, &read(self.program)?).await?;
+        let (values, found) =
+            changes.completed(link, &read(self.program)?, |values| sketch(self.program, values)).await?;
         let cell = cell(self.program, values)?;
-        let mut cells = Cells::default();
-        link.store_over(screen, &cell, found.as_ref(), &mut cells).await?;
-        Ok(Stored { program: Program::of(&cell.wanted), cells })
+        let program = Program::of(&cell.wanted);
+        let stores = [Store::new(self.program.to_string(), cell).over(found)];
+        authority.confirm(&stores::replacing(WORK, &stores, "")).await?;
+        let cells = stores::sum(&stores::store_all(link, screen, WORK, &stores, 0).await?);
+        Ok(Stored { program, cells })
     }
 }
 

@@ -107,7 +107,7 @@ impl Bank {
             None => 1..=self.screen(station, last),
         };
         let request = |screen: u8| self.request(station, screen);
-        link.rehearse(&screens.clone().map(request).collect::<Vec<_>>())?;
+        link.dry_run(&screens.clone().map(request).collect::<Vec<_>>())?;
         let (mut ports, mut refused, mut failed) = (Vec::new(), Vec::new(), Vec::new());
         for screen in screens {
             // That there is nothing at all is a refusal like others; a controller with fewer ports is none.

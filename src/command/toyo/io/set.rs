@@ -225,7 +225,7 @@ mod tests {
         );
         assert_eq!(
             all_blocks(&["io", "direct", "4"]).unwrap(),
-            ["@STAS SNO=2", "@HSON", "@DOUT 4", "@HSOF"],
+            ["@STAS SNO=2", "@HSON", "@STAS SNO=0", "@DOUT 4", "@STAS SNO=0", "@HSOF"],
             "the host is taken and given back"
         );
     }

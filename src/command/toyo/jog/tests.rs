@@ -28,11 +28,14 @@ fn a_dry_run_shows_the_whole_sequence() {
         all_blocks(&LOW).unwrap(),
         [
             "@SYSP",
+            "@RPAR E01",
             "@STAS SNO=2",
             "@HSON",
+            "@STAS SNO=0",
             "@JGST X=RS Y=RS Z=RS R=RS",
             "@MPST",
-            GO,
+            // Which axis is X, the controller tells.
+            "@JGST X=? Y=? Z=? R=?",
             "@STAS SNO=0",
             "@MPST",
             STOP,
@@ -43,10 +46,10 @@ fn a_dry_run_shows_the_whole_sequence() {
     );
     for (words, block) in [
         (["jog", "2", "-", "high", "--for", "1s"], "@JGST X=SP Y=-H Z=SP R=SP"),
-        (["jog", "z", "minus", "inch", "--steps", "3"], "@JGST X=SP Y=SP Z=-C R=SP"),
-        (["jog", "R", "plus", "low", "--for", "60"], "@JGST X=SP Y=SP Z=SP R=+L"),
+        (["jog", "3", "minus", "inch", "--steps", "3"], "@JGST X=SP Y=SP Z=-C R=SP"),
+        (["jog", "4", "plus", "low", "--for", "60"], "@JGST X=SP Y=SP Z=SP R=+L"),
     ] {
-        assert_eq!(blocks(&words).unwrap()[3], block);
+        assert_eq!(blocks(&words).unwrap()[4], block);
     }
 }
 

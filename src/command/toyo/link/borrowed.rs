@@ -17,18 +17,21 @@ pub(super) enum Host {
     Found,
     /// This link switched it ON, and gives it back.
     Taken,
+    /// In a dry run: it was asked, and switched ON, if an answer before wants that.
+    Perhaps,
 }
+
+/// What decides whether the host is switched.
+const HOST: &str = "whether the host was ON";
 
 impl Link {
     /// Makes sure that the host commands, and remembers who did before.
     pub async fn take_host(&mut self) -> Result<(), Failure> {
-        if self.host != Host::Unknown {
+        if let Transport::Notes(_) = self.transport {
+            self.plan_to_take_host(None);
             return Ok(());
         }
-        if let Transport::Notes(_) = self.transport {
-            self.note(&status_page(2), Reason::about("whether the host is ON"));
-            self.note(&Request::bare(Command::Hson), Reason::about("if it is not"));
-            self.host = Host::Taken;
+        if self.host != Host::Unknown {
             return Ok(());
         }
         let status = self.status_of(&[2]).await?;
@@ -52,14 +55,31 @@ impl Link {
         }
     }
 
-    /// Changes something for a while: `back` makes it as it was, in [`Link::put_back`] or when the link ends. A dry run
-    /// notes what it is about.
-    pub async fn borrow(&mut self, change: &Request, back: Request, about: &str) -> Result<(), Failure> {
-        if self.is_dry() {
-            self.note(change, Reason::about(about));
-            self.borrowed.push(back);
-            return Ok(());
-        }
+    /// Notes in a dry run that the host is taken, if an answer before wants that.
+    pub(super) fn plan_to_take_host(&mut self, on: Option<&str>) {
+        let asked = Reason::about("whether the host is ON");
+        let asked = match (self.host, on) {
+            (Host::Taken | Host::Found, _) => return,
+            (_, Some(on)) => asked.depending_on(on),
+            (Host::Perhaps, None) => asked.depending_on("whether it was asked before"),
+            (Host::Unknown, None) => asked,
+        };
+        self.note(&status_page(2), asked);
+        self.note(&Request::bare(Command::Hson), Reason::default().depending_on(HOST));
+        self.host = if on.is_some() { Host::Perhaps } else { Host::Taken };
+    }
+
+    /// Notes in a dry run that something is changed for a while; `back` is what puts it back, with `?` for what was found.
+    pub async fn plan_to_borrow(&mut self, change: &Request, back: &str, on: &str) -> Result<(), Failure> {
+        self.plan_to_take_host(Some(on));
+        self.fence().await?;
+        self.plan_if(change, on);
+        self.owed.push(back.to_owned());
+        Ok(())
+    }
+
+    /// Changes something for a while: `back` makes it as it was, in [`Link::put_back`] or when the link ends.
+    pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Failure> {
         // Before it is sent: if the answer is lost, it may have been done.
         self.debts.push(&back.text());
         self.borrowed.push(back);
@@ -76,6 +96,7 @@ impl Link {
 
     /// Makes everything as it was before [`Link::borrow`]. All of it is tried; the first failure counts.
     pub async fn put_back(&mut self) -> Result<(), Failure> {
+        self.plan_put_back();
         let mut outcome = Ok(());
         while let Some(back) = self.borrowed.pop() {
             let text = back.text();
@@ -85,10 +106,6 @@ impl Link {
             };
             if self.is_gone {
                 self.screen.note(&kept("the line is gone".to_owned()).message);
-                continue;
-            }
-            if self.is_dry() {
-                self.note(&back, Reason::about("to put back what was found"));
                 continue;
             }
             // A line that is still out of order shows in what follows.
@@ -112,7 +129,7 @@ impl Link {
     }
 
     /// Gives the host back as it was found.
-    pub(super) async fn give_back(&mut self) -> Result<(), Failure> {
+    pub(in crate::command::toyo) async fn give_back(&mut self) -> Result<(), Failure> {
         if self.host != Host::Taken || self.is_dry() || self.is_gone {
             return Ok(());
         }
@@ -132,11 +149,24 @@ impl Link {
         }
     }
 
-    pub(super) fn note_host_off(&mut self) {
-        if self.host == Host::Taken {
-            self.host = Host::Unknown;
-            self.note(&Request::bare(Command::Hsof), Reason::about("if it was OFF before"));
+    /// Notes in a dry run what puts things back.
+    fn plan_put_back(&mut self) {
+        while let Some(back) = self.owed.pop() {
+            self.plan_fence();
+            let reason = Reason::about("to put back what was found");
+            self.plan_depending(&back, reason.depending_on("what was found"));
         }
+    }
+
+    /// Notes in a dry run what is sent when the link ends.
+    pub(super) fn plan_end(&mut self) {
+        self.plan_put_back();
+        if !self.is_dry() || !matches!(self.host, Host::Taken | Host::Perhaps) {
+            return;
+        }
+        self.host = Host::Unknown;
+        self.plan_fence();
+        self.note(&Request::bare(Command::Hsof), Reason::default().depending_on(HOST));
     }
 }
 

@@ -5,22 +5,41 @@
 //! which no `@OK` can be taken for, nothing older can come any more: then an order goes out.
 
 use super::{Link, Transport, status_page};
+use crate::command::dry_run::Reason;
 use crate::command::toyo::reach;
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 
 use super::borrowed::Host;
 
+/// What it is about.
+pub const FENCE: &str = "whether the line is at peace";
+
 impl Link {
     /// Asks something harmless before an order, unless an answered question was the last on the line.
     pub(super) async fn fence(&mut self) -> Result<(), Failure> {
-        if self.is_dry() || self.is_fenced {
+        if self.is_fenced {
+            return Ok(());
+        }
+        if self.is_dry() {
+            self.plan_fence();
             return Ok(());
         }
         Box::pin(self.converse(&status_page(0), true)).await.map(|_| ()).map_err(|failure| {
             let message = format!("the order was not sent: {}", failure.message);
             Failure { message, ..failure }
         })
+    }
+
+    /// Notes it in a dry run. Behind an order that is sent or not, so is this.
+    pub(super) fn plan_fence(&mut self) {
+        if self.is_fenced {
+            return;
+        }
+        let about = Reason::about(FENCE);
+        let on = self.hangs_on.take();
+        let reason = on.as_deref().map_or(about, |on| about.depending_on(on));
+        self.plan_depending(&status_page(0).text(), reason);
     }
 
     /// Opens a line again that is gone, for what only reads: after a re-plug, or a device server that was started anew.

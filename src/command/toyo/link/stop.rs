@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
+use super::borrowed::Host;
 use super::{Link, Moving, SILENCE, jog, status_page};
 use crate::command::dry_run::unknown;
 use crate::command::toyo::refusal;
@@ -45,11 +46,17 @@ impl Link {
     /// [`Kind::OutcomeUnknown`] if nothing tells that it stands, [`Kind::ConditionNotMet`] if it moves on.
     pub async fn stop(&mut self, moving: Moving) -> Result<Record, Failure> {
         if self.is_dry() {
-            self.foresee(&moving.stop(), "repeated until it stands");
-            self.foresee(&status_page(0), "whether it stands");
-            self.foresee(&Request::bare(Command::Mpst), "where it stands");
+            self.plan(&moving.stop(), "until it stands");
+            self.plan(&status_page(0), "until it stands: whether something is executed");
             if moving == Moving::Program {
-                self.foresee(&Moving::Jog.stop(), "if an axis moves on: it may be jogged");
+                self.plan_if(&Moving::Jog.stop(), "whether something is executed on: an axis may be jogged");
+                self.plan_if(&status_page(0), "whether something is executed on");
+            }
+            self.plan(&Request::bare(Command::Mpst), "until it stands: where");
+            if self.host == Host::Unknown {
+                let on = "whether the stop of a jog is refused, as it may be while the host is OFF";
+                self.plan_to_take_host(Some(on));
+                self.plan_if(&Moving::Jog.stop(), on);
             }
             return Err(unknown());
         }

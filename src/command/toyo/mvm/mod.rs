@@ -201,11 +201,16 @@ mod tests {
         };
         assert_eq!(
             written(&["pieces1=10", "destination-r=-5.5"]),
-            ["@RPAR T4 S5 GRP=01", "@WPAR T4 S5 GRP=01 R=-0005.50"]
+            [
+                "@WPAR T4 S2 GRP=01 P1=0010 P2=? P3=?",
+                "@RPAR T4 S2 GRP=01",
+                "@WPAR T4 S5 GRP=01 R=-0005.50",
+                "@RPAR T4 S5 GRP=01"
+            ]
         );
         assert_eq!(
             written(&["counter1=1", "counter2=2", "counter3=3"]),
-            ["@RPAR T4 S3 GRP=01", "@WPAR T4 S3 GRP=01 P1=01 P2=02 P3=03"]
+            ["@WPAR T4 S3 GRP=01 P1=01 P2=02 P3=03", "@RPAR T4 S3 GRP=01"]
         );
         let error = |words: &[&str]| blocks(words).unwrap_err().message;
         assert_eq!(error(&["mvm", "set", "1", "origin=0"]), "origin: 0 is out of range (a number, 1 to 999)");

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::{Group, SHEETS, VALUES, field, reads, sheet};
 use crate::command::dry_run::unknown;
-use crate::command::toyo::cells::Cells;
+use crate::command::toyo::cells::{Cells, THERE};
 use crate::command::toyo::numbers::{number, read_contents};
-use crate::command::toyo::stores::{self, Store, Work, parameter_cell};
+use crate::command::toyo::stores::{self, Store, Work, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::{assignment, word};
 use crate::command::toyo::{Family, link};
 use crate::command::{Command, Context, Report};
@@ -16,6 +16,7 @@ use crate::controller::Risk;
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::Value;
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 use crate::output::view::{Section, View};
 
 /// A group, and what shall change in it.
@@ -38,7 +39,7 @@ pub struct Set {
 /// What shall become of the values of a sheet.
 type Changes = Vec<Option<Value>>;
 
-const WORK: Work = Work { doing: "storing sheets", noun: "", resumes: false };
+const WORK: Work = Work { doing: "storing sheets", noun: "", things: ["a sheet", "sheets"], resumes: false };
 
 impl Command for Set {
     type Family = Family;
@@ -53,21 +54,24 @@ impl Command for Set {
         "overwrite a matrix".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         let changes = self.changes()?;
         let reads = reads(self.group)?;
         if link.is_dry() {
             for read in &reads {
-                link.foresee(read, "the group as it is");
+                link.plan(read, THERE);
             }
-            // A sheet that keeps something cannot be foreseen.
-            let whole = changes
-                .iter()
-                .enumerate()
-                .filter_map(|(index, changes)| Some((index, changes.iter().cloned().collect::<Option<Vec<Value>>>()?)));
-            let stores = whole.map(|(index, values)| self.store(index, values)).collect::<Result<Vec<_>, _>>()?;
-            stores::store_all(link, screen, WORK, &stores, 0).await?;
+            for (index, changes) in
+                changes.iter().enumerate().filter(|(_, changes)| changes.iter().any(Option::is_some))
+            {
+                link.plan_overwriting(&reads[index], &parameter_sketch(sheet(index), Some(self.group), changes))
+                    .await?;
+            }
             return Err(unknown());
         }
         let mut sheets = read_contents(link, screen, "reading sheets", &reads).await?;
@@ -75,10 +79,12 @@ impl Command for Set {
         for (index, changes) in changes.iter().enumerate().filter(|(_, changes)| changes.iter().any(Option::is_some)) {
             let found = sheets[index].values().get(1..).unwrap_or_default();
             let values = changes.iter().zip(found).map(|(change, found)| change.as_ref().unwrap_or(found).clone());
-            let store = Store { found: Some(sheets[index].clone()), ..self.store(index, values.collect())? };
+            let store = self.store(index, values.collect())?.over(Some(sheets[index].clone()));
             sheets[index] = store.cell.wanted.clone();
             stores.push(store);
         }
+        let of = format!(" of group {}", self.group);
+        authority.confirm(&stores::replacing(WORK, &stores, &of)).await?;
         let fates = stores::store_all(link, screen, WORK, &stores, 0).await?;
         Ok(Stored { group: Group::of(&sheets), cells: stores::sum(&fates) })
     }
@@ -89,7 +95,7 @@ impl Set {
     fn store(&self, index: usize, values: Vec<Value>) -> Result<Store, Failure> {
         let values = std::iter::once(Value::Number(self.group)).chain(values).collect();
         let cell = parameter_cell(sheet(index), values).map_err(|error| link::wrong(&error))?;
-        Ok(Store { key: sheet(index).name.to_owned(), cell, is_optional: false, found: None })
+        Ok(Store::new(sheet(index).name, cell))
     }
 
     /// What was typed, sheet by sheet.

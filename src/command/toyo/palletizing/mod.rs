@@ -72,7 +72,13 @@ pub fn store(program: i32, record: &'static Pallet, values: Vec<Value>) -> Resul
         write: Request::write_pallet(program, record, &values).map_err(|error| wrong(&error))?,
         wanted: record.layout.record(values).map_err(|error| wrong(&error))?,
     };
-    Ok(Store { key: record.name.to_owned(), cell, is_optional: false, found: None })
+    Ok(Store::new(record.name, cell))
+}
+
+/// The block that writes a record; `?` stands for values that are kept.
+fn sketch(program: i32, record: &Pallet, values: &[Option<Value>]) -> String {
+    let body = record.layout.sketch(values).unwrap_or_default();
+    format!("@WPLT {program:02} SNO={:02} {body}", record.number)
 }
 
 /// A record of a program.
@@ -138,7 +144,7 @@ mod tests {
         assert_eq!(blocks(&["palletizing", "progress"]), ["@RPLD"]);
         assert_eq!(blocks(&["palletizing", "select", "16"]), ["@SPLN PR=16", "@RPLD"]);
         let copied = blocks(&["palletizing", "copy", "1", "2"]);
-        assert_eq!((copied.len(), &copied[32][..]), (33, "@CPPL STA=01 TOP=02"));
+        assert_eq!((copied.len(), &copied[32][..]), (49, "@CPPL STA=01 TOP=02"));
         assert!(objection(&["palletizing", "get", "17"]).contains("17 is out of range (a number, 1 to 16)"));
         let error = objection(&["palletizing", "get", "1", "sorce-p1"]);
         assert!(error.contains("there is no such record; did you mean source-p1?"), "{error}");
@@ -148,13 +154,13 @@ mod tests {
     fn a_record_is_compared_before_it_is_written() {
         assert_eq!(
             blocks(&["palletizing", "set", "1", "Source-P1", "1.5", "-2", "0"]).unwrap(),
-            ["@RPLT 01 SNO=03", "@WPLT 01 SNO=03 X=+0001.50 Y=-0002.00 Z=+0000.00"]
+            ["@RPLT 01 SNO=03", "@WPLT 01 SNO=03 X=+0001.50 Y=-0002.00 Z=+0000.00", "@RPLT 01 SNO=03"]
         );
         assert_eq!(
             blocks(&["palletizing", "set", "1", "1", "5", "m-m"]).unwrap()[1],
             "@WPLT 01 SNO=01 TAG=005 MOD=M-M"
         );
-        assert_eq!(blocks(&["palletizing", "set", "1", "7", "aim=incremental"]).unwrap(), ["@RPLT 01 SNO=07"]);
+        assert_eq!(blocks(&["palletizing", "set", "1", "7", "aim=incremental"]).unwrap()[2..], ["@RPLT 01 SNO=07"]);
         assert_eq!(
             blocks(&["palletizing", "set", "1", "7", "aim=x"]).unwrap_err().message,
             "source-approach: aim: 'x' is not a (absolute) or i (incremental)"

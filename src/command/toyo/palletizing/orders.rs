@@ -14,6 +14,7 @@ use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::controller::toyo::table::palletizing::RECORDS;
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 
 /// Copies a program over another one, unless they are the same already.
 #[derive(Debug, Args)]
@@ -47,6 +48,10 @@ impl Command for Copy {
         "overwrite a palletizing program".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Copied, Failure> {
         let Self { from, to } = *self;
         let order = Request::new(table::Command::Cppl, vec![Value::Number(from), Value::Number(to)]);
@@ -54,7 +59,7 @@ impl Command for Copy {
         let records: Vec<_> = RECORDS.iter().collect();
         let reads = [reads(from, &records)?, reads(to, &records)?];
         let copy = copies::Copy { what: "palletizing program", from, to, order, reads };
-        copy.make(context.link, context.screen).await
+        copy.make(context.link, context.screen, &context.authority).await
     }
 }
 

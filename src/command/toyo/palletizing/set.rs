@@ -10,15 +10,17 @@ use super::{Entry, parse_program, parse_record};
 use crate::command::ValueKind;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::link::wrong;
-use crate::command::toyo::stores::{self, Fate, Store, Work};
+use crate::command::toyo::stores::{self, Fate, Found, Store, Work};
 use crate::command::toyo::values::Changes;
 use crate::command::toyo::{Family, files};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::bulk::pallets::{self, Filled};
+use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::Pallet;
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 use crate::output::view::{Section, View};
 
 /// A record of a program and its values, or a file of records.
@@ -48,7 +50,7 @@ pub struct Set {
     from: Option<PathBuf>,
 }
 
-const WORK: Work = Work { doing: "storing records", noun: "", resumes: false };
+const WORK: Work = Work { doing: "storing records", noun: "", things: ["a record", "records"], resumes: false };
 
 impl Command for Set {
     type Family = Family;
@@ -63,15 +65,20 @@ impl Command for Set {
         "overwrite a palletizing program".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         let records = match (&self.from, self.record) {
-            (Some(file), _) => from_file(file)?.into_iter().map(|filled| (filled, None)).collect(),
+            (Some(file), _) => from_file(file)?.into_iter().map(|filled| (filled, Found::NotAsked)).collect(),
             (None, Some(record)) => {
                 let changes = Changes::read(record.name, &record.layout, &self.values)?;
                 let read = Request::read_pallet(self.program, record).map_err(|error| wrong(&error))?;
-                let (values, found) = changes.completed(link, &read).await?;
-                vec![((record, values), found)]
+                let sketch = |values: &[Option<Value>]| super::sketch(self.program, record, values);
+                let (values, found) = changes.completed(link, &read, sketch).await?;
+                vec![((record, values), Found::from(found))]
             }
             (None, None) => Vec::new(),
         };
@@ -82,6 +89,9 @@ impl Command for Set {
             entries.push(Entry::of(record, &store.cell.wanted));
             stores.push(store);
         }
+        stores::look(link, screen, &mut stores).await?;
+        let of = format!(" of palletizing program {}", self.program);
+        authority.confirm(&stores::replacing(WORK, &stores, &of)).await?;
         let fates = stores::store_all(link, screen, WORK, &stores, 0).await?;
         let records = entries.into_iter().zip(&fates).map(|(entry, fate)| StoredRecord { entry, result: *fate });
         Ok(Stored { program: self.program, records: records.collect(), cells: stores::sum(&fates) })

@@ -13,11 +13,19 @@ const BESIDE_EASY: i32 = 2000;
 /// What follows from a change of a parameter, to be said before it is confirmed.
 pub fn consequence(parameter: &Parameter) -> Option<String> {
     let is_machine = parameter.group() == Group::Machine;
-    is_machine.then(|| of_machine(&format!("{} ({})", parameter.id, parameter.name), is_task_steps(parameter)))
+    is_machine.then(|| consequence_of(&[parameter]))
+}
+
+/// What follows from a change of several machine parameters.
+pub fn consequence_of(parameters: &[&Parameter]) -> String {
+    let names: Vec<String> =
+        parameters.iter().map(|parameter| format!("{} ({})", parameter.id, parameter.name)).collect();
+    let what = if names.len() > 3 { format!("{} machine parameters", names.len()) } else { names.join(", ") };
+    of_machine(&what, parameters.iter().any(|parameter| is_task_steps(parameter)))
 }
 
 /// What follows from a change of machine parameters; `has_steps` if the steps of tasks are among them.
-pub fn of_machine(what: &str, has_steps: bool) -> String {
+fn of_machine(what: &str, has_steps: bool) -> String {
     let lost = if has_steps {
         "; steps beyond a smaller number are lost, and so are easy programs if there are more than 2000 steps"
     } else {

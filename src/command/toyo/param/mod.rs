@@ -9,6 +9,7 @@ mod restore;
 mod set;
 
 pub use dump::{Failed, Kept, Unfit};
+pub use machine::consequence_of;
 pub use restore::store;
 
 use super::Family;

@@ -10,13 +10,14 @@ use super::dump::key_text;
 use super::machine;
 use super::set::POWER_CYCLE;
 use crate::command::toyo::cells::{Cell, Cells};
-use crate::command::toyo::stores::{self, Fate, Store, Work};
+use crate::command::toyo::stores::{self, Fate, Found, Store, Work};
 use crate::command::toyo::{Family, files, link};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::bulk::{Setting, parameters};
 use crate::controller::toyo::table::Group;
 use crate::failure::{Failure, Kind};
+use crate::gate::Confirmation;
 use crate::output::view::View;
 
 /// Which file, and what of it.
@@ -26,8 +27,8 @@ use crate::output::view::View;
                   its EEPROM takes about a million rewrites. If the work is cut off, it says what is done; the same \
                   command, or --resume, goes on.\n\n\
                   Machine parameters (E) and special ones (U) are left out unless --group names them. Machine parameters \
-                  come last, and need --yes: after a change only communication works until the controller's power was \
-                  switched off and on."
+                  come last: after a change only communication works until the controller's power was switched off and \
+                  on."
 )]
 pub struct Restore {
     /// What `param dump` wrote, or somebody with an editor; - is stdin
@@ -66,7 +67,7 @@ const ORDER: [(Part, Group); 5] = [
 /// What is written if nobody says which.
 const USUAL: [Part; 3] = [Part::Mode, Part::Axis, Part::Table];
 
-const WORK: Work = Work { doing: "storing parameters", noun: "", resumes: true };
+const WORK: Work = Work { doing: "storing parameters", noun: "", things: ["a parameter", "parameters"], resumes: true };
 
 impl Command for Restore {
     type Family = Family;
@@ -78,14 +79,15 @@ impl Command for Restore {
     }
 
     fn intent(&self) -> String {
-        let is_machine = self.group.contains(&Part::Machine);
-        let consequence =
-            if is_machine { format!("; {}", machine::of_machine("machine parameters", true)) } else { String::new() };
-        format!("overwrite parameters by those of the file{consequence}")
+        "overwrite parameters by those of the file".to_owned()
+    }
+
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         let name = files::shown(&self.file);
         let read = parameters::read(&files::read(&self.file)?);
         let settings = read.map_err(|errors| files::faulty(&name, &errors))?;
@@ -97,7 +99,7 @@ impl Command for Restore {
             return Err(Failure::usage(format!("{name} holds no parameters of the groups wanted"))
                 .hint("--group chooses the groups: mode, axis, table, special, machine"));
         }
-        let stores = chosen.iter().map(store).collect::<Result<Vec<Store>, Failure>>()?;
+        let mut stores = chosen.iter().map(store).collect::<Result<Vec<Store>, Failure>>()?;
         let left_out = stores::left_out(&stores, self.resume.as_deref())?;
         let other_groups = left.iter().map(|setting| key_text((setting.parameter, setting.row()))).collect::<Vec<_>>();
         if self.group.is_empty() && !other_groups.is_empty() {
@@ -105,16 +107,22 @@ impl Command for Restore {
             let left = format!("{} machine or special {parameters} left out", other_groups.len());
             screen.note(&format!("{left} (--group machine,special)"));
         }
-        for setting in &chosen[left_out..] {
-            let found = if machine::is_task_steps(setting.parameter) && !link.is_dry() {
-                Some(link.read_content(&setting.read().map_err(|error| link::wrong(&error))?).await?)
-            } else {
-                None
-            };
-            for warning in machine::warnings(setting.parameter, found.as_ref(), &setting.values) {
+        let wanted = &mut stores[left_out..];
+        stores::look(link, screen, wanted).await?;
+        let (mut change, mut changed) = (stores::replacing(WORK, wanted, ""), Vec::new());
+        for (setting, store) in chosen[left_out..].iter().zip(wanted) {
+            let found = if let Found::This(found) = &store.found { Some(found) } else { None };
+            for warning in machine::warnings(setting.parameter, found, &setting.values) {
                 screen.note(&warning);
             }
+            if setting.parameter.group() == Group::Machine && store.differs() {
+                changed.push(setting.parameter);
+            }
         }
+        if !changed.is_empty() {
+            change = change.note(machine::consequence_of(&changed));
+        }
+        authority.confirm(&change).await?;
         let fates = stores::store_all(link, screen, WORK, &stores, left_out).await?;
         let is_machine = |setting: &Setting| setting.parameter.group() == Group::Machine;
         let needs_power_cycle =
@@ -151,7 +159,7 @@ pub fn store(setting: &Setting) -> Result<Store, Failure> {
         wanted: setting.parameter.layout.record(setting.values.clone()).map_err(wrong)?,
     };
     let is_optional = !setting.parameter.only_on.is_empty();
-    Ok(Store { key: key_text((setting.parameter, setting.row())), cell, is_optional, found: None })
+    Ok(Store { is_optional, ..Store::new(key_text((setting.parameter, setting.row())), cell) })
 }
 
 /// What became of the parameters of a file.

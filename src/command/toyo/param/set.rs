@@ -7,14 +7,16 @@ use serde::Serialize;
 use super::{machine, parse_name};
 use crate::command::ValueKind;
 use crate::command::toyo::cells::Cells;
-use crate::command::toyo::stores::parameter_cell;
+use crate::command::toyo::stores::{self, Store, Work, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::{self, Changes, Shown};
 use crate::command::toyo::{Family, link};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
+use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::{Group, Parameter};
 use crate::failure::Failure;
+use crate::gate::{Change, Confirmation};
 use crate::output::view::View;
 
 /// A parameter, and what it shall hold.
@@ -24,7 +26,7 @@ use crate::output::view::View;
                   200 0 0`, `param set P01 ax2=150`. Words as on the line or by what they mean: `param set \
                   pendant-language english`. A bit of a port is STATION/PORT/BIT: 0/01/3.\n\n\
                   What the controller holds already is not written: its EEPROM takes about a million rewrites. \
-                  Machine parameters (E) need --yes: after a change only communication works until the power was \
+                  Machine parameters (E): after a change only communication works until the power was \
                   switched off and on."
 )]
 pub struct Set {
@@ -36,6 +38,9 @@ pub struct Set {
     values: Vec<String>,
 }
 
+const WORK: Work =
+    Work { doing: "storing a parameter", noun: "", things: ["a parameter", "parameters"], resumes: false };
+
 impl Command for Set {
     type Family = Family;
     type Report = Written;
@@ -46,26 +51,23 @@ impl Command for Set {
     }
 
     fn intent(&self) -> String {
-        let consequence = machine::consequence(self.parameter).map(|text| format!("; {text}")).unwrap_or_default();
-        format!("overwrite parameter {} ({}){consequence}", self.parameter.id, self.parameter.name)
+        format!("overwrite parameter {} ({})", self.parameter.id, self.parameter.name)
+    }
+
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
     }
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Written, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         let parameter = self.parameter;
         let changes = Changes::read(parameter.name, &parameter.body(), &self.values)?;
         if let Some(values) = changes.whole() {
             machine::check(parameter, &values)?;
         }
-        // What is there matters where some of it is kept, or lost.
         let read = Request::read_parameter(parameter, None).map_err(|error| link::wrong(&error))?;
-        let (found, values) = match changes.whole() {
-            Some(values) if !machine::is_task_steps(parameter) || link.is_dry() => (None, values),
-            _ => {
-                let found = link.read_content(&read).await?;
-                (Some(found.clone()), changes.over(&found)?)
-            }
-        };
+        let sketch = |values: &[Option<Value>]| parameter_sketch(parameter, None, values);
+        let (values, found) = changes.completed(link, &read, sketch).await?;
         machine::check(parameter, &values)?;
         let cell = parameter_cell(parameter, values).map_err(|error| {
             Failure::usage(format!("{}: {error}", parameter.name))
@@ -74,12 +76,14 @@ impl Command for Set {
         for warning in machine::warnings(parameter, found.as_ref(), cell.wanted.values()) {
             screen.note(&warning);
         }
-        let mut cells = Cells::default();
-        link.store_over(screen, &cell, found.as_ref(), &mut cells).await?;
+        let store = Store::new(parameter.id, cell).over(found);
+        let change = stores::replacing(WORK, std::slice::from_ref(&store), "");
+        authority.confirm(&machine::consequence(parameter).into_iter().fold(change, Change::note)).await?;
+        let cells = stores::sum(&stores::store_all(link, screen, WORK, std::slice::from_ref(&store), 0).await?);
         Ok(Written {
             id: parameter.id,
             name: parameter.name,
-            values: values::shown(&cell.wanted),
+            values: values::shown(&store.cell.wanted),
             cells,
             needs_power_cycle: parameter.group() == Group::Machine && cells.cells_written > 0,
         })

@@ -13,7 +13,10 @@ fn parameters_are_read_by_name_or_id() {
         ["@RPAR P01", "@RPAR P01", "@RPAR M09"]
     );
     assert_eq!(blocks(&["param", "list", "--group", "special"]).unwrap(), ["@RPAR U03", "@RPAR U21", "@RPAR U22"]);
-    assert_eq!(blocks(&["param", "list"]).unwrap().len(), 74);
+    // Those that only some controllers have are asked twice, if they are refused.
+    let mut all = blocks(&["param", "list"]).unwrap();
+    all.dedup();
+    assert_eq!(all.len(), 74);
     let error = objection(&["param", "get", "soft-limit-pluss"]);
     assert!(error.contains("there is no such parameter; did you mean soft-limit-plus?"), "{error}");
     let error = objection(&["param", "get", "t4.s1"]);
@@ -24,13 +27,32 @@ fn parameters_are_read_by_name_or_id() {
 fn a_write_compares_first_and_takes_the_host() {
     assert_eq!(
         all_blocks(&["param", "set", "soft-limit-minus", "-100", "-200.5", "0", "0"]).unwrap(),
-        ["@RPAR P02", "@STAS SNO=2", "@HSON", "@WPAR P02 AX1=-0100.00 AX2=-0200.50 AX3=+0000.00 AX4=+0000.00", "@HSOF"]
+        [
+            "@RPAR P02",
+            "@STAS SNO=2",
+            "@HSON",
+            "@STAS SNO=0",
+            "@WPAR P02 AX1=-0100.00 AX2=-0200.50 AX3=+0000.00 AX4=+0000.00",
+            "@RPAR P02",
+            "@HSOF"
+        ]
     );
-    assert_eq!(blocks(&["param", "set", "m09", "english"]).unwrap(), ["@RPAR M09", "@WPAR M09 E"]);
-    assert_eq!(blocks(&["param", "set", "m01", "0/01/3"]).unwrap(), ["@RPAR M01", "@WPAR M01 0/01/3"]);
+    assert_eq!(blocks(&["param", "set", "m09", "english"]).unwrap(), ["@RPAR M09", "@WPAR M09 E", "@RPAR M09"]);
+    assert_eq!(blocks(&["param", "set", "m01", "0/01/3"]).unwrap(), ["@RPAR M01", "@WPAR M01 0/01/3", "@RPAR M01"]);
     assert_eq!(blocks(&["param", "set", "p13", "<=", "-5", "0/01/3"]).unwrap()[1], "@WPAR P13 AX1<=-0005.00 0/01/3");
     // What the others hold is not known in a dry run.
-    assert_eq!(blocks(&["param", "set", "p01", "ax2=150"]).unwrap(), ["@RPAR P01"]);
+    assert_eq!(
+        all_blocks(&["param", "set", "p01", "ax2=150"]).unwrap(),
+        [
+            "@RPAR P01",
+            "@STAS SNO=2",
+            "@HSON",
+            "@STAS SNO=0",
+            "@WPAR P01 AX1=? AX2=+0150.00 AX3=? AX4=?",
+            "@RPAR P01",
+            "@HSOF"
+        ]
+    );
 }
 
 #[test]
@@ -99,20 +121,23 @@ fn a_restore_leaves_the_machine_for_the_end_or_out() {
     let (_folder, path) = written(text);
     let usual = [
         "@RPAR M09",
-        "@WPAR M09 E",
         "@RPAR P16",
-        "@WPAR P16 AX4<=+0001.00 0/01/0",
         "@RPAR T2 V03",
+        "@WPAR M09 E",
+        "@RPAR M09",
+        "@WPAR P16 AX4<=+0001.00 0/01/0",
+        "@RPAR P16",
         "@WPAR T2 V03=0099.5",
+        "@RPAR T2 V03",
     ];
     assert_eq!(blocks(&["param", "restore", &path]).unwrap(), usual);
-    let machine = ["@RPAR E06", "@WPAR E06 AX1=1000 AX2=1000 AX3=1000 AX4=1000"];
+    let machine = ["@RPAR E06", "@WPAR E06 AX1=1000 AX2=1000 AX3=1000 AX4=1000", "@RPAR E06"];
     assert_eq!(blocks(&["param", "restore", &path, "--group", "machine"]).unwrap(), machine);
     assert_eq!(
         blocks(&["param", "restore", &path, "--group", "machine,table"]).unwrap(),
-        [&usual[4..], &machine[..]].concat()
+        ["@RPAR T2 V03", "@RPAR E06", "@WPAR T2 V03=0099.5", "@RPAR T2 V03", machine[1], machine[2]]
     );
-    assert_eq!(blocks(&["param", "restore", &path, "--resume=T2.3"]).unwrap(), usual[4..]);
+    assert_eq!(blocks(&["param", "restore", &path, "--resume=T2.3"]).unwrap(), [usual[2], usual[7], usual[8]]);
     assert_eq!(blocks(&["param", "restore", &path, "--resume=E06"]).unwrap_err().kind.exit(), 2);
     assert_eq!(blocks(&["param", "restore", &path, "--group", "special"]).unwrap_err().kind.exit(), 2);
     std::fs::write(&path, "[parameters]\nM09 = 'X'\n").unwrap();

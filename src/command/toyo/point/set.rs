@@ -8,10 +8,11 @@ use serde::Serialize;
 
 use super::list::AXES;
 use super::{OTHER_TASK, Row, field};
+use crate::command::authority::Authority;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::numbers::{number, runs};
-use crate::command::toyo::stores::{self, Fate, Store, Work, parameter_cell};
+use crate::command::toyo::stores::{self, Fate, Store, Work, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::Changes;
 use crate::command::toyo::{Family, files, link, tasks};
 use crate::command::{Command, Context, Report};
@@ -20,6 +21,7 @@ use crate::controller::toyo::bulk::points;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 use crate::output::Screen;
 use crate::output::view::View;
 
@@ -51,7 +53,7 @@ pub struct Set {
     resume: Option<String>,
 }
 
-const WORK: Work = Work { doing: "storing points", noun: "point", resumes: true };
+const WORK: Work = Work { doing: "storing points", noun: "point", things: ["a point", "points"], resumes: true };
 
 impl Command for Set {
     type Family = Family;
@@ -66,13 +68,17 @@ impl Command for Set {
         "overwrite points".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         let Some(file) = &self.from else {
             let point = self.point.unwrap_or_default();
             let changes = Changes::read(&format!("point {point}"), &points::table().body(), &self.values)?;
             let task = tasks::choose(link, self.task).await?;
-            let stored = store_one(link, screen, task, point, &changes).await;
+            let stored = self.store_one(link, screen, &authority, (task, point), &changes).await;
             return tasks::done(link, stored).await;
         };
         let name = files::shown(file);
@@ -85,31 +91,48 @@ impl Command for Set {
         }
         let left_out = stores::left_out(&points, self.resume.as_deref())?;
         let task = tasks::choose(link, self.task).await?;
-        let fates = stores::store_all(link, screen, WORK, &points, left_out).await;
-        Ok(Stored::new(task, &points, &tasks::done(link, fates).await?))
+        let stored = self.store_all(link, screen, &authority, (task, points), left_out).await;
+        tasks::done(link, stored).await
     }
 }
 
-/// Stores one point, with what it keeps.
-async fn store_one(
-    link: &mut Link,
-    screen: &Screen,
-    task: u8,
-    point: i32,
-    changes: &Changes,
-) -> Result<Stored, Failure> {
-    let read = Request::read_parameter(points::table(), Some(point)).map_err(|error| link::wrong(&error))?;
-    let (coordinates, found) = changes.completed(link, &read).await?;
-    let stored = store(std::iter::once(Value::Number(point)).chain(coordinates).collect())?;
-    let points = [Store { found, ..stored }];
-    let fates = stores::store_all(link, screen, WORK, &points, 0).await?;
-    Ok(Stored::new(task, &points, &fates))
+impl Set {
+    /// Stores one point, with what it keeps.
+    async fn store_one(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        authority: &Authority<'_>,
+        (task, point): (u8, i32),
+        changes: &Changes,
+    ) -> Result<Stored, Failure> {
+        let read = Request::read_parameter(points::table(), Some(point)).map_err(|error| link::wrong(&error))?;
+        let sketch = |values: &[Option<Value>]| parameter_sketch(points::table(), Some(point), values);
+        let (coordinates, found) = changes.completed(link, &read, sketch).await?;
+        let stored = store(std::iter::once(Value::Number(point)).chain(coordinates).collect())?;
+        self.store_all(link, screen, authority, (task, vec![stored.over(found)]), 0).await
+    }
+
+    /// Stores points once it is confirmed that they are replaced.
+    async fn store_all(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        authority: &Authority<'_>,
+        (task, mut points): (u8, Vec<Store>),
+        left_out: usize,
+    ) -> Result<Stored, Failure> {
+        stores::look(link, screen, &mut points[left_out..]).await?;
+        authority.confirm(&stores::replacing(WORK, &points[left_out..], &format!(" of task {task}"))).await?;
+        let fates = stores::store_all(link, screen, WORK, &points, left_out).await?;
+        Ok(Stored::new(task, &points, &fates))
+    }
 }
 
 fn store(values: Vec<Value>) -> Result<Store, Failure> {
     let cell = parameter_cell(points::table(), values).map_err(|error| link::wrong(&error))?;
     let row = cell.wanted.number("row").unwrap_or_default();
-    Ok(Store { key: row.to_string(), cell, is_optional: false, found: None })
+    Ok(Store::new(row.to_string(), cell))
 }
 
 /// What became of points.

@@ -6,14 +6,14 @@ use crate::command::toyo::testing::{Bench, Fate, blocks, objection};
 fn points_and_ranges_are_read_once_each() {
     assert_eq!(
         blocks(&["point", "get", "9-10,20", "9"]).unwrap(),
-        ["@SYSP", "@MTSK", "@RPAR T1 PT=009", "@RPAR T1 PT=010", "@RPAR T1 PT=020"]
+        ["@SYSP", "@RPAR E01", "@MTSK", "@RPAR T1 PT=009", "@RPAR T1 PT=010", "@RPAR T1 PT=020"]
     );
     assert_eq!(
         blocks(&["point", "get", "1", "--task", "2"]).unwrap(),
-        ["@SYSP", "@MTSK", "@CTSK TASK=02", "@RPAR T1 PT=001"]
+        ["@SYSP", "@RPAR E01", "@MTSK", "@CTSK TASK=02", "@RPAR T1 PT=001", "@CTSK TASK=?"]
     );
-    assert_eq!(blocks(&["point", "list"]).unwrap().len(), 2 + 999);
-    assert_eq!(blocks(&["point", "list", "--from", "998"]).unwrap()[2..], ["@RPAR T1 PT=998", "@RPAR T1 PT=999"]);
+    assert_eq!(blocks(&["point", "list"]).unwrap().len(), 3 + 999);
+    assert_eq!(blocks(&["point", "list", "--from", "998"]).unwrap()[3..], ["@RPAR T1 PT=998", "@RPAR T1 PT=999"]);
     assert!(objection(&["point", "get", "1000"]).contains("1000 is out of range (a number, 1 to 999)"));
     assert_eq!(blocks(&["point", "list", "--from", "5", "--to", "4"]).unwrap_err().kind.exit(), 2);
 }
@@ -22,9 +22,12 @@ fn points_and_ranges_are_read_once_each() {
 fn a_point_is_compared_before_it_is_written() {
     assert_eq!(
         blocks(&["point", "set", "7", "100", "-20.5", "0", "0"]).unwrap(),
-        ["@MTSK", "@RPAR T1 PT=007", "@WPAR T1 PT=007 X=+0100.00 Y=-0020.50 Z=+0000.00 R=+0000.00"]
+        ["@MTSK", "@RPAR T1 PT=007", "@WPAR T1 PT=007 X=+0100.00 Y=-0020.50 Z=+0000.00 R=+0000.00", "@RPAR T1 PT=007"]
     );
-    assert_eq!(blocks(&["point", "set", "7", "z=1"]).unwrap(), ["@MTSK", "@RPAR T1 PT=007"]);
+    assert_eq!(
+        blocks(&["point", "set", "7", "z=1"]).unwrap(),
+        ["@MTSK", "@RPAR T1 PT=007", "@WPAR T1 PT=007 X=? Y=? Z=+0001.00 R=?", "@RPAR T1 PT=007"]
+    );
     assert_eq!(
         blocks(&["point", "set", "7", "100", "0", "9000", "0"]).unwrap_err().message,
         "point 7: z: 9000.00 is out of range (a number, -8000.00 to 8000.00 mm)"

@@ -7,8 +7,10 @@ use serde::Serialize;
 use super::and_mode;
 use super::insert::moved_wrong;
 use super::steps;
+use crate::command::authority::Authority;
 use crate::command::dry_run::unknown;
 use crate::command::toyo::link::Link;
+use crate::command::toyo::stores::{Replaced, overwriting};
 use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -17,6 +19,7 @@ use crate::controller::toyo::program::tags;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 use crate::output::Screen;
 use crate::output::view::View;
 
@@ -54,8 +57,12 @@ impl Command for Copy {
         "overwrite program steps".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Copied, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         if self.to < self.from {
             return Err(Failure::usage(format!("the last step, {}, is before the first, {}", self.to, self.from))
                 .hint("name the lower step first"));
@@ -68,9 +75,9 @@ impl Command for Copy {
             self.overlap()?;
         }
         if link.is_dry() {
-            return self.rehearse(link).await;
+            return self.dry_run(link).await;
         }
-        let outcome = self.copy(link, screen).await;
+        let outcome = self.copy(link, screen, &authority).await;
         tasks::done(link, outcome).await
     }
 }
@@ -98,7 +105,16 @@ impl Copy {
         Request::of(table::Command::Cpss, values)
     }
 
-    async fn copy(&self, link: &mut Link, screen: &Screen) -> Result<Copied, Failure> {
+    /// The order as far as it is known before the current task is.
+    fn sketch(&self) -> String {
+        let step = |step: u16| Some(Value::Number(step.into()));
+        let task = |task: Option<u8>| task.map(|task| Value::Number(task.into()));
+        let [from, to] = [self.from_task, self.to_task.or(self.from_task)].map(task);
+        let values = [from, step(self.from), step(self.to), to, step(self.at)];
+        format!("@{}", table::Command::Cpss.row().requests[0].sketch(&values).unwrap_or_default())
+    }
+
+    async fn copy(&self, link: &mut Link, screen: &Screen, authority: &Authority<'_>) -> Result<Copied, Failure> {
         let source = tasks::choose(link, self.from_task).await?;
         let target = self.to_task.unwrap_or(source);
         if source == target {
@@ -127,6 +143,11 @@ impl Copy {
             screen
                 .note(&format!("warning: tag {tag:03} is in the task twice now; a program stops there with error A2"));
         }
+        let lost = (self.at..).zip(wanted.iter().zip(&found));
+        let lost = lost.filter(|(_, (wanted, found))| wanted != found && **found != steps::nop());
+        let lost: Vec<Replaced> =
+            lost.map(|(step, (wanted, found))| [format!("step {step}"), found.written(), wanted.written()]).collect();
+        authority.confirm(&overwriting(["a step", "steps"], &lost, &format!(" of task {target}"))).await?;
         steps::open(link).await?;
         link.order(&self.order(source, target)).await?;
         let found = steps::read_all(link, screen, self.at..=self.end()).await?;
@@ -137,14 +158,23 @@ impl Copy {
         }
     }
 
-    async fn rehearse(&self, link: &mut Link) -> Result<Copied, Failure> {
+    async fn dry_run(&self, link: &mut Link) -> Result<Copied, Failure> {
         tasks::choose(link, self.from_task).await?;
-        link.foresee(&steps::rooms_request(), "whether there is room");
-        link.foresee(&steps::read_request(self.from), "what is copied, a step each, and what is there");
-        steps::foresee_open(link).await?;
-        let source = self.from_task.unwrap_or(1);
-        let about = if self.from_task.is_none() { "with the current task in the place of 1" } else { "if it differs" };
-        link.foresee(&self.order(source, self.to_task.unwrap_or(source)), about);
+        link.plan(&steps::rooms_request(), "whether there is room");
+        link.plan(&steps::rooms_request(), "whether there is room for the copy");
+        for step in self.from..=self.to {
+            link.plan(&steps::read_request(step), "what is copied");
+        }
+        tasks::choose(link, self.to_task.or(self.from_task)).await?;
+        let there: Vec<Request> = (self.at..=self.end()).map(steps::read_request).collect();
+        for read in &there {
+            link.plan(read, "what is there");
+        }
+        steps::plan_open(link).await?;
+        link.plan_order(&self.sketch(), "whether they differ, and which task is the current one").await?;
+        for read in &there {
+            link.plan_if(read, "whether they differ");
+        }
         link.put_back().await?;
         Err(unknown())
     }

@@ -8,15 +8,18 @@ use super::and_mode;
 use super::get::Step;
 use super::insert::moved_wrong;
 use super::steps;
+use crate::command::authority::Authority;
 use crate::command::dry_run::unknown;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
+use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
+use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 use crate::output::view::View;
 
@@ -48,8 +51,12 @@ impl Command for Delete {
         "delete program steps".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Deleted, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         let last = self.to.unwrap_or(self.step);
         if last < self.step {
             return Err(
@@ -57,9 +64,9 @@ impl Command for Delete {
             );
         }
         if link.is_dry() {
-            return self.rehearse(link, last).await;
+            return self.dry_run(link, &authority, last).await;
         }
-        let outcome = self.delete(link, screen, last).await;
+        let outcome = self.delete(link, screen, &authority, last).await;
         tasks::done(link, outcome).await
     }
 }
@@ -74,7 +81,25 @@ impl Delete {
         }
     }
 
-    async fn delete(&self, link: &mut Link, screen: &Screen, last: u16) -> Result<Deleted, Failure> {
+    /// What is deleted, for a person to confirm.
+    fn change(&self, deleted: &[Record], task: u8) -> Change {
+        let steps = (self.step..).zip(deleted).filter(|(_, record)| **record != steps::nop());
+        let steps: Vec<String> = steps.map(|(step, record)| format!("step {step}: {}", record.written())).collect();
+        let change = match (steps.len(), deleted.len()) {
+            (0, _) => return Change::nothing(),
+            (_, 1) => Change::new(format!("delete a step of task {task}")),
+            (_, many) => Change::new(format!("delete {many} steps of task {task}")),
+        };
+        steps.into_iter().fold(change, Change::item)
+    }
+
+    async fn delete(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        authority: &Authority<'_>,
+        last: u16,
+    ) -> Result<Deleted, Failure> {
         let task = tasks::choose(link, self.task).await?;
         let room = steps::room(link, task, last).await?;
         let deleted = steps::read_all(link, screen, self.step..=last).await?;
@@ -82,6 +107,7 @@ impl Delete {
             last if last < room => link.read_content(&steps::read_request(last + 1)).await?,
             _ => steps::nop(),
         };
+        authority.confirm(&self.change(&deleted, task)).await?;
         steps::open(link).await?;
         link.order(&self.order(last)).await?;
         let found = link.read_content(&steps::read_request(self.step)).await?;
@@ -93,12 +119,18 @@ impl Delete {
         Ok(Deleted { task, deleted })
     }
 
-    async fn rehearse(&self, link: &mut Link, last: u16) -> Result<Deleted, Failure> {
+    async fn dry_run(&self, link: &mut Link, authority: &Authority<'_>, last: u16) -> Result<Deleted, Failure> {
         tasks::choose(link, self.task).await?;
-        link.foresee(&steps::rooms_request(), "how many steps the task has");
-        link.foresee(&steps::read_request(self.step), "what is deleted, a step each");
-        steps::foresee_open(link).await?;
+        link.plan(&steps::rooms_request(), "how many steps the task has");
+        for step in self.step..=last {
+            link.plan(&steps::read_request(step), "what is deleted");
+        }
+        let behind = steps::read_request(last.saturating_add(1).min(5000));
+        link.plan_if(&behind, "whether there is one behind");
+        authority.confirm(&Change::nothing()).await?;
+        steps::plan_open(link).await?;
         link.order(&self.order(last)).await?;
+        link.plan(&steps::read_request(self.step), "what is there now");
         link.put_back().await?;
         Err(unknown())
     }

@@ -74,7 +74,7 @@ impl Command for Get {
         }
         let target = self.file.clone().map(|file| Target::new(file, self.force)).transpose()?;
         if link.is_dry() {
-            return self.rehearse(link).await;
+            return self.dry_run(link).await;
         }
         let outcome = self.read(link, screen).await;
         let (task, room, read) = tasks::done(link, outcome).await?;
@@ -117,10 +117,11 @@ impl Get {
         Ok((task, room, read))
     }
 
-    async fn rehearse(&self, link: &mut Link) -> Result<Got, Failure> {
+    async fn dry_run(&self, link: &mut Link) -> Result<Got, Failure> {
         tasks::choose(link, self.task).await?;
-        link.foresee(&steps::rooms_request(), "how many steps the task has");
-        link.foresee(&steps::read_request(self.from), "and so on, a step each");
+        link.plan(&steps::rooms_request(), "how many steps the task has");
+        link.plan(&steps::read_request(self.from), "the first step");
+        link.then("the steps behind it are read, one after the other");
         Err(unknown())
     }
 }
@@ -210,7 +211,18 @@ mod tests {
         assert_eq!(blocks(&["program", "get"]).unwrap(), ["@MTSK", "@RPAR E22", "@RSTX 0001"]);
         assert_eq!(
             all_blocks(&["program", "get", "--task", "2", "--from", "10"]).unwrap(),
-            ["@MTSK", "@CTSK TASK=02", "@RPAR E22", "@RSTX 0010"]
+            [
+                "@MTSK",
+                "@STAS SNO=2",
+                "@HSON",
+                "@STAS SNO=0",
+                "@CTSK TASK=02",
+                "@RPAR E22",
+                "@RSTX 0010",
+                "@CTSK TASK=?",
+                "@STAS SNO=0",
+                "@HSOF"
+            ]
         );
     }
 

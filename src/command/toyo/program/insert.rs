@@ -8,8 +8,9 @@ use super::and_mode;
 use super::get::Step;
 use super::steps;
 use crate::command::ValueKind;
-use crate::command::dry_run::unknown;
-use crate::command::toyo::cells::Cells;
+use crate::command::authority::Authority;
+use crate::command::dry_run::{Reason, unknown};
+use crate::command::toyo::cells::{Cells, THERE};
 use crate::command::toyo::link::Link;
 use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
@@ -20,12 +21,13 @@ use crate::controller::toyo::program::{Part, check_part};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 use crate::output::view::View;
 
 /// Inserts a step; the one that was there and those behind it move on by one.
 #[derive(Debug, Args)]
-#[command(after_help = and_mode("The last step of the task must be a NOP, as it falls out."))]
+#[command(after_help = and_mode("The last step of the task falls out; if it is no NOP, that is asked before."))]
 pub struct Insert {
     /// Number of the new step
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
@@ -51,13 +53,17 @@ impl Command for Insert {
         "insert a program step".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Inserted, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         let instruction = self.instruction()?;
         if link.is_dry() {
-            return self.rehearse(link, screen, &instruction).await;
+            return self.dry_run(link, &authority, &instruction).await;
         }
-        let outcome = self.insert(link, screen, &instruction).await;
+        let outcome = self.insert(link, screen, &authority, &instruction).await;
         tasks::done(link, outcome).await
     }
 }
@@ -85,17 +91,25 @@ impl Insert {
         Request::of(table::Command::Istx, [Value::Number(self.step.into())])
     }
 
-    async fn insert(&self, link: &mut Link, screen: &Screen, instruction: &Record) -> Result<Inserted, Failure> {
+    async fn insert(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        authority: &Authority<'_>,
+        instruction: &Record,
+    ) -> Result<Inserted, Failure> {
         let step = self.step;
         let task = tasks::choose(link, self.task).await?;
         let room = steps::room(link, task, step).await?;
         let before = link.read_content(&steps::read_request(step)).await?;
         let last = link.read_content(&steps::read_request(room)).await?;
-        if last != steps::nop() {
-            let message = format!("step {room}, the last of task {}, would fall out: {}", task, last.written());
-            return Err(Failure::new(Kind::RefusedHere, message)
-                .hint("delete it first, or give the task more steps by the machine parameter E22 (task-steps)"));
-        }
+        let change = if last == steps::nop() {
+            Change::nothing()
+        } else {
+            Change::new(format!("push the last step out of task {task}"))
+                .item(format!("step {room}: {}", last.written()))
+        };
+        authority.confirm(&change).await?;
         steps::open(link).await?;
         link.order(&self.order()).await?;
         if step < room {
@@ -109,12 +123,26 @@ impl Insert {
         Ok(Inserted { task, inserted: Step::of(step.into(), instruction) })
     }
 
-    async fn rehearse(&self, link: &mut Link, screen: &Screen, instruction: &Record) -> Result<Inserted, Failure> {
+    async fn dry_run(
+        &self,
+        link: &mut Link,
+        authority: &Authority<'_>,
+        instruction: &Record,
+    ) -> Result<Inserted, Failure> {
         tasks::choose(link, self.task).await?;
-        link.foresee(&steps::rooms_request(), "how many steps the task has; the last one must be a NOP");
-        steps::foresee_open(link).await?;
+        link.plan(&steps::rooms_request(), "how many steps the task has");
+        link.plan(&steps::read_request(self.step), "what moves on");
+        let last = Reason::about("the last step, which falls out").depending_on("how many steps the task has");
+        link.plan_depending("@RSTX ?", last);
+        authority.confirm(&Change::nothing()).await?;
+        steps::plan_open(link).await?;
         link.order(&self.order()).await?;
-        link.store(screen, &steps::cell(self.step, instruction)?, &mut Cells::default()).await?;
+        if self.step < 5000 {
+            link.plan_if(&steps::read_request(self.step + 1), "whether it is the last one");
+        }
+        let cell = steps::cell(self.step, instruction)?;
+        link.plan(&cell.read, THERE);
+        link.plan_overwriting(&cell.read, &cell.write.text()).await?;
         link.put_back().await?;
         Err(unknown())
     }

@@ -41,9 +41,9 @@ impl Command for List {
         let Context { link, screen, .. } = context;
         if link.is_dry() {
             tasks::choose(link, None).await?;
-            link.foresee(&steps::rooms_request(), "how many steps the tasks have");
+            link.plan(&steps::rooms_request(), "how many steps the tasks have");
             if self.used {
-                link.foresee(&steps::read_request(1), "and so on, every step of every task");
+                link.then("every step of every task is read, which is made the current one before");
             }
             return Err(unknown());
         }

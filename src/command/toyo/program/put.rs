@@ -11,16 +11,19 @@ use super::and_mode;
 use super::check::Labelled;
 use super::steps;
 use super::text;
+use crate::command::authority::Authority;
 use crate::command::dry_run::unknown;
 use crate::command::interrupt::interruptible;
-use crate::command::toyo::cells::Cells;
+use crate::command::toyo::cells::{Cells, THERE};
 use crate::command::toyo::link::Link;
+use crate::command::toyo::stores::{Replaced, overwriting};
 use crate::command::toyo::{Family, files, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::program::{self, MOST_STEPS, Part, Program};
 use crate::failure::Failure;
+use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 use crate::output::view::{Section, View};
 
@@ -50,9 +53,11 @@ const HELP: &str = "The whole file is checked before anything is sent. It is the
                     it is a part of the program, and the other steps stay.";
 
 /// A step that is to be written.
-struct Change {
+struct Edit {
     step: u16,
     instruction: Record,
+    /// What is there.
+    found: Record,
 }
 
 impl Command for Put {
@@ -68,8 +73,12 @@ impl Command for Put {
         "overwrite a program".to_owned()
     }
 
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
     async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         let name = files::shown(&self.file);
         let bytes = files::read(&self.file)?;
         let checked = match self.at {
@@ -86,9 +95,9 @@ impl Command for Put {
                 .hint("leave --resume away to write the whole file"));
         }
         if link.is_dry() {
-            return self.rehearse(link, screen, &program, from).await;
+            return self.dry_run(link, &program, from).await;
         }
-        let outcome = self.store(link, screen, &bytes, from, last).await;
+        let outcome = self.store((link, screen, &authority), &bytes, from, last).await;
         tasks::done(link, outcome).await
     }
 }
@@ -96,8 +105,7 @@ impl Command for Put {
 impl Put {
     async fn store(
         &self,
-        link: &mut Link,
-        screen: &Screen,
+        (link, screen, authority): (&mut Link, &Screen, &Authority<'_>),
         bytes: &[u8],
         from: u16,
         last: u16,
@@ -118,18 +126,19 @@ impl Put {
         let found = steps::read_all(link, screen, from..=end).await?;
         let wanted = program.steps.iter().map(|step| step.record.clone()).chain(std::iter::repeat_with(steps::nop));
         let wanted = (first..=end).zip(wanted).skip_while(|(step, _)| *step < from);
-        let changes: Vec<Change> = wanted
+        let changes: Vec<Edit> = wanted
             .zip(&found)
             .filter(|((_, wanted), found)| wanted != *found)
-            .map(|((step, instruction), _)| Change { step, instruction })
+            .map(|((step, instruction), found)| Edit { step, instruction, found: found.clone() })
             .collect();
+        authority.confirm(&replacing(&changes, task)).await?;
         let mut cells = Cells::default();
         if !changes.is_empty() {
             steps::open(link).await?;
             let mut progress = screen.items_progress("writing steps", changes.len() as u64);
             // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
             let outcome = interruptible(async {
-                for Change { step, instruction } in &changes {
+                for Edit { step, instruction, .. } in &changes {
                     link.overwrite(screen, &steps::cell(*step, instruction)?, &mut cells).await?;
                     progress.advance(1);
                 }
@@ -156,28 +165,47 @@ impl Put {
         })
     }
 
-    async fn rehearse(
-        &self,
-        link: &mut Link,
-        screen: &Screen,
-        program: &Program,
-        from: u16,
-    ) -> Result<Stored, Failure> {
+    async fn dry_run(&self, link: &mut Link, program: &Program, from: u16) -> Result<Stored, Failure> {
         let first = self.at.unwrap_or(1);
         let last = last_of(first, program);
         tasks::choose(link, self.task).await?;
-        link.foresee(&steps::rooms_request(), "whether there is room");
-        steps::foresee_open(link).await?;
-        for (step, wanted) in (first..).zip(&program.steps).filter(|(step, _)| *step >= from) {
-            link.store(screen, &steps::cell(step, &wanted.record)?, &mut Cells::default()).await?;
+        link.plan(&steps::rooms_request(), "whether there is room");
+        if let Some(at) = self.at {
+            let around = (1..at).chain(last.saturating_add(1)..=5000).next();
+            if let Some(step) = around {
+                link.plan(&steps::read_request(step), "and so on, the steps around: their tags");
+            }
         }
-        if self.at.is_none() && !self.keep_rest && usize::from(last) < MOST_STEPS {
-            let rest = "and so on to the end of the task: what is no NOP becomes one";
-            link.foresee(&steps::read_request(last + 1), rest);
+        let wanted = (first..).zip(&program.steps).filter(|(step, _)| *step >= from);
+        let cells = wanted.map(|(step, wanted)| steps::cell(step, &wanted.record)).collect::<Result<Vec<_>, _>>()?;
+        for cell in &cells {
+            link.plan(&cell.read, THERE);
+        }
+        let clears = self.at.is_none() && !self.keep_rest && usize::from(last) < MOST_STEPS;
+        if clears {
+            link.plan(&steps::read_request(last + 1), "and so on to the end of the task");
+        }
+        steps::plan_open(link).await?;
+        for cell in &cells {
+            link.plan_overwriting(&cell.read, &cell.write.text()).await?;
+        }
+        if clears {
+            let cell = steps::cell(last + 1, &steps::nop())?;
+            link.plan_overwriting(&cell.read, &cell.write.text()).await?;
+            link.then("what is behind the last step of the file and no NOP becomes one, to the end of the task");
         }
         link.put_back().await?;
         Err(unknown())
     }
+}
+
+/// What is replaced, for a person to confirm.
+fn replacing(edits: &[Edit], task: u8) -> Change {
+    let lost = edits.iter().filter(|edit| edit.found != steps::nop());
+    let lost: Vec<Replaced> = lost
+        .map(|Edit { step, instruction, found }| [format!("step {step}"), found.written(), instruction.written()])
+        .collect();
+    overwriting(["a step", "steps"], &lost, &format!(" of task {task}"))
 }
 
 fn last_of(first: u16, program: &Program) -> u16 {

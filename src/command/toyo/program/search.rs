@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::steps;
 use crate::command::dry_run::unknown;
 use crate::command::toyo::link::Link;
+use crate::command::toyo::waiting::status_page;
 use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -42,8 +43,10 @@ impl Command for Search {
         let link = context.link;
         if link.is_dry() {
             tasks::choose(link, self.task).await?;
+            link.plan(&status_page(0), "whether a program runs");
             link.order(&self.order()).await?;
-            link.foresee(&steps::read_request(0), "at which step it is");
+            link.plan(&steps::read_request(0), "at which step it is");
+            link.put_back().await?;
             return Err(unknown());
         }
         let outcome = self.search(link).await;

@@ -26,8 +26,8 @@ impl Command for Show {
         let link = context.link;
         let (which, request) = (Request::bare(table::Command::Mtsk), steps::read_request(0));
         if link.is_dry() {
-            link.foresee(&which, "which task is the current one");
-            link.foresee(&request, "its current step");
+            link.plan(&which, "which task is the current one");
+            link.plan(&request, "its current step");
             return Err(unknown());
         }
         let which = link.read(&which).await?;

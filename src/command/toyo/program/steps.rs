@@ -95,15 +95,13 @@ pub async fn open(link: &mut Link) -> Result<(), Failure> {
         Some(RunMode::Step) => Command::Mstp,
         Some(RunMode::Program) | None => return Ok(()),
     };
-    link.borrow(&Request::bare(Command::Mpro), Request::bare(back), "").await
+    link.borrow(&Request::bare(Command::Mpro), Request::bare(back)).await
 }
 
 /// What a dry run notes of [`open`].
-pub async fn foresee_open(link: &mut Link) -> Result<(), Failure> {
+pub async fn plan_open(link: &mut Link) -> Result<(), Failure> {
     let page = |page| Request::of(Command::Stas, [Value::Number(page)]);
-    link.foresee(&page(0), "whether something runs");
-    link.foresee(&page(2), "in which mode it is");
-    link.take_host().await?;
-    let (change, back) = (Request::bare(Command::Mpro), Request::bare(Command::Maut));
-    link.borrow(&change, back, "if it is in automatic or step mode; later the mode that was found").await
+    link.plan(&page(0), "whether something runs");
+    link.plan(&page(2), "in which mode it is");
+    link.plan_to_borrow(&Request::bare(Command::Mpro), "@M?", "whether it is in another mode").await
 }

@@ -1,0 +1,282 @@
+//! Every command against the gate: its risk, a read-only robot, nobody to ask; and its dry run against what is sent.
+
+use std::collections::BTreeSet;
+use std::time::Duration;
+
+use serde_json::Value;
+
+use super::testing::{Bench, Fate, Heard, gated, plan, text};
+use crate::command::Noun as _;
+use crate::command::testing::{QUIET, frames};
+use crate::controller::Risk::{self, Destroy, Motion, Read, Write};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table::commands::Row;
+use crate::failure::Kind;
+use crate::gate::{Confirmation, Gate};
+
+/// Every command, and the most that it does. `FOLDER` is a folder with what [`prepared`] puts there.
+#[rustfmt::skip]
+const LINES: &[(&str, Risk)] = &[
+    ("status", Read), ("home", Motion), ("home --sync 1 --no-wait", Motion), ("position", Read), ("host on", Write),
+    ("mode program", Write), ("servo off", Motion), ("stop", Write), ("stop --jog", Write), ("reset", Write),
+    ("error show", Read), ("error history", Read), ("error cancel", Write), ("error point", Read),
+    ("run sequential 1", Motion), ("run palletizing --program 1", Motion), ("run easy --program 1", Motion),
+    ("run point 1", Motion), ("jog X + inch", Motion), ("jog 2 - low --for 500ms", Motion),
+    ("param list", Read), ("param get P01", Read), ("param dump", Read),
+    ("param set P01 ax2=150", Destroy), ("param set P01 1 2 3 4", Destroy), ("param set E22 1000 0 0 0", Destroy),
+    ("param restore FOLDER/parameters.toml", Destroy),
+    ("point get 1", Read), ("point list", Read), ("point set 1 z=5", Destroy), ("point set 1 1 2 3 4", Destroy),
+    ("point set --from FOLDER/points.csv --task 2", Destroy),
+    ("speed-table get 1", Read), ("speed-table set 1 77", Destroy),
+    ("accel-table get 1", Read), ("accel-table set 1 0.77", Destroy),
+    ("torque-table get 1", Read), ("torque-table set 1 load=1", Destroy),
+    ("mvm get 1", Read), ("mvm set 1 pieces1=9 approach-z=1", Destroy),
+    ("program list", Read), ("program get", Read), ("program show", Read), ("program search 5", Write),
+    ("program put FOLDER/program.txt", Destroy), ("program put FOLDER/program.txt --keep-rest", Destroy),
+    ("program insert 1 HOME --task 2", Destroy), ("program delete 1", Destroy), ("program delete 1 --to 2", Destroy),
+    ("program copy 1 2 --at 3", Destroy), ("program copy 1 2 --at 3 --from-task 1 --to-task 2", Destroy),
+    ("palletizing get 1", Read), ("palletizing set 1 end 7", Destroy), ("palletizing set 1 start tag=7", Destroy),
+    ("palletizing copy 2 1", Destroy), ("palletizing select 1", Write), ("palletizing progress", Read),
+    ("easy get 1", Read), ("easy set 1 1 2 3", Destroy), ("easy set 1 loop=9", Destroy), ("easy copy 2 1", Destroy),
+    ("easy select 1", Write), ("easy progress", Read),
+    ("backup FOLDER/new", Write), ("restore FOLDER/backup --only easy,palletizing-1 --force", Destroy),
+    ("restore FOLDER/backup --only points-1 --force", Destroy),
+    ("io in", Read), ("io out", Read), ("io internal", Read), ("io set 1.1=on", Write), ("io direct 1", Write),
+    ("counter get 1", Read), ("counter set 1 5", Write), ("timer get 1", Read),
+    ("override get", Read), ("override set 50", Write), ("task get", Read), ("task set 1", Write),
+    ("offset", Read), ("coordinate set 0 0 0 0", Motion), ("bus", Read), ("card read", Destroy), ("card write", Destroy),
+    ("init points", Destroy), ("robot-type 1 0", Destroy), ("info", Read),
+    ("raw @MTSK", Read), ("raw @HSON", Write), ("raw @DSTX~0001", Destroy), ("raw @HOME", Motion),
+];
+
+/// Somebody's work.
+const STATE: &str = "origin = true\nhost = false\ncard = \"empty\"\n\
+    points = { 1 = { 1 = [10.0, 20.0, 0.0, 0.0] }, 2 = { 1 = [1.0, 0.0, 0.0, 0.0] } }\n\
+    steps = { 1 = [\"TAG TAG=005\", \"SPD V=05\", \"SPD V=06\", \"END\"], \
+    2 = [\"HOME\", \"SPD V=01\", \"SPD V=02\", \"END\", \"END\"] }\n";
+
+/// What is on it beside its start state.
+const BEFORE: [&str; 5] = [
+    "easy set 1 5 6 7",
+    "easy set 2 5 6 8",
+    "palletizing set 1 end 5",
+    "palletizing set 2 end 6",
+    "mvm set 1 pieces1=3 approach-z=5",
+];
+
+/// A controller with somebody's work, files for it in a folder, and what it hears from now on.
+fn prepared(line: &str) -> (Bench, Heard, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("parameters.toml", "[parameters]\nM09 = 'J'\nE06 = { ax1 = 900, ax2 = 900, ax3 = 900, ax4 = 900 }\n");
+    write("points.csv", "point,x_mm,y_mm,z_mm,r_mm\n1,5,5,5,5\n2,6,6,6,6\n");
+    write("program.txt", "TAG TAG=005\nSPD V=05\nEND\n");
+    let (mut bench, heard) = Bench::spoilt(STATE, |_, _| Fate::Pass);
+    if line.starts_with("restore") {
+        let backup = folder.path().join("backup");
+        bench.data(&["backup", backup.to_str().unwrap()]);
+    }
+    for line in BEFORE.iter().chain(&["point set 1 9 9 9 9"]) {
+        bench.data(&line.split(' ').collect::<Vec<_>>());
+    }
+    bench.end();
+    heard.borrow_mut().clear();
+    (bench, heard, folder)
+}
+
+fn words(line: &str, folder: &tempfile::TempDir) -> Vec<String> {
+    let folder = folder.path().to_str().unwrap();
+    line.split(' ').map(|word| word.replace("FOLDER", folder).replace('~', " ")).collect()
+}
+
+/// The risk of a block, in which `?` may stand.
+fn risk(block: &str) -> Risk {
+    if block.starts_with("@JGST") {
+        let moves = ["+", "-", "?"].iter().any(|way| block.contains(way));
+        return if moves { Motion } else { Write };
+    }
+    let word = block.trim_start_matches('@').split(' ').next().unwrap();
+    Request::parse(block).map_or_else(|_| Row::named(word).map_or(Write, |row| row.risk), |request| request.risk())
+}
+
+#[test]
+fn every_command_is_here() {
+    let here: BTreeSet<&str> = {
+        let (_, _, folder) = prepared("");
+        let id = |line: &str| {
+            let words = words(line, &folder);
+            gated(&words.iter().map(String::as_str).collect::<Vec<_>>()).2
+        };
+        LINES.iter().map(|(line, _)| id(line)).collect()
+    };
+    let desk = ["toyo.ports", "toyo.program.check", "toyo.sim.run"];
+    let missing: Vec<&str> = super::Toyo::schemas().iter().map(|entry| entry.id).collect();
+    let missing: Vec<&str> = missing.into_iter().filter(|id| !here.contains(id) && !desk.contains(id)).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}
+
+#[test]
+fn nothing_is_changed_that_was_not_confirmed() {
+    let mut wrong = Vec::new();
+    for (line, risk_of_it) in LINES {
+        let (mut bench, heard, folder) = prepared(line);
+        let words = words(line, &folder);
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let (robot, intent, _) = gated(&words);
+        assert_eq!(intent.risk, *risk_of_it, "{line}");
+        let mut read_only = robot;
+        read_only.read_only.value = true;
+        let refused = Gate::default().must_ask(&QUIET, &read_only, &intent);
+        let is_refused =
+            refused.is_err_and(|failure| failure.kind == Kind::RefusedHere && failure.message.contains("read-only"));
+        if is_refused == (*risk_of_it == Read || intent.is_stop) {
+            wrong.push(format!("{line}: a read-only robot"));
+        }
+        let came = bench.unasked(&words);
+        bench.end();
+        let riskier: Vec<String> = heard.borrow().iter().filter(|block| risk(block) >= Destroy).cloned().collect();
+        if *risk_of_it >= Destroy {
+            let kind = came.as_ref().err().map(|failure| failure.kind);
+            if kind != Some(Kind::RefusedHere)
+                || !came.as_ref().is_err_and(|failure| failure.message.starts_with("not confirmed: "))
+            {
+                wrong.push(format!("{line}: {came:?}"));
+            }
+            if intent.confirmation != Confirmation::WhenKnown && !heard.borrow().is_empty() {
+                wrong.push(format!("{line}: sent before it was asked: {:?}", heard.borrow()));
+            }
+        }
+        if !riskier.is_empty() {
+            wrong.push(format!("{line}: sent {riskier:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_dry_run_is_what_is_sent() {
+    let mut wrong = Vec::new();
+    for (line, risk_of_it) in LINES {
+        let (mut bench, heard, folder) = prepared(line);
+        let words = words(line, &folder);
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let report = match plan(&words) {
+            Ok(report) => report,
+            Err(failure) => {
+                wrong.push(format!("{line}: {failure}"));
+                continue;
+            }
+        };
+        let planned = frames(&report);
+        if !planned.iter().any(|frame| risk(&text(frame)) == *risk_of_it) {
+            wrong.push(format!("{line}: no frame of its own risk in {planned:?}"));
+        }
+        // Some end in a refusal of the simulator; what was sent up to then counts.
+        let is_whole = bench.run(&words).is_ok_and(|(_, failure)| failure.is_none());
+        bench.end();
+        if let Err(why) = follows(&planned, &heard.borrow(), is_whole && report["complete"] == true) {
+            wrong.push(format!("{line}: {why}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Whether what was sent is what was planned: `?` stands for anything, what depends on an answer may be left out, and what
+/// goes on "until" something comes again.
+fn follows(planned: &[Value], sent: &[String], is_whole: bool) -> Result<(), String> {
+    let is_open = |frame: &Value| frame["depends_on"].is_string();
+    let is_poll = |frame: &Value| frame["about"].as_str().is_some_and(|about| about.contains("until"));
+    let closed = |mut at: usize| {
+        let mut all = vec![at];
+        while planned.get(at).is_some_and(is_open) {
+            at += 1;
+            all.push(at);
+        }
+        all
+    };
+    let mut places = BTreeSet::from([0]);
+    for (index, block) in sent.iter().enumerate() {
+        let mut next = BTreeSet::new();
+        for at in places.iter().flat_map(|at| closed(*at)) {
+            if planned.get(at).is_some_and(|frame| fits(&text(frame), block)) {
+                next.insert(at + 1);
+            }
+            if planned[..at].iter().any(|frame| is_poll(frame) && fits(&text(frame), block)) {
+                next.insert(at);
+            }
+        }
+        if next.is_empty() {
+            let planned: Vec<String> = planned.iter().map(text).collect();
+            return if is_whole {
+                Err(format!("block {index}, {block}, was not planned\n  sent {sent:?}\n  planned {planned:?}"))
+            } else {
+                Ok(())
+            };
+        }
+        places = next;
+    }
+    let is_end = |at: &usize| closed(*at).contains(&planned.len());
+    if is_whole && !places.iter().any(is_end) {
+        let planned: Vec<String> = planned.iter().map(text).collect();
+        return Err(format!("more was planned than sent\n  sent {sent:?}\n  planned {planned:?}"));
+    }
+    Ok(())
+}
+
+fn fits(planned: &str, sent: &str) -> bool {
+    let mut rest = sent;
+    let parts: Vec<&str> = planned.split('?').collect();
+    let [first, middle @ ..] = &parts[..] else { return false };
+    let Some(behind) = rest.strip_prefix(first) else { return false };
+    rest = behind;
+    for part in middle {
+        // At least one character for each.
+        let Some(at) = rest.get(1..).and_then(|rest| if part.is_empty() { Some(rest.len()) } else { rest.find(part) })
+        else {
+            return false;
+        };
+        rest = &rest[1 + at + part.len()..];
+    }
+    rest.is_empty()
+}
+
+#[test]
+fn a_question_shows_old_and_new_and_spares_what_nobody_wrote() {
+    let (mut bench, heard, _folder) = prepared("");
+    let mut refused = |line: &str| {
+        let words: Vec<&str> = line.split(' ').collect();
+        let failure = bench.unasked(&words).expect_err(line);
+        assert_eq!(failure.kind, Kind::RefusedHere, "{line}");
+        failure.message.split(" this would ").nth(1).unwrap_or_default().to_owned()
+    };
+    for (line, question) in [
+        ("param set P01 ax2=150", "overwrite a parameter (P01 (soft-limit-plus): ax2=1000.00 mm -> ax2=150.00 mm)"),
+        ("point set 1 z=5", "overwrite a point of task 1 (point 1: z=9.00 mm -> z=5.00 mm)"),
+        ("speed-table set 1 77", "overwrite a row of the speed-table (row 1: speed=10.0 mm/s -> speed=77.0 mm/s)"),
+        ("easy set 1 loop=9", "overwrite an easy program (program 1: loop=6 -> loop=9)"),
+        ("palletizing set 1 end 7", "overwrite a record of palletizing program 1 (end: 5 -> 7)"),
+        ("program delete 1", "delete a step of task 1 (step 1: TAG TAG=005)"),
+        ("program delete 1 --to 3", "delete 3 steps of task 1 (step 1: TAG TAG=005, and 2 more)"),
+        ("program insert 1 HOME --task 2", "push the last step out of task 2 (step 5: END)"),
+        ("program copy 2 2 --at 3", "overwrite a step of task 1 (step 3: SPD V=06 -> SPD V=05)"),
+    ] {
+        assert_eq!(refused(line), question, "{line}");
+    }
+    let sent = heard.borrow().iter().filter(|block| risk(block) >= Destroy).count();
+    assert_eq!(sent, 0);
+    // What is as it shall be, and what nobody wrote, is no question.
+    for line in [
+        "param set P01 ax2=1000",
+        "point set 2 1 2 3 4",
+        "point set 1 9 9 9 9",
+        "easy set 5 1 2 3",
+        "program delete 8",
+        "program insert 5 HOME",
+    ] {
+        let words: Vec<&str> = line.split(' ').collect();
+        if let Err(failure) = bench.unasked(&words) {
+            panic!("{line}: {failure}");
+        }
+    }
+    bench.wait(Duration::from_millis(1));
+}

@@ -1,0 +1,98 @@
+//! Toyo: what is replaced is asked, dry runs go to their end, a stop is always allowed.
+
+use crate::desk::Desk;
+use crate::simulator::Simulator;
+
+fn desk(controller: &Simulator, more: &str) -> Desk {
+    Desk::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n{more}\n", controller.url))
+}
+
+/// The blocks of a dry run.
+fn blocks(desk: &Desk, line: &str) -> Vec<String> {
+    let data = desk.data(&format!("-r cell toyo {line} --dry-run"));
+    let frames = data["frames"].as_array().unwrap().iter();
+    frames.map(|frame| frame["text"].as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn what_somebody_wrote_is_asked_before_it_is_replaced() {
+    let controller = Simulator::start("toyo");
+    let desk = desk(&controller, "");
+    for line in ["point set 7 1 2 3 4", "easy set 1 5 6 7", "program insert 1 TAG TAG=005"] {
+        let came = desk.run(&format!("-r cell toyo {line}"));
+        assert_eq!(came.exit, Some(0), "nobody wrote what is there: {line}: {came:?}");
+    }
+    for (line, part) in [
+        ("point set 7 z=5", "overwrite a point of task 1 (point 7: z=3.00 mm -> z=5.00 mm)"),
+        ("easy set 1 loop=9", "overwrite an easy program (program 1: loop=6 -> loop=9)"),
+        ("program delete 1", "delete a step of task 1 (step 1: TAG TAG=005)"),
+        ("param set P01 ax2=150", "overwrite a parameter (P01 (soft-limit-plus): ax2="),
+        ("init points", "clear the coordinate table"),
+        ("card write", "overwrite what is on the memory card"),
+        ("raw @DSTX=0001", "send @DSTX=0001"),
+    ] {
+        desk.fails(&format!("-r cell toyo {line}"), 7, part);
+        desk.fails(&format!("-r cell toyo {line}"), 7, "this would");
+    }
+    assert_eq!(desk.data("-r cell toyo point get 7")["points"][0]["z_mm"], 3.0);
+    assert_eq!(desk.data("-r cell toyo easy get 1")["programs"][0]["loops"], 6);
+    assert!(desk.run("-r cell toyo program get --to 1").stdout.contains("TAG TAG=005"));
+    // As it is already: nothing to ask.
+    assert_eq!(desk.run("-r cell toyo point set 7 1 2 3 4").exit, Some(0));
+    assert_eq!(desk.run("-r cell toyo point set 7 z=5 --yes").exit, Some(0));
+    assert_eq!(desk.run("-r cell toyo program delete 1 --yes").exit, Some(0));
+}
+
+#[test]
+fn dry_runs_go_to_their_end() {
+    let controller = Simulator::start("toyo");
+    let desk = desk(&controller, "read_only = true");
+    assert_eq!(
+        blocks(&desk, "param set P01 ax2=150"),
+        [
+            "@RPAR P01",
+            "@STAS SNO=2",
+            "@HSON",
+            "@STAS SNO=0",
+            "@WPAR P01 AX1=? AX2=+0150.00 AX3=? AX4=?",
+            "@RPAR P01",
+            "@HSOF"
+        ]
+    );
+    assert_eq!(blocks(&desk, "status"), [0, 1, 2, 3, 4].map(|page| format!("@STAS SNO={page}")));
+    for (line, block) in [
+        ("point set 7 z=1", "@WPAR T1 PT=007 X=? Y=? Z=+0001.00 R=?"),
+        ("palletizing set 1 start tag=7", "@WPLT 01 SNO=01 TAG=007 MOD=?"),
+        ("mvm set 1 pieces1=9", "@WPAR T4 S2 GRP=01 P1=0009 P2=? P3=?"),
+        ("easy set 1 loop=9", "@WESY PNO=01 ST=000 START=? LOOP=0009 END=?"),
+        ("program insert 1 HOME", "@WSTX 0001 HOME"),
+        ("program delete 1", "@DSTX 0001"),
+        ("program search 5", "@SSTG TAG=005"),
+        ("robot-type 1 7", "@TYPE AX1 RTYP=000007"),
+        ("run point 1", "@EXTP PT=001"),
+        ("home", "@HOME"),
+        ("jog 2 + inch", "@JGST X=SP Y=+C Z=SP R=SP"),
+    ] {
+        let blocks = blocks(&desk, line);
+        let at = blocks.iter().position(|sent| sent == block).unwrap_or_else(|| panic!("{line}: {blocks:?}"));
+        assert!(blocks[..at].ends_with(&["@STAS SNO=0".to_owned()]) || line != "program search 5", "{blocks:?}");
+        assert_eq!(blocks.last().unwrap(), "@HSOF", "{line}: it goes to the end");
+    }
+}
+
+#[test]
+fn a_stop_is_allowed_on_a_read_only_robot() {
+    let controller = Simulator::start("toyo");
+    let desk = desk(&controller, "read_only = true");
+    assert_eq!(desk.run("-r cell toyo stop").exit, Some(0));
+    assert_eq!(desk.run("-r cell toyo stop --jog").exit, Some(0));
+    for order in ["point set 7 1 2 3 4 --yes", "host on", "home --yes", "jog X + inch --yes"] {
+        desk.fails(&format!("-r cell toyo {order}"), 7, "is read-only");
+    }
+}
+
+#[test]
+fn a_jog_is_refused_before_anything_is_sent_where_nobody_can_be_asked() {
+    let desk = Desk::new("[[robot]]\nname = \"cell\"\ntarget = \"tcp://127.0.0.1:1\"\n");
+    desk.fails("-r cell toyo jog 2 + inch", 7, "move axis 2 by a small step in plus direction");
+}
