@@ -110,7 +110,7 @@ fn only_regular_files_of_a_sensible_size_are_read() {
             ("sim yrcx --state FILE --bind 127.0.0.1:0", 1),
             ("sim toyo --state FILE --bind 127.0.0.1:0", 1),
             ("--sim yerc var restore FILE --yes", 1),
-            ("--sim toyo program check FILE", 1),
+            ("toyo program check FILE", 1),
         ] {
             if line.contains(".pcap") {
                 let link = folder.path().join("FILE.pcap");

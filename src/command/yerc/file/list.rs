@@ -41,7 +41,9 @@ impl Command for List {
             None => TypeArg::chosen(&self.types).into_iter().map(|kind| (kind.filter(), Some(kind))).collect(),
         };
         let requests = filters.iter().map(|(filter, _)| files::list_by(filter));
-        let requests: Vec<_> = requests.collect::<Result<_, _>>().map_err(|error| Failure::usage(error.to_string()))?;
+        let requests: Vec<_> = requests.collect::<Result<_, _>>().map_err(|error| {
+            Failure::usage(error.to_string()).hint("a filter looks like *.JBI; remove --filter to list jobs")
+        })?;
         if link.is_dry() {
             transfer::foresee_all(link, requests);
             return Ok(Listing::default());
