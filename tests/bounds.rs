@@ -131,6 +131,15 @@ fn only_regular_files_of_a_sensible_size_are_read() {
 }
 
 #[test]
+fn a_line_of_a_script_is_bounded() {
+    let folder = folder();
+    let mut command = Command::new("sh");
+    let script = "ulimit -v 500000; exec \"$0\" repl </dev/zero";
+    let output = command.args(["-c", script, env!("CARGO_BIN_EXE_armctl")]).current_dir(folder.path()).output();
+    ends(&output.expect("a shell"), 2, "line 1 of stdin is longer than");
+}
+
+#[test]
 fn filters_are_bounded() {
     let folder = folder();
     // Less than a filter may have otherwise, so that it is soon full.

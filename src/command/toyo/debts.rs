@@ -204,21 +204,21 @@ mod tests {
     #[test]
     fn a_note_is_there_as_long_as_something_is_changed() {
         let folder = tempfile::tempdir().unwrap();
-        let notes = || fs::read_dir(folder.path()).unwrap().count();
+        let left = || fs::read_dir(folder.path()).unwrap().count();
         let notes = || Debts::within(Some(folder.path().to_owned()), "tcp://cell");
         let mut debts = notes();
         debts.host(true);
         debts.push("@CTSK TASK=01");
         debts.moving(Some(Moving::Jog));
-        assert_eq!(notes(), 1);
+        assert_eq!(left(), 1);
         // The process that wrote it lives.
         #[cfg(unix)]
         assert!(notes().left().is_empty());
         debts.moving(None);
         debts.pop("@CTSK TASK=01");
-        assert_eq!(notes(), 1);
+        assert_eq!(left(), 1);
         debts.host(false);
-        assert_eq!(notes(), 0);
+        assert_eq!(left(), 0);
     }
 
     #[cfg(unix)]
