@@ -157,11 +157,14 @@ impl Run {
         let is_free = self.gate.dry_run || intent.is_stop || self.opens_session(command, robot);
         let entry = if is_free { Entry::Harmless } else { F::entry(robot, command.need()) };
         let Entry::Stops(entry) = entry else { return intent };
-        let text = match intent.risk {
-            Risk::Motion => format!("{}, and {entry}", intent.text),
-            Risk::Read | Risk::Write | Risk::Destroy => entry.to_owned(),
+        // What asks by itself, later, says then what it does; whatever else needs a yes says it in this question.
+        let (asks, confirmation) = match intent.confirmation {
+            Confirmation::Word(_) => (true, intent.confirmation),
+            Confirmation::Question => (intent.risk >= Risk::Destroy, Confirmation::Question),
+            Confirmation::WhenKnown => (intent.risk == Risk::Motion, Confirmation::Question),
         };
-        Intent { risk: Risk::Motion, text, confirmation: Confirmation::Question, ..intent }
+        let text = if asks { format!("{}, and {entry}", intent.text) } else { entry.to_owned() };
+        Intent { risk: Risk::Motion, text, confirmation, ..intent }
     }
 
     /// Finds what is refused without asking anybody: robots that are not there, a gate that stays closed.

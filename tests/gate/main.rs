@@ -4,6 +4,9 @@
 
 #[path = "../support/simulator.rs"]
 mod simulator;
+#[path = "../support/terminal.rs"]
+mod terminal;
 
 mod desk;
 mod frame;
+mod safety_page;
