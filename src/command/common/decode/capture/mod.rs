@@ -1,6 +1,7 @@
 //! `armctl decode FAMILY FILE.pcapng`: what a capture file holds of a family, in the words of a trace.
 
 mod cip;
+mod order;
 mod stream;
 pub mod toyo;
 pub mod yerc;
@@ -17,6 +18,7 @@ use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use self::order::Order;
 use crate::command::Report;
 use crate::command::run::{Run, Stopped};
 use crate::failure::{Failure, Kind};
@@ -194,7 +196,7 @@ pub trait Field: Serialize + JsonSchema + Sized {
 /// Reads a file and reports it.
 pub fn tell<L: Listener>(run: &Run, id: &str, path: &Path, selection: &Selection, listener: L) -> Result<(), Stopped> {
     let name = path.display().to_string();
-    let source = Source { name: &name, open: || files::open(path), selection };
+    let source = Source::new(&name, || files::open(path), selection)?;
     let (is_streamed, in_short) = (run.filter.is_none() && run.line.is_none(), run.is_for_people());
     let room = if is_streamed { FEW } else { ROOM };
     let (kept, listener) = {
@@ -238,9 +240,24 @@ struct Source<'a, O> {
     name: &'a str,
     open: O,
     selection: &'a Selection,
+    /// How many packets a message may be heard late.
+    lag: u64,
 }
 
-impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
+impl<'a, R: Read, O: Fn() -> io::Result<R>> Source<'a, O> {
+    /// Looks through the file.
+    fn new(name: &'a str, open: O, selection: &'a Selection) -> Result<Self, Failure> {
+        let _busy = busy();
+        let mut source = Self { name, open, selection, lag: 0 };
+        let (mut newest, mut lag) = (0, 0);
+        source.read(|message| {
+            newest = message.number.max(newest);
+            lag = lag.max(newest - message.number);
+        })?;
+        source.lag = lag;
+        Ok(source)
+    }
+
     /// What the file holds, unless there is no room for that; then it has to be written as it is read. With the
     /// listener, ready to hear the file again.
     fn capture<L: Listener>(
@@ -306,7 +323,6 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         listener: &mut L,
         mut each: impl FnMut(Heard<L::Field>) -> bool,
     ) -> Result<Summary, Failure> {
-        let file = (self.open)().map_err(|error| Failure::io(self.name, &error))?;
         let mut goes_on = true;
         let mut hand_on = |listener: &mut L| {
             for heard in listener.told().messages.drain(..) {
@@ -315,15 +331,27 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
             goes_on
         };
         let mut is_wanted = true;
-        let summary = read(file, |message| {
-            if is_wanted && self.selection.admits(&message.carrier) {
+        let mut hear = |message: &Message<'_>| {
+            if is_wanted {
                 listener.hear(message);
                 is_wanted = hand_on(listener);
             }
-        });
+        };
+        let mut order = Order::new(self.lag);
+        let summary = self.read(|message| {
+            if self.selection.admits(&message.carrier) {
+                order.take(message, &mut hear);
+            }
+        })?;
+        order.finish(hear);
         listener.end();
         hand_on(listener);
-        summary.map_err(|error| {
+        Ok(summary)
+    }
+
+    fn read(&self, hear: impl FnMut(&Message<'_>)) -> Result<Summary, Failure> {
+        let file = (self.open)().map_err(|error| Failure::io(self.name, &error))?;
+        read(file, hear).map_err(|error| {
             let hint = match error {
                 Unknown::Compressed => "unpack it first: gunzip, or unzstd",
                 Unknown::Unreadable => "check the disk that it is on",
@@ -582,7 +610,7 @@ mod tests {
     const SPEED: &[u8] = include_bytes!("../../../../../tests/cli/files/speed.pcapng");
 
     fn whole<L: Listener>(file: &[u8], selection: &Selection, listener: L) -> Result<Capture<L::Field>, Failure> {
-        let source = Source { name: "file", open: || Ok(file), selection };
+        let source = Source::new("file", || Ok(file), selection)?;
         let (capture, _) = source.capture(listener, ROOM, false)?;
         Ok(capture.expect("there is room"))
     }
