@@ -110,7 +110,7 @@ fn only_regular_files_of_a_sensible_size_are_read() {
             ("sim yrcx --state FILE --bind 127.0.0.1:0", 1),
             ("sim toyo --state FILE --bind 127.0.0.1:0", 1),
             ("--sim yerc var restore FILE --yes", 1),
-            ("--sim toyo program check FILE", 1),
+            ("toyo program check FILE", 1),
         ] {
             if line.contains(".pcap") {
                 let link = folder.path().join("FILE.pcap");
@@ -128,6 +128,15 @@ fn only_regular_files_of_a_sensible_size_are_read() {
         }
     }
     ends(&run(folder.path(), &["--sim", "diff", "saved"]), 1, nothing);
+}
+
+#[test]
+fn a_line_of_a_script_is_bounded() {
+    let folder = folder();
+    let mut command = Command::new("sh");
+    let script = "ulimit -v 500000; exec \"$0\" repl </dev/zero";
+    let output = command.args(["-c", script, env!("CARGO_BIN_EXE_armctl")]).current_dir(folder.path()).output();
+    ends(&output.expect("a shell"), 2, "line 1 of stdin is longer than");
 }
 
 #[test]

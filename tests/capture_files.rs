@@ -33,7 +33,7 @@ fn datagrams(file: &[u8]) -> Vec<(u64, Vec<u8>)> {
 #[test]
 fn times_come_from_any_clock() {
     let mut times = Vec::new();
-    let summary = read(&file("lines.pcapng"), |message| times.push((message.number, message.time.as_secs_f64())));
+    let summary = read(&*file("lines.pcapng"), |message| times.push((message.number, message.time.as_secs_f64())));
     let first = summary.expect("it is a capture").first.as_secs_f64();
     times.sort_by_key(|(number, _)| *number);
     // Nanoseconds, 1/1024 s, nanoseconds, microseconds, and a packet without a time.
@@ -107,7 +107,7 @@ proptest! {
         }
         let mut heard = 0;
         // No packet is read twice: what is heard cannot be more than the file has.
-        let _ = read(&bytes, |message| heard += message.bytes.len());
+        let _ = read(&*bytes, |message| heard += message.bytes.len());
         prop_assert!(heard <= bytes.len());
     }
 
@@ -122,6 +122,6 @@ proptest! {
             [0x1F, 0x8B, 0x08, 0x00],
         ];
         let bytes = [&magics[magic][..], &rest].concat();
-        let _ = read(&bytes, |_| ());
+        let _ = read(&*bytes, |_| ());
     }
 }

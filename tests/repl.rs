@@ -102,6 +102,18 @@ fn ctrl_c_stops_the_motion_and_not_the_prompt() {
 }
 
 #[test]
+fn ctrl_c_twice_at_the_prompt_leaves() {
+    let desk = Desk::new();
+    let mut repl = desk.repl("yerc repl --sim");
+    repl.press("\x03");
+    repl.says("Ctrl-C again");
+    repl.says("yerc> ");
+    repl.press("\x03");
+    assert_eq!(repl.end().code(), Some(130));
+    assert!(repl.is_as_before());
+}
+
+#[test]
 fn asked_to_end_it_leaves_the_terminal_as_it_was() {
     for signal in ["TERM", "HUP", "QUIT"] {
         let desk = Desk::new();

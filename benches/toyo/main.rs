@@ -17,7 +17,6 @@ use armctl::command::toyo::Family as Toyo;
 use armctl::command::toyo::link::Link;
 use armctl::command::toyo::simulated::Simulated;
 use armctl::command::{Access, Family as _, Need};
-use armctl::controller::Risk;
 use armctl::controller::toyo::program;
 use armctl::controller::toyo::request::Request;
 use armctl::controller::toyo::simulator::{Simulator, Start};
@@ -178,7 +177,7 @@ fn connect(runtime: &tokio::runtime::Runtime, address: SocketAddr) -> anyhow::Re
     let sources = Sources { selection, ..Sources::default() };
     let robots = sources.robots(Some(Family::Toyo))?;
     let robot = robots.first().context("a target is a robot")?;
-    let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: Need::Command, typed: None };
+    let access = Access::reading(Need::Command);
     let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
     Ok(runtime.block_on(Toyo::connect(robot, access, &screen))?)
 }

@@ -23,6 +23,7 @@ use armctl::controller::Risk;
 use armctl::controller::yerc::files::FileName;
 use armctl::controller::yerc::query::ReadStatus;
 use armctl::controller::yerc::session::DownloadEnd;
+use armctl::gate::Grant;
 use armctl::output::{ColorChoice, Format, Screen};
 use armctl::settings::target::Family;
 use armctl::settings::{Selection, Sources};
@@ -168,7 +169,14 @@ fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
     let sources = Sources { selection, ..Sources::default() };
     let robots = sources.robots(Some(Family::Yerc))?;
     let robot = robots.first().context("a target is a robot")?;
-    let access = Access { granted: Risk::Read, dry_run: false, trace: None, need: Need::Command, typed: None };
+    let access = Access {
+        granted: Grant::of(Risk::Read),
+        dry_run: false,
+        trace: None,
+        need: Need::Command,
+        typed: None,
+        unit: 0,
+    };
     let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
     Ok(runtime.block_on(Yerc::connect(robot, access, &screen))?)
 }

@@ -37,10 +37,14 @@ impl Uses {
 
     fn of_common(common: &Common) -> Self {
         match common {
-            Common::Status(_) | Common::Top(_) | Common::Restore(_) => ALL,
             Common::Backup(backup) if backup.is_local() => NONE,
             Common::Diff(diff) if diff.is_local() => NONE,
-            Common::Backup(_) | Common::Diff(_) | Common::Robots(Robots::Check(_)) => ALL,
+            Common::Status(_)
+            | Common::Top(_)
+            | Common::Restore(_)
+            | Common::Backup(_)
+            | Common::Diff(_)
+            | Common::Robots(Robots::Check(_)) => ALL,
             Common::Session(_) => Self { repeat: false, ..ALL },
             Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
             // What settings would be in force.
@@ -66,8 +70,11 @@ pub fn check(globals: &Globals, work: &Work) -> Result<(), Failure> {
     }
 }
 
-/// Each flag that was given, with whether it means something.
-fn given(globals: &Globals) -> [(Option<&'static str>, fn(Uses) -> bool); 17] {
+/// A flag as it is typed, if it was given, and whether it means something.
+type Given = (Option<&'static str>, fn(Uses) -> bool);
+
+/// Each flag, if it was given, with whether it means something.
+fn given(globals: &Globals) -> [Given; 17] {
     let Globals { sim, target, robot, all, tag, trace, yes, dry_run, .. } = globals;
     let Globals { on_interrupt, timeout, retries, encoding, no_session, watch, count, until, within, .. } = globals;
     [

@@ -80,7 +80,10 @@ impl Ready {
     /// several.
     pub fn new(globals: Globals, all: Option<&Globals>, work: Work, line: Option<Line>) -> Result<Self, Failure> {
         flags::check(&globals, &work)?;
-        let globals = all.map_or_else(|| globals.clone(), |all| globals.clone().within(all));
+        let globals = match all {
+            Some(all) => globals.within(all),
+            None => globals,
+        };
         let need = work.need();
         let mut run = prepare(globals, need, line)?;
         match &work {

@@ -13,7 +13,7 @@ mod terminal;
 use std::io::IsTerminal as _;
 use std::sync::Arc;
 
-use tokio::io::{AsyncBufReadExt as _, BufReader};
+use tokio::io::{AsyncBufRead, AsyncBufReadExt as _, AsyncReadExt as _, BufReader};
 
 use self::assistant::Assistant;
 use self::editor::{Editor, Typed};
@@ -114,6 +114,8 @@ impl Repl {
             line_of(holder, "repl").hold(robot, self.globals.trace.as_deref(), &self.screen).await?;
         }
         self.screen.note("Tab completes, `help` lists the commands, `exit` or Ctrl-D leaves.");
+        // Ctrl-C puts a line away; where there is none, it is not yet the wish to leave, but twice is.
+        let mut is_second = false;
         loop {
             let seen = match &self.robot {
                 Some(robot) if !self.globals.dry_run => look(robot, &line_of(holder, "repl"), &self.screen).await,
@@ -131,10 +133,16 @@ impl Repl {
             };
             let text = match typed {
                 Typed::Line(text) => text,
-                Typed::Interrupted => continue,
+                Typed::Interrupted if is_second => return Err(ended("Ctrl-C again")),
+                Typed::Interrupted => {
+                    self.screen.note("Ctrl-C again, `exit` or Ctrl-D leaves.");
+                    is_second = true;
+                    continue;
+                }
                 Typed::End => return Ok(()),
                 Typed::Failed(failure) => return Err(failure.into()),
             };
+            is_second = false;
             // What is pasted may be several lines.
             for line in text.lines() {
                 match Box::pin(self.run_line(line, holder)).await {
@@ -159,12 +167,11 @@ impl Repl {
     }
 
     async fn lines(&mut self, holder: &Holder) -> Result<(), Stopped> {
-        let mut lines = BufReader::new(tokio::io::stdin()).lines();
+        let mut stdin = BufReader::new(tokio::io::stdin());
         let mut number = 0;
         loop {
-            let line = interruptible(lines.next_line()).await?.map_err(|error| Failure::io("stdin", &error))?;
-            let Some(line) = line else { return Ok(()) };
             number += 1;
+            let Some(line) = interruptible(line(&mut stdin, number)).await?? else { return Ok(()) };
             match Box::pin(self.run_line(&line, holder)).await {
                 Next::Line => {}
                 Next::Failed(kind) => {
@@ -214,6 +221,27 @@ impl Repl {
         };
         done.map_or_else(|stopped| failed(&screen, stopped), |()| Next::Line)
     }
+}
+
+/// The next line of a script; `None` at its end.
+async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option<String>, Failure> {
+    /// More than any command takes: what has no line ends is no script.
+    const LONGEST: u64 = 1 << 20;
+
+    let mut bytes = Vec::new();
+    let read = script.take(LONGEST).read_until(b'\n', &mut bytes).await;
+    let length = read.map_err(|error| Failure::io("stdin", &error))?;
+    if u64::try_from(length).unwrap_or(u64::MAX) >= LONGEST {
+        return Err(Failure::usage(format!("line {number} of stdin is longer than 1 MiB"))
+            .hint("give commands in lines; `armctl help repl` shows how"));
+    }
+    if length == 0 {
+        return Ok(None);
+    }
+    let text = String::from_utf8(bytes).map_err(|_| {
+        Failure::local(format!("line {number} of stdin is not UTF-8")).hint("convert it: iconv -t UTF-8")
+    })?;
+    Ok(Some(text.trim_end_matches(['\n', '\r']).to_owned()))
 }
 
 fn line_of(holder: &Holder, typed: &str) -> Line {

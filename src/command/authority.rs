@@ -98,7 +98,9 @@ async fn ask(
         // Several robots may have something to ask: one after the other.
         let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         screen.ask_note(&who);
-        lines.iter().for_each(|line| screen.ask_note(line));
+        for line in &lines {
+            screen.ask_note(line);
+        }
         match question {
             Question::Yes(question) => screen.confirm(&question),
             Question::Word(what, word) => screen.confirm_word(&what, word),

@@ -154,3 +154,26 @@ impl Report for DryRun {
         View::table(if has_purpose { explained } else { plain })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plan_says_what_depends_on_answers_and_what_follows() {
+        let mut plan = Plan::default();
+        plan.note(json!({"text": "@STAS SNO=2"}), Reason::about("whether the host is ON"));
+        plan.note(json!({"text": "@SPRM ?"}), Reason::about("write").depending_on("what the block holds"));
+        let complete = plan.clone().into_report();
+        assert!(complete.complete && complete.then.is_none());
+        plan.then("a look at each point");
+        plan.then("the same for the next task");
+        let report = plan.into_report();
+        assert!(!report.complete);
+        assert_eq!(report.then.as_deref(), Some("a look at each point; the same for the next task"));
+        assert_eq!(report.frames[0].get("depends_on"), None);
+        assert_eq!(report.frames[1]["depends_on"], "what the block holds");
+        let shown = crate::output::render::text(&report.view(), 120, false);
+        assert!(shown.contains("write (depends on what the block holds)") && shown.contains("..."), "{shown}");
+    }
+}

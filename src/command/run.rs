@@ -156,13 +156,13 @@ impl Run {
         let is_free = self.gate.dry_run || intent.is_stop || self.opens_session(command, robot);
         let entry = if is_free { Entry::Harmless } else { F::entry(robot, command.need()) };
         let Entry::Stops(entry) = entry else { return intent };
-        let both = || format!("{}, and {entry}", intent.text);
-        let (text, confirmation) = match (intent.risk, intent.confirmation) {
-            // What wants a word wants it here as well: nothing else is asked later.
-            (_, Confirmation::Word(word)) => (both(), Confirmation::Word(word)),
-            (Risk::Motion, _) | (Risk::Destroy, Confirmation::Question) => (both(), Confirmation::Question),
-            _ => (entry.to_owned(), Confirmation::Question),
+        // What asks by itself, later, says then what it does; whatever else needs a yes says it in this question.
+        let (asks, confirmation) = match intent.confirmation {
+            Confirmation::Word(_) => (true, intent.confirmation),
+            Confirmation::Question => (intent.risk >= Risk::Destroy, Confirmation::Question),
+            Confirmation::WhenKnown => (intent.risk == Risk::Motion, Confirmation::Question),
         };
+        let text = if asks { format!("{}, and {entry}", intent.text) } else { entry.to_owned() };
         Intent { risk: Risk::Motion, text, confirmation, ..intent }
     }
 

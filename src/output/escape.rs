@@ -33,6 +33,15 @@ pub fn json_pretty<T: Serialize + ?Sized>(value: &T) -> serde_json::Result<Strin
     json(value, PrettyFormatter::new())
 }
 
+/// Writes a value as JSON like the two above, without holding the text.
+pub fn json_to<T: Serialize + ?Sized>(writer: impl io::Write, value: &T, pretty: bool) -> serde_json::Result<()> {
+    if pretty {
+        value.serialize(&mut Serializer::with_formatter(writer, Safe(PrettyFormatter::new())))
+    } else {
+        value.serialize(&mut Serializer::with_formatter(writer, Safe(CompactFormatter)))
+    }
+}
+
 /// A JSON formatter that writes hidden characters inside strings as `\uXXXX`, and the rest as the formatter in it does.
 #[derive(Debug, Clone, Default)]
 pub struct Safe<F>(pub F);

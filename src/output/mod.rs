@@ -144,6 +144,15 @@ impl Screen {
         self.data(&text)
     }
 
+    /// The same for a value that is made as it is written.
+    pub fn json_as_it_comes(&self, value: &impl Serialize) -> Result<(), Failure> {
+        let pretty = self.format == Format::Json && self.is_stdout_terminal();
+        let mut stdout = io::BufWriter::new(io::stdout().lock());
+        let written = escape::json_to(&mut stdout, value, pretty).map_err(io::Error::from);
+        let ended = written.and_then(|()| stdout.write_all(b"\n")).and_then(|()| stdout.flush());
+        ended.map_err(|error| Failure::io("stdout", &error))
+    }
+
     /// Says something on stderr, unless `--quiet`.
     pub fn note(&self, text: &str) {
         if !self.quiet {

@@ -109,53 +109,86 @@ const LONG: usize = 1000;
 
 /// A long table, all of whose columns are as wide from its first row to its last.
 fn piecewise(table: &Table, width: u16, color: bool) -> String {
-    let widths = widths(table, width.into());
-    let header = |index: usize| {
-        let is_number = table.rows.iter().all(|row| row[index].is_number || row[index].text == "-");
-        let cell = comfy_table::Cell::new(table.columns[index].to_uppercase()).add_attribute(Attribute::Bold);
-        if is_number { cell.set_alignment(CellAlignment::Right) } else { cell }
-    };
-    let mut text = String::new();
-    for (piece, rows) in table.rows.chunks(LONG).enumerate() {
-        let mut grid = grid(width, color);
-        if piece == 0 {
-            grid.set_header((0..table.columns.len()).map(header).collect::<Vec<_>>());
+    let mut layout = Layout::new(&table.columns);
+    table.rows.iter().for_each(|row| layout.measure(row));
+    let mut layout = layout.fit(width);
+    table.rows.chunks(LONG).map(|rows| layout.piece(rows, color)).collect()
+}
+
+/// How a table is laid out whose rows come one after the other: after all of them were measured, and fitted to a width,
+/// each piece looks like a part of the whole.
+#[derive(Debug)]
+pub struct Layout {
+    names: Vec<&'static str>,
+    columns: Vec<Column>,
+    width: u16,
+    has_header: bool,
+}
+
+#[derive(Debug)]
+struct Column {
+    /// Of its widest cell; fitted, what it gets.
+    width: usize,
+    is_number: bool,
+    is_whole: bool,
+}
+
+impl Layout {
+    /// For columns of these names.
+    pub fn new(names: &[&'static str]) -> Self {
+        let column = |name: &&str| Column { width: measure_text_width(name), is_number: true, is_whole: false };
+        Self { names: names.to_vec(), columns: names.iter().map(column).collect(), width: 0, has_header: false }
+    }
+
+    /// Takes note of a row.
+    pub fn measure(&mut self, row: &[Cell]) {
+        for (column, cell) in self.columns.iter_mut().zip(row) {
+            column.width = column.width.max(measure_text_width(&escape::line(&cell.text)));
+            column.is_number = column.is_number && (cell.is_number || cell.text == "-");
+            column.is_whole = column.is_whole || cell.is_whole;
+        }
+    }
+
+    /// Gives columns that need less than their share what they need; the others share the rest.
+    #[must_use]
+    pub fn fit(mut self, width: u16) -> Self {
+        self.width = width;
+        let mut left = usize::from(width).saturating_sub(usize::from(PADDING) * self.columns.len());
+        let (whole, mut undecided): (Vec<_>, Vec<_>) = self.columns.iter_mut().partition(|column| column.is_whole);
+        for column in whole {
+            left = left.saturating_sub(column.width);
+        }
+        loop {
+            let share = left / undecided.len().max(1);
+            let Some(next) = undecided.iter().position(|column| column.width <= share) else {
+                for column in undecided {
+                    column.width = share.max(1);
+                }
+                return self;
+            };
+            left -= undecided.remove(next).width;
+        }
+    }
+
+    /// The next rows; those of the first piece come below a header.
+    pub fn piece(&mut self, rows: &[Vec<Cell>], color: bool) -> String {
+        let header = |(name, column): (&&str, &Column)| {
+            let cell = comfy_table::Cell::new(name.to_uppercase()).add_attribute(Attribute::Bold);
+            if column.is_number { cell.set_alignment(CellAlignment::Right) } else { cell }
+        };
+        let mut grid = grid(self.width, color);
+        if !std::mem::replace(&mut self.has_header, true) {
+            grid.set_header(self.names.iter().zip(&self.columns).map(header).collect::<Vec<_>>());
         }
         for row in rows {
-            grid.add_row(row.iter().zip(&widths).map(|(cell, width)| styled(cell, *width)).collect::<Vec<_>>());
+            let cells = row.iter().zip(&self.columns);
+            grid.add_row(cells.map(|(cell, column)| styled(cell, column.width)).collect::<Vec<_>>());
         }
-        for (column, width) in grid.column_iter_mut().zip(&widths) {
+        for (column, Column { width, .. }) in grid.column_iter_mut().zip(&self.columns) {
             let width = u16::try_from(*width).unwrap_or(u16::MAX).saturating_add(PADDING);
             column.set_padding((0, PADDING)).set_constraint(ColumnConstraint::Absolute(Width::Fixed(width)));
         }
-        text.extend(grid.lines().flat_map(|line| [line.trim_end(), "\n"].map(ToOwned::to_owned)));
-    }
-    text
-}
-
-/// Widths of columns: those that need less than their share have what they need, the others share the rest.
-fn widths(table: &Table, width: usize) -> Vec<usize> {
-    let needs = |(index, name): (usize, &&str)| {
-        let cells = table.rows.iter().map(|row| measure_text_width(&escape::line(&row[index].text)));
-        cells.chain([measure_text_width(name)]).max().unwrap_or_default()
-    };
-    let mut widths: Vec<Option<usize>> = vec![None; table.columns.len()];
-    let needs: Vec<usize> = table.columns.iter().enumerate().map(needs).collect();
-    let is_whole = |index: usize| table.rows.iter().any(|row| row[index].is_whole);
-    let mut left = width.saturating_sub(usize::from(PADDING) * widths.len());
-    for index in (0..widths.len()).filter(|index| is_whole(*index)) {
-        widths[index] = Some(needs[index]);
-        left = left.saturating_sub(needs[index]);
-    }
-    loop {
-        let undecided = widths.iter().filter(|width| width.is_none()).count().max(1);
-        let share = left / undecided;
-        let next = (0..widths.len()).find(|index| widths[*index].is_none() && needs[*index] <= share);
-        let Some(index) = next else {
-            return widths.into_iter().map(|width| width.unwrap_or(share.max(1))).collect();
-        };
-        widths[index] = Some(needs[index]);
-        left -= needs[index];
+        grid.lines().flat_map(|line| [line.trim_end(), "\n"].map(ToOwned::to_owned)).collect()
     }
 }
 

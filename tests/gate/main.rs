@@ -9,6 +9,7 @@ mod terminal;
 
 mod desk;
 mod frame;
+mod safety_page;
 mod toyo;
 mod yerc;
 mod yrcx;

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::link::Moving;
 use crate::command::local::state_folder;
+use crate::files;
 
 /// What is changed and not put back.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -161,7 +162,7 @@ fn abandoned(path: &Path) -> Option<Owed> {
         return None;
     }
     let about = fs::symlink_metadata(path).ok().filter(|about| about.is_file() && about.len() <= MOST)?;
-    let file = File::open(path).ok()?;
+    let file = files::open(path).ok()?;
     if !is_free(&file, &about) {
         return None;
     }
@@ -169,7 +170,7 @@ fn abandoned(path: &Path) -> Option<Owed> {
         fs::remove_file(path).unwrap_or_default();
         return None;
     }
-    serde_json::from_slice(&fs::read(path).ok()?).ok()
+    serde_json::from_slice(&files::read(path, MOST).ok()?).ok()
 }
 
 fn now() -> u64 {
@@ -203,21 +204,21 @@ mod tests {
     #[test]
     fn a_note_is_there_as_long_as_something_is_changed() {
         let folder = tempfile::tempdir().unwrap();
-        let files = || fs::read_dir(folder.path()).unwrap().count();
+        let left = || fs::read_dir(folder.path()).unwrap().count();
         let notes = || Debts::within(Some(folder.path().to_owned()), "tcp://cell");
         let mut debts = notes();
         debts.host(true);
         debts.push("@CTSK TASK=01");
         debts.moving(Some(Moving::Jog));
-        assert_eq!(files(), 1);
+        assert_eq!(left(), 1);
         // The process that wrote it lives.
         #[cfg(unix)]
         assert!(notes().left().is_empty());
         debts.moving(None);
         debts.pop("@CTSK TASK=01");
-        assert_eq!(files(), 1);
+        assert_eq!(left(), 1);
         debts.host(false);
-        assert_eq!(files(), 0);
+        assert_eq!(left(), 0);
     }
 
     #[cfg(unix)]

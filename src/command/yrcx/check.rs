@@ -42,7 +42,7 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
 }
 
 async fn look(link: &mut Link, layers: &mut Layers) -> Result<(), Failure> {
-    let board = link.board().await?;
+    let board = link.board()?;
     layers.ok("name", format!("{} is {}", board.settings().host, board.address()));
     match board.services().await {
         Err(failure) => {

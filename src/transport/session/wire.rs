@@ -188,6 +188,9 @@ pub struct Leftover {
 /// How a session stands.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Status {
+    /// See [`VERSION`]; 0 from a host that does not tell.
+    #[serde(default)]
+    pub version: u32,
     /// Whom it is for.
     pub info: Info,
     /// How long it has been there.

@@ -14,7 +14,7 @@ use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::transport::session::client::{AttachError, status};
 use crate::transport::session::place::{Place, Spot};
-use crate::transport::session::wire::{Leftover, Peer, Status};
+use crate::transport::session::wire::{Leftover, Peer, Status, VERSION};
 
 /// Arguments of `session list`.
 #[derive(Debug, Args)]
@@ -103,13 +103,15 @@ impl Session {
     }
 
     fn living(status: Status) -> Self {
+        let foreign = (status.version != VERSION)
+            .then(|| "another version of armctl holds it; close it, and open it again to use it".to_owned());
         Self {
             robot: status.info.robot,
             family: status.info.family,
             target: status.info.target,
             pid: status.info.pid,
             link: if status.down.is_some() { "down" } else { "up" },
-            why: status.down,
+            why: status.down.or(foreign),
             since: Some(moment(status.for_ms)),
             reopenings: status.reopenings,
             clients: status.clients.into_iter().map(Client::from).collect(),

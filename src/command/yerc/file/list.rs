@@ -9,7 +9,6 @@ use super::transfer;
 use crate::command::backup;
 use crate::command::items::{self, ItemError};
 use crate::command::yerc::Family;
-use crate::command::yerc::orders::usage;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::files;
 use crate::failure::Failure;
@@ -42,7 +41,9 @@ impl Command for List {
             None => TypeArg::chosen(&self.types).into_iter().map(|kind| (kind.filter(), Some(kind))).collect(),
         };
         let requests = filters.iter().map(|(filter, _)| files::list_by(filter));
-        let requests: Vec<_> = requests.collect::<Result<_, _>>().map_err(usage)?;
+        let requests: Vec<_> = requests.collect::<Result<_, _>>().map_err(|error| {
+            Failure::usage(error.to_string()).hint("a filter looks like *.JBI; remove --filter to list jobs")
+        })?;
         if link.is_dry() {
             transfer::plan_all(link, requests);
             return Ok(Listing::default());

@@ -33,7 +33,7 @@ impl Command for Probe {
         context
             .link
             .then("messages that ask the board who it is, for its assemblies, and for connections that it refuses");
-        let board = context.link.board().await?;
+        let board = context.link.board()?;
         let identity = board.identity().await?;
         let probed = board.probe(identity.as_ref()).await?;
         Ok(Found { identity, probed })

@@ -9,7 +9,7 @@ use crate::transport::tap::Direction;
 
 impl Link {
     /// The network board, of a link that is for it alone.
-    pub async fn board(&mut self) -> Result<&mut Board, Failure> {
+    pub fn board(&mut self) -> Result<&mut Board, Failure> {
         match &mut self.transport {
             Transport::Board(board) => Ok(board),
             Transport::Notes(_) => Err(unknown()),

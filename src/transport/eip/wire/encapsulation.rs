@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn many_messages_at_once_take_no_more_room_than_they_are() {
         let mut frames = Frames::default();
-        frames.push(&[0; HEADER_LEN * 10_000]);
+        frames.push(&vec![0; HEADER_LEN * 10_000]);
         let messages: Vec<_> = std::iter::from_fn(|| frames.pop()).collect();
         assert_eq!(messages.len(), 10_000);
         assert!(messages.iter().all(|message| message.len() == HEADER_LEN && message.capacity() < 2 * HEADER_LEN));

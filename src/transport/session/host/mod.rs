@@ -334,6 +334,7 @@ impl Host {
     fn status(&mut self) -> Status {
         let mover = self.motion.and_then(|id| self.clients.get(&id));
         Status {
+            version: VERSION,
             motion: mover.map(|client| client.peer(client.motion_since)),
             info: self.info.clone(),
             for_ms: milliseconds(self.began),

@@ -1,12 +1,14 @@
 //! `armctl decode FAMILY FILE.pcapng`: what a capture file holds of a family, in the words of a trace.
 
 mod cip;
+mod order;
+mod stream;
 pub mod toyo;
 pub mod yerc;
 pub mod yrcx;
 
 use std::collections::HashMap;
-use std::io::Read;
+use std::io::{self, Read};
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -16,6 +18,7 @@ use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use self::order::Order;
 use crate::command::Report;
 use crate::command::run::{Run, Stopped};
 use crate::failure::{Failure, Kind};
@@ -24,7 +27,7 @@ use crate::output::Format;
 use crate::output::busy::busy;
 use crate::output::envelope::ErrorBody;
 use crate::output::view::{Cell, Section, Table, Tone, View};
-use crate::transport::capture::{Carrier, Message, Unknown, read};
+use crate::transport::capture::{Carrier, Message, Summary, Unknown, read};
 use crate::transport::tap::Direction;
 
 /// What of a capture file is shown.
@@ -74,23 +77,31 @@ pub fn without_file() -> Failure {
     failure.hint("give a file whose name ends in .pcap, .pcapng or .cap")
 }
 
+/// A report, unless there is no room for one, and the listener, ready to hear the file again.
+type Captured<L> = (Option<Capture<<L as Listener>::Field>>, L);
+
 /// Makes messages of a family out of what a file holds.
-pub trait Listener {
+pub trait Listener: Sized {
     /// A field of a message.
     type Field: Field;
+    /// Whether it has to hear all of a file once before it can tell what it says.
+    const LEARNS: bool = false;
     /// Takes what was said, of whatever family.
     fn hear(&mut self, message: &Message<'_>);
-    /// What has been heard so far.
+    /// Takes note of the end of the file.
+    fn end(&mut self);
+    /// What has been made of it so far.
     fn told(&mut self) -> &mut Told<Self::Field>;
-    /// Everything that was heard, and in how many packets.
-    fn finish(self) -> Told<Self::Field>;
+    /// Begins anew with the same file, knowing what it has learned.
+    #[must_use]
+    fn again(self) -> Self;
 }
 
 /// What a listener made of a file.
 #[derive(Debug)]
 pub struct Told<F> {
-    /// In any order.
-    pub messages: Kept<F>,
+    /// Messages that nobody has taken yet.
+    pub messages: Vec<Heard<F>>,
     /// Packets that belong to the family.
     pub packets: u64,
     /// What else there is to say.
@@ -99,62 +110,47 @@ pub struct Told<F> {
 
 impl<F> Default for Told<F> {
     fn default() -> Self {
-        Self { messages: Kept::default(), packets: 0, notes: Vec::new() }
+        Self { messages: Vec::new(), packets: 0, notes: Vec::new() }
     }
 }
 
 /// Messages that are kept until the end of the file: those that are wanted, as far as there is room.
 #[derive(Debug)]
-pub struct Kept<F> {
+struct Kept<F> {
     list: Vec<Heard<F>>,
-    wanted: Wanted,
+    /// Those of one packet only.
+    frame: Option<u64>,
+    /// In a line each, without their parts.
+    in_short: bool,
     weight: usize,
+    room: usize,
     /// There were more than there is room for.
     is_full: bool,
 }
 
-/// What of the messages is needed.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Wanted {
-    /// Those of one packet.
-    frame: Option<u64>,
-    /// In a line each, without their parts.
-    in_short: bool,
-}
-
-/// Room for messages in bytes, whatever the size of the file.
+/// Room for messages in bytes where they are written one after the other otherwise.
+const FEW: usize = 16 << 20;
+/// The same where all of them are one value: for a filter.
 const ROOM: usize = 256 << 20;
 
-impl<F> Default for Kept<F> {
-    fn default() -> Self {
-        Self { list: Vec::new(), wanted: Wanted::default(), weight: 0, is_full: false }
-    }
-}
-
 impl<F> Kept<F> {
-    /// Keeps a message, if it is wanted.
-    pub fn push(&mut self, mut heard: Heard<F>) {
-        if self.is_full || self.wanted.frame.is_some_and(|frame| frame != heard.number) {
-            return;
-        }
-        if self.wanted.in_short {
-            (heard.fields, heard.raw, heard.section) = (Vec::new(), String::new(), None);
-        }
-        self.weigh(heard.weight());
-        if !self.is_full {
-            self.list.push(heard);
-        }
+    fn new(room: usize, frame: Option<u64>, in_short: bool) -> Self {
+        Self { list: Vec::new(), frame, in_short: in_short && frame.is_none(), weight: 0, room, is_full: false }
     }
 
-    /// Counts what is kept elsewhere to the same end.
-    pub fn weigh(&mut self, bytes: usize) {
-        self.weight = self.weight.saturating_add(bytes);
-        self.is_full = self.is_full || self.weight > ROOM;
-    }
-
-    /// Whether there is no room any more.
-    pub fn is_full(&self) -> bool {
-        self.is_full
+    /// Keeps a message, if it is wanted. Says whether there is room for more.
+    fn push(&mut self, mut heard: Heard<F>) -> bool {
+        if !self.is_full && self.frame.is_none_or(|frame| frame == heard.number) {
+            if self.in_short {
+                (heard.fields, heard.raw, heard.section) = (Vec::new(), String::new(), None);
+            }
+            self.weight = self.weight.saturating_add(heard.weight());
+            self.is_full = self.weight > self.room;
+            if !self.is_full {
+                self.list.push(heard);
+            }
+        }
+        !self.is_full
     }
 }
 
@@ -202,18 +198,20 @@ pub trait Field: Serialize + JsonSchema + Sized {
 
 /// Reads a file and reports it.
 pub fn tell<L: Listener>(run: &Run, id: &str, path: &Path, selection: &Selection, listener: L) -> Result<(), Stopped> {
-    let failed = |error: std::io::Error| Failure::io(path.display(), &error);
-    let capture = {
+    let name = path.display().to_string();
+    let source = Source::new(&name, || files::open(path), selection)?;
+    let (is_streamed, in_short) = (run.filter.is_none() && run.line.is_none(), run.is_for_people());
+    let room = if is_streamed { FEW } else { ROOM };
+    let (kept, listener) = {
         let _busy = busy();
-        let file = files::open(path).map_err(failed)?;
-        capture(&path.display().to_string(), file, selection, run.is_for_people(), listener)?
+        source.capture(listener, room, in_short)?
     };
+    let Some(capture) = kept else { return stream::tell(run, id, &source, listener) };
     // Never as a value in between, which takes many times the memory.
-    if !run.is_for_people() && run.filter.is_none() && run.line.is_none() {
+    if is_streamed && !run.is_for_people() {
         let failure = capture.failure();
-        let time = (run.screen.format == Format::Jsonl).then(Timestamp::now);
-        let error = failure.clone().map(ErrorBody::from);
-        run.screen.json(&Whole { time, robot: None, command: id, ok: error.is_none(), data: &capture, error })?;
+        let whole = Whole::new(run, id, &capture, failure.as_ref());
+        run.screen.json(&whole)?;
         return failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: true }));
     }
     run.local(id, &capture)
@@ -221,88 +219,172 @@ pub fn tell<L: Listener>(run: &Run, id: &str, path: &Path, selection: &Selection
 
 /// An envelope around a report as it is.
 #[derive(Serialize)]
-struct Whole<'a, F> {
+struct Whole<'a, D> {
     #[serde(skip_serializing_if = "Option::is_none")]
     time: Option<Timestamp>,
     robot: Option<()>,
     command: &'a str,
     ok: bool,
-    data: &'a Capture<F>,
+    data: D,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<ErrorBody>,
 }
 
-fn capture<L: Listener>(
-    name: &str,
-    file: impl Read,
-    selection: &Selection,
-    in_short: bool,
-    mut listener: L,
-) -> Result<Capture<L::Field>, Failure> {
-    let frame = selection.frame;
-    listener.told().messages.wanted = Wanted { frame, in_short: in_short && frame.is_none() };
-    let summary = read(file, |message| {
-        if selection.admits(&message.carrier) {
-            listener.hear(message);
-        }
-    });
-    let summary = summary.map_err(|error| {
-        let hint = match error {
-            Unknown::Compressed => "unpack it first: gunzip, or unzstd",
-            Unknown::Unreadable => "check the disk that it is on",
-            Unknown::Other => "tcpdump, Wireshark and --trace write such files",
-        };
-        Failure::local(format!("{name}: {error}")).hint(hint)
-    })?;
-    let Told { messages, packets, mut notes } = listener.finish();
-    if summary.fragments > 0 {
-        notes.push(format!("{} left out", counted(summary.fragments, "IP fragment")));
+impl<'a, D> Whole<'a, D> {
+    fn new(run: &Run, command: &'a str, data: D, failure: Option<&Failure>) -> Self {
+        let time = (run.screen.format == Format::Jsonl).then(Timestamp::now);
+        let error = failure.cloned().map(ErrorBody::from);
+        Self { time, robot: None, command, ok: error.is_none(), data, error }
     }
-    if summary.repeated > 0 {
-        notes.push(format!("{} left out", counted(summary.repeated, "repeated TCP segment")));
-    }
-    let damage = match summary.damage {
-        _ if messages.is_full => Some(FULL.to_owned()),
-        damage => damage.map(|damage| damage.to_string()),
-    };
-    let (links, messages) = linked(messages.list, summary.first);
-    if let Some(frame) = selection.frame.filter(|_| messages.is_empty()) {
-        let message = format!("there is no message of this family in packet {frame} of {name}");
-        return Err(Failure::usage(message).hint("the numbers are in the list, without --frame"));
-    }
-    Ok(Capture {
-        file: name.to_owned(),
-        packets: summary.packets,
-        other_packets: summary.packets.saturating_sub(packets),
-        links,
-        messages,
-        notes,
-        damage,
-        is_detailed: selection.frame.is_some(),
-        is_filtered: selection.host.is_some() || selection.port.is_some(),
-    })
 }
 
-/// Messages in the order of packets, with the links they belong to.
-fn linked<F>(mut heard: Vec<Heard<F>>, first: Duration) -> (Vec<Link>, Vec<Row<F>>) {
-    // Of one packet, they stay in their order.
-    heard.sort_by_key(|heard| heard.number);
-    let mut links: Vec<Link> = Vec::new();
-    let mut numbers: HashMap<(String, String), usize> = HashMap::new();
-    let mut rows = Vec::with_capacity(heard.len());
-    for heard in heard {
-        let at = *numbers.entry(heard.link).or_insert_with_key(|(client, controller)| {
+/// A file, to be read as often as it takes.
+struct Source<'a, O> {
+    name: &'a str,
+    open: O,
+    selection: &'a Selection,
+    /// How many packets a message may be heard late.
+    lag: u64,
+}
+
+impl<'a, R: Read, O: Fn() -> io::Result<R>> Source<'a, O> {
+    /// Looks through the file.
+    fn new(name: &'a str, open: O, selection: &'a Selection) -> Result<Self, Failure> {
+        let _busy = busy();
+        let mut source = Self { name, open, selection, lag: 0 };
+        let (mut newest, mut lag) = (0, 0);
+        source.read(|message| {
+            newest = message.number.max(newest);
+            lag = lag.max(newest - message.number);
+        })?;
+        source.lag = lag;
+        Ok(source)
+    }
+
+    /// What the file holds, unless there is no room for that; then it has to be written as it is read. With the
+    /// listener, ready to hear the file again.
+    fn capture<L: Listener>(&self, mut listener: L, room: usize, in_short: bool) -> Result<Captured<L>, Failure> {
+        let frame = self.selection.frame;
+        if L::LEARNS {
+            self.pass(&mut listener, |_| true)?;
+            listener = listener.again();
+        }
+        let mut kept = Kept::new(room, frame, in_short);
+        let summary = self.pass(&mut listener, |heard| kept.push(heard) || room >= ROOM)?;
+        if kept.is_full && room < ROOM {
+            return Ok((None, listener.again()));
+        }
+        let Told { packets, notes, .. } = std::mem::take(listener.told());
+        let mut links = Links::default();
+        // Of one packet, they stay in their order.
+        kept.list.sort_by_key(|heard| heard.number);
+        let messages: Vec<_> = kept.list.into_iter().map(|heard| links.row(heard, summary.first)).collect();
+        if let Some(frame) = frame.filter(|_| messages.is_empty()) {
+            let message = format!("there is no message of this family in packet {frame} of {}", self.name);
+            return Err(Failure::usage(message).hint("the numbers are in the list, without --frame"));
+        }
+        let mut problems = Problems::default();
+        for row in &messages {
+            problems.add(row);
+        }
+        let mut capture = Capture { messages, problems, ..self.about(&summary, packets, notes) };
+        capture.links = links.list;
+        if kept.is_full {
+            capture.damage = Some(FULL.to_owned());
+        }
+        Ok((Some(capture), listener.again()))
+    }
+
+    /// A report without messages.
+    fn about<F>(&self, summary: &Summary, packets: u64, mut notes: Vec<String>) -> Capture<F> {
+        if summary.fragments > 0 {
+            notes.push(format!("{} left out", counted(summary.fragments, "IP fragment")));
+        }
+        if summary.repeated > 0 {
+            notes.push(format!("{} left out", counted(summary.repeated, "repeated TCP segment")));
+        }
+        Capture {
+            file: self.name.to_owned(),
+            packets: summary.packets,
+            other_packets: summary.packets.saturating_sub(packets),
+            links: Vec::new(),
+            messages: Vec::new(),
+            notes,
+            damage: summary.damage.as_ref().map(ToString::to_string),
+            problems: Problems::default(),
+            is_detailed: self.selection.frame.is_some(),
+            is_filtered: self.selection.host.is_some() || self.selection.port.is_some(),
+        }
+    }
+
+    /// Has a listener hear the whole file, and hands on what it makes of it until nobody wants more.
+    fn pass<L: Listener>(
+        &self,
+        listener: &mut L,
+        mut each: impl FnMut(Heard<L::Field>) -> bool,
+    ) -> Result<Summary, Failure> {
+        let mut goes_on = true;
+        let mut hand_on = |listener: &mut L| {
+            for heard in listener.told().messages.drain(..) {
+                goes_on = goes_on && each(heard);
+            }
+            goes_on
+        };
+        let mut is_wanted = true;
+        let mut hear = |message: &Message<'_>| {
+            if is_wanted {
+                listener.hear(message);
+                is_wanted = hand_on(listener);
+            }
+        };
+        let mut order = Order::new(self.lag);
+        let summary = self.read(|message| {
+            if self.selection.admits(&message.carrier) {
+                order.take(message, &mut hear);
+            }
+        })?;
+        order.finish(hear);
+        listener.end();
+        hand_on(listener);
+        Ok(summary)
+    }
+
+    fn read(&self, hear: impl FnMut(&Message<'_>)) -> Result<Summary, Failure> {
+        let file = (self.open)().map_err(|error| Failure::io(self.name, &error))?;
+        read(file, hear).map_err(|error| {
+            let hint = match error {
+                Unknown::Compressed => "unpack it first: gunzip, or unzstd",
+                Unknown::Unreadable => "check the disk that it is on",
+                Unknown::Other => "tcpdump, Wireshark and --trace write such files",
+            };
+            Failure::local(format!("{}: {error}", self.name)).hint(hint)
+        })
+    }
+}
+
+/// The links of a file, in the order in which they are met.
+#[derive(Debug, Default)]
+struct Links {
+    list: Vec<Link>,
+    numbers: HashMap<(String, String), usize>,
+}
+
+impl Links {
+    /// A message with the link it belongs to.
+    fn row<F>(&mut self, heard: Heard<F>, first: Duration) -> Row<F> {
+        let list = &mut self.list;
+        let at = *self.numbers.entry(heard.link).or_insert_with_key(|(client, controller)| {
             let (client, controller) = (client.clone(), controller.clone());
-            links.push(Link { link: links.len() + 1, client, controller, messages: 0 });
-            links.len() - 1
+            list.push(Link { link: list.len() + 1, client, controller, messages: 0 });
+            list.len() - 1
         });
-        let Some(link) = links.get_mut(at) else { continue };
+        let link = &mut list[at];
         link.messages += 1;
         let (from, to, sender) = match heard.direction {
             Direction::Sent => (&link.client, &link.controller, "client"),
             Direction::Received => (&link.controller, &link.client, "controller"),
         };
-        rows.push(Row {
+        Row {
             number: heard.number,
             time_s: seconds(heard.time, first),
             link: link.link,
@@ -315,9 +397,27 @@ fn linked<F>(mut heard: Vec<Heard<F>>, first: Duration) -> (Vec<Link>, Vec<Row<F
             raw: heard.raw,
             fields: heard.fields,
             problem: heard.problem,
-        });
+        }
     }
-    (links, rows)
+}
+
+/// What is wrong with messages.
+#[derive(Debug, Default)]
+struct Problems {
+    all: u64,
+    damaged: u64,
+    /// Packet and problem.
+    first: Option<(u64, String)>,
+}
+
+impl Problems {
+    fn add<F>(&mut self, row: &Row<F>) {
+        self.all += 1;
+        if let Some(problem) = &row.problem {
+            self.damaged += 1;
+            self.first.get_or_insert_with(|| (row.number, problem.clone()));
+        }
+    }
 }
 
 /// Packets of several interfaces may come in another order than their times.
@@ -342,6 +442,8 @@ pub struct Capture<F> {
     notes: Vec<String>,
     /// Where the file is damaged; all before it was read.
     damage: Option<String>,
+    #[serde(skip)]
+    problems: Problems,
     /// Every field is shown.
     #[serde(skip)]
     is_detailed: bool,
@@ -390,38 +492,50 @@ impl<F> Row<F> {
     }
 }
 
+impl<F> Row<F> {
+    /// The columns of its table.
+    const COLUMNS: [&'static str; 6] = ["number", "time s", "link", "way", "answers", "message"];
+
+    /// What stands in them, in the words of a trace.
+    fn cells(&self) -> [Cell; 6] {
+        // Where there is no telling what it is, the text says why already.
+        let text = match &self.problem {
+            Some(problem) if !self.text.contains("no valid") => format!("{}; problem: {problem}", self.text),
+            _ => self.text.clone(),
+        };
+        let tone = if self.problem.is_some() { Tone::Bad } else { Tone::Plain };
+        [
+            Cell::number(self.number.to_string()),
+            Cell::number(format!("{:.6}", self.time_s)),
+            self.link.into(),
+            self.arrow().into(),
+            self.answers.map_or_else(Cell::default, |packet| Cell::number(packet.to_string())),
+            Cell::from(text).tone(tone),
+        ]
+    }
+}
+
 impl<F: Field> Capture<F> {
     /// Rows of a table, in the words of a trace.
     fn list(&self) -> View {
-        let mut table =
-            Table::new(&["number", "time s", "link", "way", "answers", "message"], "no message of this family");
-        for row in &self.messages {
-            // Where there is no telling what it is, the text says why already.
-            let text = match &row.problem {
-                Some(problem) if !row.text.contains("no valid") => format!("{}; problem: {problem}", row.text),
-                _ => row.text.clone(),
-            };
-            let tone = if row.problem.is_some() { Tone::Bad } else { Tone::Plain };
-            table.row([
-                Cell::number(row.number.to_string()),
-                Cell::number(format!("{:.6}", row.time_s)),
-                row.link.into(),
-                row.arrow().into(),
-                row.answers.map_or_else(Cell::default, |packet| Cell::number(packet.to_string())),
-                Cell::from(text).tone(tone),
-            ]);
+        let mut table = Table::new(&Row::<F>::COLUMNS, "no message of this family");
+        self.messages.iter().for_each(|row| table.row(row.cells()));
+        let mut sections = vec![Section::Text(self.head()), Section::Table(table)];
+        if !self.notes.is_empty() {
+            sections.push(Section::Text(self.notes.join("\n")));
         }
+        View { sections }
+    }
+
+    /// How much there is, and between whom.
+    fn head(&self) -> String {
         let told = self.packets.saturating_sub(self.other_packets);
         let what = if self.is_filtered { "selected and of this family" } else { "of this family" };
         let mut head = format!("{}, {told} of them {what}", counted(self.packets, "packet"));
         for Link { link, client, controller, messages } in &self.links {
             head.push_str(&format!("\nlink {link}: {client} -> {controller}, {}", counted(*messages, "message")));
         }
-        let mut sections = vec![Section::Text(head), Section::Table(table)];
-        if !self.notes.is_empty() {
-            sections.push(Section::Text(self.notes.join("\n")));
-        }
-        View { sections }
+        head
     }
 
     /// Every field of some messages.
@@ -454,9 +568,8 @@ impl<F: Field> Report for Capture<F> {
             let failure = Failure::local(format!("{}: {damage}", self.file));
             return Some(failure.hint("what came before is told; a capture that was broken off ends like this"));
         }
-        let problems = || self.messages.iter().filter_map(|row| Some((row.number, row.problem.as_ref()?)));
-        let (number, problem) = problems().next()?;
-        let (damaged, all) = (problems().count(), self.messages.len());
+        let Problems { all, damaged, first } = &self.problems;
+        let (number, problem) = first.as_ref()?;
         let message = match all {
             1 => format!("the message in packet {number} is damaged: {problem}"),
             _ => format!("{damaged} of {all} messages are damaged; the first, in packet {number}: {problem}"),
@@ -496,6 +609,12 @@ mod tests {
     const LINES: &[u8] = include_bytes!("../../../../../tests/cli/files/lines.pcapng");
     const SPEED: &[u8] = include_bytes!("../../../../../tests/cli/files/speed.pcapng");
 
+    fn whole<L: Listener>(file: &[u8], selection: &Selection, listener: L) -> Result<Capture<L::Field>, Failure> {
+        let source = Source::new("file", || Ok(file), selection)?;
+        let (capture, _) = source.capture(listener, ROOM, false)?;
+        Ok(capture.expect("there is room"))
+    }
+
     /// Messages and packets without one, for each family.
     fn counts(file: &[u8], selection: &Selection) -> [Option<(usize, u64)>; 3] {
         fn count<F: Field>(capture: Result<Capture<F>, Failure>) -> Option<(usize, u64)> {
@@ -506,9 +625,9 @@ mod tests {
             Some((capture.messages.len(), capture.other_packets))
         }
         [
-            count(capture("file", file, selection, false, yerc::Frames::default())),
-            count(capture("file", file, selection, false, toyo::Lines::default())),
-            count(capture("file", file, selection, false, yrcx::Images::new(true))),
+            count(whole(file, selection, yerc::Frames::default())),
+            count(whole(file, selection, toyo::Lines::default())),
+            count(whole(file, selection, yrcx::Images::new(true))),
         ]
     }
 

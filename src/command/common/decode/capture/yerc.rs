@@ -81,8 +81,10 @@ impl Listener for Frames {
         &mut self.told
     }
 
-    fn finish(self) -> Told<FieldRow> {
-        self.told
+    fn end(&mut self) {}
+
+    fn again(self) -> Self {
+        Self::default()
     }
 }
 

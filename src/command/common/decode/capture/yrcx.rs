@@ -278,13 +278,16 @@ impl Listener for Images {
         &mut self.told
     }
 
-    fn finish(mut self) -> Told<FieldRow> {
-        let mut lost: Vec<_> = self.flows.into_iter().filter(|(_, flow)| flow.lost > 0).collect();
+    fn end(&mut self) {
+        let mut lost: Vec<_> = std::mem::take(&mut self.flows).into_iter().filter(|(_, flow)| flow.lost > 0).collect();
         lost.sort_by_key(|(place, _)| *place);
         for ((from, to, _), flow) in lost {
             note(&mut self.told.notes, format!("{} cyclic packets from {from} to {to} are missing", flow.lost));
         }
-        self.told
+    }
+
+    fn again(self) -> Self {
+        Self::new(self.all)
     }
 }
 
