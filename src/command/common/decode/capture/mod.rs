@@ -249,12 +249,19 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
     ) -> Result<(Option<Capture<L::Field>>, L), Failure> {
         let frame = self.selection.frame;
         let mut kept = Kept::new(room, frame, in_short);
-        let summary = self.pass(&mut listener, |heard| kept.push(heard) || room >= ROOM)?;
+        // Of one packet, the links still are those of the whole file.
+        let mut links = Links::default();
+        let summary = self.pass(&mut listener, |heard| {
+            if frame.is_some() {
+                links.count(&heard.link);
+            }
+            kept.push(heard) || room >= ROOM
+        })?;
+        links.are_counted = frame.is_some();
         if kept.is_full && room < ROOM {
             return Ok((None, listener.again()));
         }
         let Told { packets, notes, .. } = std::mem::take(listener.told());
-        let mut links = Links::default();
         // Of one packet, they stay in their order.
         kept.list.sort_by_key(|heard| heard.number);
         let messages: Vec<_> = kept.list.into_iter().map(|heard| links.row(heard, summary.first)).collect();
@@ -342,19 +349,35 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
 struct Links {
     list: Vec<Link>,
     numbers: HashMap<(String, String), usize>,
+    /// Rows are of messages that were counted before.
+    are_counted: bool,
 }
 
 impl Links {
+    /// Where a link is in the list.
+    fn at(&mut self, link: &(String, String)) -> usize {
+        if let Some(at) = self.numbers.get(link) {
+            return *at;
+        }
+        let at = self.list.len();
+        let (client, controller) = link.clone();
+        self.list.push(Link { link: at + 1, client, controller, messages: 0 });
+        self.numbers.insert(link.clone(), at);
+        at
+    }
+
+    fn count(&mut self, link: &(String, String)) {
+        let at = self.at(link);
+        self.list[at].messages += 1;
+    }
+
     /// A message with the link it belongs to.
     fn row<F>(&mut self, heard: Heard<F>, first: Duration) -> Row<F> {
-        let list = &mut self.list;
-        let at = *self.numbers.entry(heard.link).or_insert_with_key(|(client, controller)| {
-            let (client, controller) = (client.clone(), controller.clone());
-            list.push(Link { link: list.len() + 1, client, controller, messages: 0 });
-            list.len() - 1
-        });
-        let link = &mut list[at];
-        link.messages += 1;
+        if !self.are_counted {
+            self.count(&heard.link);
+        }
+        let at = self.at(&heard.link);
+        let link = &self.list[at];
         let (from, to, sender) = match heard.direction {
             Direction::Sent => (&link.client, &link.controller, "client"),
             Direction::Received => (&link.controller, &link.client, "controller"),
