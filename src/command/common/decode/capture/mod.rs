@@ -1,7 +1,6 @@
 //! `armctl decode FAMILY FILE.pcapng`: what a capture file holds of a family, in the words of a trace.
 
 mod cip;
-mod order;
 mod stream;
 pub mod toyo;
 pub mod yerc;
@@ -18,7 +17,6 @@ use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use self::order::Order;
 use crate::command::Report;
 use crate::command::run::{Run, Stopped};
 use crate::failure::{Failure, Kind};
@@ -84,15 +82,13 @@ type Captured<L> = (Option<Capture<<L as Listener>::Field>>, L);
 pub trait Listener: Sized {
     /// A field of a message.
     type Field: Field;
-    /// Whether it has to hear all of a file once before it can tell what it says.
-    const LEARNS: bool = false;
     /// Takes what was said, of whatever family.
     fn hear(&mut self, message: &Message<'_>);
     /// Takes note of the end of the file.
     fn end(&mut self);
     /// What has been made of it so far.
     fn told(&mut self) -> &mut Told<Self::Field>;
-    /// Begins anew with the same file, knowing what it has learned.
+    /// Begins anew with the same file.
     #[must_use]
     fn again(self) -> Self;
 }
@@ -199,7 +195,7 @@ pub trait Field: Serialize + JsonSchema + Sized {
 /// Reads a file and reports it.
 pub fn tell<L: Listener>(run: &Run, id: &str, path: &Path, selection: &Selection, listener: L) -> Result<(), Stopped> {
     let name = path.display().to_string();
-    let source = Source::new(&name, || files::open(path), selection)?;
+    let source = Source { name: &name, open: || files::open(path), selection };
     let (is_streamed, in_short) = (run.filter.is_none() && run.line.is_none(), run.is_for_people());
     let room = if is_streamed { FEW } else { ROOM };
     let (kept, listener) = {
@@ -243,39 +239,27 @@ struct Source<'a, O> {
     name: &'a str,
     open: O,
     selection: &'a Selection,
-    /// How many packets a message may be heard late.
-    lag: u64,
 }
 
-impl<'a, R: Read, O: Fn() -> io::Result<R>> Source<'a, O> {
-    /// Looks through the file.
-    fn new(name: &'a str, open: O, selection: &'a Selection) -> Result<Self, Failure> {
-        let _busy = busy();
-        let mut source = Self { name, open, selection, lag: 0 };
-        let (mut newest, mut lag) = (0, 0);
-        source.read(|message| {
-            newest = message.number.max(newest);
-            lag = lag.max(newest - message.number);
-        })?;
-        source.lag = lag;
-        Ok(source)
-    }
-
+impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
     /// What the file holds, unless there is no room for that; then it has to be written as it is read. With the
     /// listener, ready to hear the file again.
     fn capture<L: Listener>(&self, mut listener: L, room: usize, in_short: bool) -> Result<Captured<L>, Failure> {
         let frame = self.selection.frame;
-        if L::LEARNS {
-            self.pass(&mut listener, |_| true)?;
-            listener = listener.again();
-        }
         let mut kept = Kept::new(room, frame, in_short);
-        let summary = self.pass(&mut listener, |heard| kept.push(heard) || room >= ROOM)?;
+        // Of one packet, the links still are those of the whole file.
+        let mut links = Links::default();
+        let summary = self.pass(&mut listener, |heard| {
+            if frame.is_some() {
+                links.count(&heard.link);
+            }
+            kept.push(heard) || room >= ROOM
+        })?;
+        links.are_counted = frame.is_some();
         if kept.is_full && room < ROOM {
             return Ok((None, listener.again()));
         }
         let Told { packets, notes, .. } = std::mem::take(listener.told());
-        let mut links = Links::default();
         // Of one packet, they stay in their order.
         kept.list.sort_by_key(|heard| heard.number);
         let messages: Vec<_> = kept.list.into_iter().map(|heard| links.row(heard, summary.first)).collect();
@@ -337,13 +321,11 @@ impl<'a, R: Read, O: Fn() -> io::Result<R>> Source<'a, O> {
                 is_wanted = hand_on(listener);
             }
         };
-        let mut order = Order::new(self.lag);
         let summary = self.read(|message| {
             if self.selection.admits(&message.carrier) {
-                order.take(message, &mut hear);
+                hear(message);
             }
         })?;
-        order.finish(hear);
         listener.end();
         hand_on(listener);
         Ok(summary)
@@ -367,19 +349,35 @@ impl<'a, R: Read, O: Fn() -> io::Result<R>> Source<'a, O> {
 struct Links {
     list: Vec<Link>,
     numbers: HashMap<(String, String), usize>,
+    /// Rows are of messages that were counted before.
+    are_counted: bool,
 }
 
 impl Links {
+    /// Where a link is in the list.
+    fn at(&mut self, link: &(String, String)) -> usize {
+        if let Some(at) = self.numbers.get(link) {
+            return *at;
+        }
+        let at = self.list.len();
+        let (client, controller) = link.clone();
+        self.list.push(Link { link: at + 1, client, controller, messages: 0 });
+        self.numbers.insert(link.clone(), at);
+        at
+    }
+
+    fn count(&mut self, link: &(String, String)) {
+        let at = self.at(link);
+        self.list[at].messages += 1;
+    }
+
     /// A message with the link it belongs to.
     fn row<F>(&mut self, heard: Heard<F>, first: Duration) -> Row<F> {
-        let list = &mut self.list;
-        let at = *self.numbers.entry(heard.link).or_insert_with_key(|(client, controller)| {
-            let (client, controller) = (client.clone(), controller.clone());
-            list.push(Link { link: list.len() + 1, client, controller, messages: 0 });
-            list.len() - 1
-        });
-        let link = &mut list[at];
-        link.messages += 1;
+        if !self.are_counted {
+            self.count(&heard.link);
+        }
+        let at = self.at(&heard.link);
+        let link = &self.list[at];
         let (from, to, sender) = match heard.direction {
             Direction::Sent => (&link.client, &link.controller, "client"),
             Direction::Received => (&link.controller, &link.client, "controller"),
@@ -610,7 +608,7 @@ mod tests {
     const SPEED: &[u8] = include_bytes!("../../../../../tests/cli/files/speed.pcapng");
 
     fn whole<L: Listener>(file: &[u8], selection: &Selection, listener: L) -> Result<Capture<L::Field>, Failure> {
-        let source = Source::new("file", || Ok(file), selection)?;
+        let source = Source { name: "file", open: || Ok(file), selection };
         let (capture, _) = source.capture(listener, ROOM, false)?;
         Ok(capture.expect("there is room"))
     }

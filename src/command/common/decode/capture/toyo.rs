@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
+use std::time::Duration;
 
 use super::super::toyo::{FieldRow, field_table};
 use super::{Field, Heard, Listener, Told, cut, note};
@@ -11,13 +12,12 @@ use crate::output::view::Table;
 use crate::transport::capture::{Carrier, Message};
 use crate::transport::tap::Direction;
 
-/// Everything that may be a conversation. Which is, and which end is the controller, its lines tell together: they are
-/// heard once for that, and a second time to be told.
+/// Everything that may be a conversation; which is, its lines tell in the end.
 #[derive(Debug, Default)]
 pub struct Lines {
     talks: BTreeMap<Place, Talk>,
-    /// Where there are conversations, and which end of each is the controller.
-    known: Option<BTreeMap<Place, usize>>,
+    /// Bytes that they take.
+    kept: usize,
     told: Told<FieldRow>,
 }
 
@@ -33,37 +33,39 @@ enum Place {
 /// What both ends said.
 #[derive(Debug, Default)]
 struct Talk {
+    said: Vec<Said>,
     /// Characters of each end since its last line end.
     coming: [Vec<u8>; 2],
-    /// Lines so far.
-    lines: usize,
-    /// Of each end, those that are answers less those that are not.
-    answers: [i64; 2],
+    packets: u64,
+    notes: Vec<String>,
     /// Whether any line can only be of this communication.
     is_ours: bool,
-    /// The request that was not answered yet.
-    asked: Option<(u64, Request)>,
+    /// Bytes that the lines take.
+    kept: usize,
 }
 
 /// A line.
 #[derive(Debug)]
 struct Said {
+    number: u64,
+    time: Duration,
     /// 0 for the end that is first in the place.
     by: usize,
     text: String,
     is_cut: bool,
 }
 
+/// Bytes that a conversation takes beside its lines.
+const TALK: usize = 1024;
+/// Bytes of conversations that are kept: their lines are told in order at the end, which takes all of them.
+const ROOM: usize = 64 << 20;
 /// Longest piece without a line end; the longest block is shorter.
 const MOST: usize = 512;
-/// Lines without a block after which a stream is something else.
+/// Lines without a block after which a stream is something else, which need not be kept.
 const MOST_FOREIGN: usize = 1000;
-/// Conversations at a time: more than a plant has.
-const MOST_TALKS: usize = 1 << 16;
 
 impl Listener for Lines {
     type Field = FieldRow;
-    const LEARNS: bool = true;
 
     fn hear(&mut self, message: &Message<'_>) {
         let (place, by) = match message.carrier {
@@ -74,115 +76,125 @@ impl Listener for Lines {
                 (Place::Line(section), usize::from(direction == Direction::Received))
             }
         };
-        let controller = match &self.known {
-            None => None,
-            Some(known) => match known.get(&place) {
-                None => return,
-                controller => controller.copied(),
-            },
-        };
-        if !self.talks.contains_key(&place) && self.talks.len() >= MOST_TALKS {
+        if self.kept > ROOM {
+            let full = "there are more lines than there is room for; the first ones are told";
+            if !self.told.notes.iter().any(|note| note == full) {
+                self.told.notes.push(full.to_owned());
+            }
             return;
         }
-        let talk = self.talks.entry(place).or_default();
-        self.told.packets += 1;
-        let mut lines = Vec::new();
-        if let Carrier::Stream { begins, lost, .. } = message.carrier {
-            if begins {
-                talk.coming = [Vec::new(), Vec::new()];
-            }
-            if lost > 0 {
-                let before = message.number;
-                note(&mut self.told.notes, format!("{lost} characters before packet {before} are not in the capture"));
-                lines.extend(talk.line(by, message.is_cut));
-            }
+        let talk = self.talks.entry(place).or_insert_with(|| {
+            self.kept += TALK;
+            Talk::default()
+        });
+        talk.packets += 1;
+        let kept = talk.kept;
+        let (mut begins, mut lost) = (false, 0);
+        if let Carrier::Stream { begins: anew, lost: missing, .. } = message.carrier {
+            (begins, lost) = (anew, missing);
+        }
+        if begins {
+            talk.coming = [Vec::new(), Vec::new()];
+        }
+        if lost > 0 {
+            let notes = &mut talk.notes;
+            note(notes, format!("{lost} characters before packet {} are not in the capture", message.number));
+            talk.line(by, message, message.is_cut);
         }
         for byte in message.bytes {
             talk.coming[by].push(*byte);
             if *byte == b'\n' || talk.coming[by].len() >= MOST {
-                lines.extend(talk.line(by, false));
+                talk.line(by, message, false);
             }
         }
         if message.is_cut {
-            lines.extend(talk.line(by, true));
+            talk.line(by, message, true);
         }
-        if let Some(controller) = controller {
-            let told = lines.into_iter().map(|said| talk.tell(place, controller, message, said));
-            self.told.messages.extend(told);
-        }
-    }
-
-    fn end(&mut self) {
-        for rest in self.talks.values().flat_map(|talk| &talk.coming).filter(|rest| !rest.is_empty()) {
-            let rest = format!("left out at the end, without a line end: '{}'", rest.escape_ascii());
-            note(&mut self.told.notes, rest);
-        }
+        self.kept += talk.kept - kept;
     }
 
     fn told(&mut self) -> &mut Told<FieldRow> {
         &mut self.told
     }
 
+    fn end(&mut self) {
+        for (place, talk) in std::mem::take(&mut self.talks) {
+            if !talk.is_ours {
+                continue;
+            }
+            self.told.packets += talk.packets;
+            talk.tell(place, &mut self.told);
+        }
+    }
+
     fn again(self) -> Self {
-        let learned = || {
-            let ours = self.talks.into_iter().filter(|(_, talk)| talk.is_ours);
-            ours.map(|(place, talk)| (place, talk.controller(place))).collect()
-        };
-        Self { known: Some(self.known.unwrap_or_else(learned)), ..Self::default() }
+        Self::default()
     }
 }
 
 impl Talk {
-    /// Ends the line of one end, if that is one.
-    fn line(&mut self, by: usize, is_cut: bool) -> Option<Said> {
+    /// Ends the line of one end.
+    fn line(&mut self, by: usize, message: &Message<'_>, is_cut: bool) {
         let bytes = std::mem::take(&mut self.coming[by]);
         let text = String::from_utf8_lossy(&bytes).trim_end_matches(['\r', '\n']).to_owned();
-        if text.is_empty() || (self.lines >= MOST_FOREIGN && !self.is_ours) {
-            return None;
+        if self.said.len() >= MOST_FOREIGN && !self.is_ours {
+            return;
         }
-        self.lines += 1;
-        self.is_ours = self.is_ours || is_block(&text);
-        self.answers[by] += if Sender::guess(&text) == Sender::Controller { 1 } else { -1 };
-        Some(Said { by, text, is_cut })
+        if !text.is_empty() {
+            self.is_ours = self.is_ours || is_block(&text);
+            self.kept += text.len() + size_of::<Said>();
+            self.said.push(Said { number: message.number, time: message.time, by, text, is_cut });
+        }
     }
 
     /// Which end is the controller: the one whose lines are answers.
     fn controller(&self, place: Place) -> usize {
-        match place {
-            Place::Line(_) => 1,
-            Place::Stream(..) => usize::from(self.answers[1] >= self.answers[0]),
+        if let Place::Line(_) = place {
+            return 1;
         }
+        let answers = |by: usize| {
+            let lines = self.said.iter().filter(|said| said.by == by);
+            lines.map(|said| if Sender::guess(&said.text) == Sender::Controller { 1i64 } else { -1 }).sum::<i64>()
+        };
+        usize::from(answers(1) >= answers(0))
     }
 
-    fn tell(&mut self, place: Place, controller: usize, message: &Message<'_>, said: Said) -> Heard<FieldRow> {
+    fn tell(mut self, place: Place, told: &mut Told<FieldRow>) {
+        let controller = self.controller(place);
         let link = match place {
             Place::Line(_) => ("host".to_owned(), "serial line".to_owned()),
             Place::Stream(first, second) if controller == 1 => (first.to_string(), second.to_string()),
             Place::Stream(first, second) => (second.to_string(), first.to_string()),
         };
-        let Said { by, text, is_cut } = said;
-        let is_answer = by == controller;
-        let (sender, direction) =
-            if is_answer { (Sender::Controller, Direction::Received) } else { (Sender::Host, Direction::Sent) };
-        let before = self.asked.take().filter(|_| is_answer);
-        let request = before.as_ref().map(|(_, request)| request);
-        let description = describe(&text, sender, request);
-        let heard = Heard {
-            number: message.number,
-            time: message.time,
-            direction,
-            link,
-            text: format!("{text}  # {}", summary(&text, sender, request)),
-            answers: before.as_ref().map(|(number, _)| *number),
-            section: description.section,
-            fields: description.fields.into_iter().map(FieldRow::from).collect(),
-            problem: if is_cut { Some(cut()) } else { description.problem },
-            raw: text.clone(),
-        };
-        if !is_answer {
-            self.asked = Request::parse(&text).ok().map(|request| (message.number, request));
+        told.notes.append(&mut self.notes);
+        for rest in self.coming.iter().filter(|rest| !rest.is_empty()) {
+            told.notes.push(format!("left out at the end, without a line end: '{}'", rest.escape_ascii()));
         }
-        heard
+        self.said.sort_by_key(|said| said.number);
+        let mut asked: Option<(u64, Request)> = None;
+        for Said { number, time, by, text, is_cut } in self.said {
+            let is_answer = by == controller;
+            let (sender, direction) =
+                if is_answer { (Sender::Controller, Direction::Received) } else { (Sender::Host, Direction::Sent) };
+            let before = asked.take().filter(|_| is_answer);
+            let request = before.as_ref().map(|(_, request)| request);
+            let description = describe(&text, sender, request);
+            told.messages.push(Heard {
+                number,
+                time,
+                direction,
+                link: link.clone(),
+                text: format!("{text}  # {}", summary(&text, sender, request)),
+                answers: before.as_ref().map(|(number, _)| *number),
+                section: description.section,
+                fields: description.fields.into_iter().map(FieldRow::from).collect(),
+                problem: if is_cut { Some(cut()) } else { description.problem },
+                raw: text.clone(),
+            });
+            if !is_answer {
+                asked = Request::parse(&text).ok().map(|request| (number, request));
+            }
+        }
     }
 }
 
