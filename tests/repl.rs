@@ -105,6 +105,7 @@ fn ctrl_c_stops_the_motion_and_not_the_prompt() {
 fn ctrl_c_twice_at_the_prompt_leaves() {
     let desk = Desk::new();
     let mut repl = desk.repl("yerc repl --sim");
+    repl.says("yerc> ");
     repl.press("\x03");
     repl.says("Ctrl-C again");
     repl.says("yerc> ");

@@ -235,11 +235,13 @@ pub const LEAVES: &[Leaf] = &[
     ("toyo torque-table set 1 10", Destroy),
 ];
 
-/// Whether all that begins with these words moves a robot, or deletes or overwrites what a person wrote.
-pub fn is_dangerous(path: &[&str]) -> bool {
+/// Whether a command can move a robot, or delete or overwrite what a person wrote; of a noun, whether all of its verbs
+/// can. `path` are its words.
+pub fn is_dangerous(path: &[&str], is_noun: bool) -> bool {
     let mut below =
         LEAVES.iter().filter(|(line, _)| path.iter().copied().eq(line.split(' ').take(path.len()))).peekable();
-    below.peek().is_some() && below.all(|(_, risk)| *risk >= Destroy)
+    let is_one = |(_, risk): &Leaf| *risk >= Destroy;
+    below.peek().is_some() && if is_noun { below.all(is_one) } else { below.any(is_one) }
 }
 
 #[cfg(test)]

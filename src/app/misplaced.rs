@@ -22,9 +22,9 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
     };
     let Some(ContextValue::String(word)) = error.get(kind) else { return error };
     let word = word.clone();
-    leave_out_dangerous(&mut error, &path(&word, args, whole));
+    leave_out_dangerous(&mut error, &path(&word, args, whole), whole);
     let (safe, dangerous): (Vec<Line>, Vec<Line>) =
-        lines(&word, args, whole).into_iter().partition(|line| !is_dangerous(&words_of(&line.0)));
+        lines(&word, args, whole).into_iter().partition(|line| !may_do_harm(&words_of(&line.0), whole));
     let families: BTreeSet<String> =
         dangerous.iter().filter_map(|line| Some(format!("`armctl {} -h`", words_of(&line.0).first()?))).collect();
     let mut lines: Vec<String> = safe.into_iter().map(|line| line.shown()).collect();
@@ -52,10 +52,16 @@ fn path<'a>(word: &str, args: &'a [OsString], whole: &Command) -> Vec<&'a str> {
     path
 }
 
+/// Whether the command that these words begin is a dangerous one.
+fn may_do_harm(words: &[&str], whole: &Command) -> bool {
+    let command = words.iter().try_fold(whole, |command, word| command.find_subcommand(word));
+    is_dangerous(words, command.is_some_and(Command::has_subcommands))
+}
+
 /// Takes out of the similar words those of dangerous commands.
-fn leave_out_dangerous(error: &mut clap::Error, path: &[&str]) {
+fn leave_out_dangerous(error: &mut clap::Error, path: &[&str], whole: &Command) {
     let Some(similar) = error.remove(ContextKind::SuggestedSubcommand) else { return };
-    let is_safe = |word: &String| !is_dangerous(&[path, &[word.as_str()]].concat());
+    let is_safe = |word: &String| !may_do_harm(&[path, &[word.as_str()]].concat(), whole);
     let safe = match similar {
         ContextValue::String(word) => Some(ContextValue::String(word)).filter(|value| {
             let ContextValue::String(word) = value else { return false };
@@ -138,7 +144,7 @@ mod tests {
             ("armctl hlock on", "the command is `armctl yerc hlock`"),
             (
                 "armctl servo on",
-                "the command is `armctl yrcx servo` or one that `armctl toyo -h` lists or one that `armctl yerc -h` lists",
+                "the command is one that `armctl toyo -h` lists or one that `armctl yerc -h` lists or one that `armctl yrcx -h` lists",
             ),
             ("armctl status yerc", "the command is `armctl yerc status`"),
             ("armctl --sim status toyo", "the command is `armctl toyo status`"),

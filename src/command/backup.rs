@@ -361,7 +361,7 @@ mod tests {
     fn the_gravest_failure_decides() {
         let report = BackedUp::new("here".as_ref(), Vec::new(), false, items());
         let failure = report.failure().unwrap();
-        assert_eq!(failure.kind, Kind::NoAnswer);
+        assert_eq!(failure.kind, Kind::Mixed, "one was saved");
         assert_eq!(failure.message, "2 of 4 failed, 1 not tried: c: silence");
         assert_eq!(failure.hint.as_deref(), Some("cable\n--resume reads what is missing"));
         let text = render::text(&report.view(), 80, false);

@@ -174,6 +174,9 @@ mod tests {
         assert_eq!(report.frames[0].get("depends_on"), None);
         assert_eq!(report.frames[1]["depends_on"], "what the block holds");
         let shown = crate::output::render::text(&report.view(), 120, false);
-        assert!(shown.contains("write (depends on what the block holds)") && shown.contains("..."), "{shown}");
+        assert!(
+            shown.contains("write (depends on what the block holds)") && shown.contains("\u{2026}  a look"),
+            "{shown}"
+        );
     }
 }

@@ -228,8 +228,9 @@ fn interrupted_while_points_are_stored() {
     interrupt(&child, "INT");
     let rest: Vec<String> = stderr.collect();
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
-    let orders: Vec<&str> =
-        rest.iter().filter_map(|line| line.strip_prefix("-> ")?.split("  #").next()).rev().take(2).collect();
+    let orders = rest.iter().filter_map(|line| line.strip_prefix("-> ")?.split("  #").next()).rev();
+    // Questions before orders see to it that the line is at peace.
+    let orders: Vec<&str> = orders.filter(|order| !order.starts_with("@STAS")).take(2).collect();
     assert_eq!(orders, ["@HSOF", "@CTSK TASK=01"], "what was changed for a while is put back");
     let told = rest.iter().find(|line| line.starts_with("interrupted: ")).expect("it is told");
     let next = told.split("written or not: point ").nth(1).and_then(|rest| rest.split(';').next()).expect("a point");

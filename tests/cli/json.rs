@@ -93,7 +93,9 @@ fn what_breaks_a_promise_is_found() {
         envelope["error"] = serde_json::json!({"exit": 3, "kind": "refused", "message": "no"});
     });
     assert_eq!(check(&failed), Ok(()));
-    let rehearsed = spoilt(&|envelope| envelope["data"] = serde_json::json!({"frames": [{"hex": "5945"}]}));
+    let rehearsed = spoilt(&|envelope| {
+        envelope["data"] = serde_json::json!({"frames": [{"hex": "5945"}], "complete": true, "then": null})
+    });
     assert_eq!(check(&rehearsed), Ok(()));
 
     let wrong: [(&str, Spoil<'_>); 11] = [

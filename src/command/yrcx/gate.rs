@@ -85,8 +85,10 @@ const WRITES: &[&str] = &[
     "reset",
     "stop",
     "raw --wi 0x604",
-    "eip set 0xF5 1 3 00",
 ];
+
+/// A setting of the network board, which is no remote command.
+const BOARD: &str = "eip set 0xF5 1 3 00";
 
 /// Each after what makes it overwrite something else.
 const DESTROYS: &[(&str, &str)] = &[
@@ -155,7 +157,8 @@ impl Desk {
 /// All lines with the risk that each shall have.
 fn lines() -> impl Iterator<Item = (&'static str, Risk)> {
     let with = |lines: &'static [&'static str], risk| lines.iter().map(move |line| (*line, risk));
-    let destroys = DESTROYS.iter().map(|(_, line)| (*line, Risk::Destroy)).chain([(WORD, Risk::Destroy)]);
+    let destroys =
+        DESTROYS.iter().map(|(_, line)| (*line, Risk::Destroy)).chain([(WORD, Risk::Destroy), (BOARD, Risk::Destroy)]);
     with(READS, Risk::Read).chain(with(WRITES, Risk::Write)).chain(destroys).chain(with(MOTIONS, Risk::Motion))
 }
 

@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn what_the_controller_is_shown_can_move_it() {
         assert_eq!(risk(&["eip", "set", "4", "150", "3", "00"]), Risk::Motion);
-        assert_eq!(risk(&["eip", "set", "0xF5", "1", "3", "00"]), Risk::Motion);
+        assert_eq!(risk(&["eip", "set", "0xF5", "1", "3", "00"]), Risk::Destroy);
         assert_eq!(risk(&["eip", "get", "4", "150", "3"]), Risk::Read);
         assert!(frames(&["eip", "get", "4", "150", "3", "--unit", "1"]).unwrap_err().message.contains("--unit"));
         let asked = intent(&["eip", "set", "4", "150", "3", "0xFF01"]);
