@@ -86,7 +86,7 @@ const BORDERS: [(&str, &[&str]); 6] = [
 
 /// Commands that touch a transport: the link of a family with its trace, what reads captures, sessions, the simulators'
 /// servers, the list of ports, and the peer of tests.
-const LINKS: [&str; 36] = [
+const LINKS: [&str; 38] = [
     "command/attach.rs",
     "command/holding.rs",
     "command/trace.rs",
