@@ -94,7 +94,7 @@ fn what_breaks_a_promise_is_found() {
     });
     assert_eq!(check(&failed), Ok(()));
     let rehearsed = spoilt(&|envelope| {
-        envelope["data"] = serde_json::json!({"frames": [{"hex": "5945"}], "complete": true, "then": null})
+        envelope["data"] = serde_json::json!({"frames": [{"hex": "5945"}], "complete": true, "then": null});
     });
     assert_eq!(check(&rehearsed), Ok(()));
 

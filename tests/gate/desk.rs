@@ -21,9 +21,9 @@ pub struct Came {
 impl Desk {
     /// With this text in `robots.toml`.
     pub fn new(inventory: &str) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("robots.toml"), inventory).unwrap();
-        std::fs::create_dir(folder.path().join("run")).unwrap();
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(folder.path().join("robots.toml"), inventory).expect("it is written");
+        std::fs::create_dir(folder.path().join("run")).expect("a folder");
         Self { folder }
     }
 
@@ -38,7 +38,7 @@ impl Desk {
 
     /// Runs a command line where nobody can be asked.
     pub fn run(&self, line: &str) -> Came {
-        came(&self.command(line).output().unwrap())
+        came(&self.command(line).output().expect("it runs"))
     }
 
     /// The `data` of a command line that must succeed.
@@ -46,7 +46,7 @@ impl Desk {
     pub fn data(&self, line: &str) -> Value {
         let came = self.run(&format!("{line} --json"));
         assert_eq!(came.exit, Some(0), "{line}: {came:?}");
-        serde_json::from_str::<Value>(&came.stdout).unwrap()["data"].clone()
+        serde_json::from_str::<Value>(&came.stdout).expect("JSON")["data"].clone()
     }
 
     /// Demands an exit code and a part of what is said on stderr.
@@ -59,6 +59,6 @@ impl Desk {
 }
 
 pub fn came(output: &Output) -> Came {
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).expect("UTF-8");
     Came { exit: output.status.code(), stdout: text(&output.stdout), stderr: text(&output.stderr) }
 }

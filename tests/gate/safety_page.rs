@@ -17,12 +17,12 @@ fn tests_of(code: &str) -> impl Iterator<Item = &str> {
 
 /// All tests below a folder.
 fn collect(folder: &Path, found: &mut BTreeSet<String>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
         if path.is_dir() {
             collect(&path, found);
         } else if path.extension().is_some_and(|extension| extension == "rs") {
-            let code = std::fs::read_to_string(&path).unwrap();
+            let code = std::fs::read_to_string(&path).expect("a text");
             found.extend(tests_of(&code).map(str::to_owned));
         }
     }
@@ -38,7 +38,7 @@ fn sentences(page: &str) -> Vec<(usize, String)> {
             found.push((number, text.to_owned()));
             goes_on = true;
         } else if goes_on && line.starts_with("   ") {
-            let (_, sentence) = found.last_mut().unwrap();
+            let (_, sentence) = found.last_mut().expect("a sentence");
             sentence.push(' ');
             sentence.push_str(line.trim());
         } else {
@@ -104,7 +104,7 @@ fn each_risk_needs_what_the_page_says() {
 fn at_terminal(desk: &Desk, line: &str) -> Terminal {
     let mut command = desk.command(line);
     command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
-    Terminal::start(command, 200, 30).unwrap()
+    Terminal::start(command, 200, 30).expect("it starts")
 }
 
 #[test]

@@ -10,8 +10,8 @@ fn desk(controller: &Simulator, more: &str) -> Desk {
 /// The blocks of a dry run.
 fn blocks(desk: &Desk, line: &str) -> Vec<String> {
     let data = desk.data(&format!("-r cell toyo {line} --dry-run"));
-    let frames = data["frames"].as_array().unwrap().iter();
-    frames.map(|frame| frame["text"].as_str().unwrap().to_owned()).collect()
+    let frames = data["frames"].as_array().expect("frames").iter();
+    frames.map(|frame| frame["text"].as_str().expect("a line").to_owned()).collect()
 }
 
 #[test]

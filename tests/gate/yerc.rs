@@ -10,15 +10,20 @@ const JOB: &str = "/JOB\r\n//NAME NEW\r\n//POS\r\n///NPOS 0,0,0,0,0,0\r\n//INST\
 
 fn desk(controller: &Simulator) -> Desk {
     let desk = Desk::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n", controller.url));
-    std::fs::write(desk.folder.path().join("NEW.JBI"), JOB).unwrap();
-    std::fs::write(desk.folder.path().join("HOME.JBI"), JOB.replace("NEW", "HOME")).unwrap();
+    std::fs::write(desk.folder.path().join("NEW.JBI"), JOB).expect("it is written");
+    std::fs::write(desk.folder.path().join("HOME.JBI"), JOB.replace("NEW", "HOME")).expect("it is written");
     desk
 }
 
 /// The names of the jobs on the controller.
 fn jobs(desk: &Desk) -> Vec<String> {
     let data = desk.data("-r cell yerc file list");
-    data["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap().to_owned()).collect()
+    data["files"]
+        .as_array()
+        .expect("of the report")
+        .iter()
+        .map(|file| file["name"].as_str().expect("of the report").to_owned())
+        .collect()
 }
 
 /// The frames of a dry run: command, instance and service each, and whether something decides about it.
@@ -26,10 +31,10 @@ fn frames(desk: &Desk, line: &str) -> Vec<(String, bool)> {
     let data = desk.data(&format!("-r cell yerc {line} --dry-run"));
     assert_eq!(data["complete"], true, "{line}");
     let head = |frame: &Value| {
-        let hex = frame["hex"].as_str().unwrap();
+        let hex = frame["hex"].as_str().expect("bytes");
         (format!("{} {} {}", &hex[48..52], &hex[52..56], &hex[58..60]), frame["depends_on"].is_string())
     };
-    data["frames"].as_array().unwrap().iter().map(head).collect()
+    data["frames"].as_array().expect("frames").iter().map(head).collect()
 }
 
 #[test]
