@@ -83,14 +83,13 @@ impl Delete {
 
     /// What is deleted, for a person to confirm.
     fn change(&self, deleted: &[Record], task: u8) -> Change {
-        let steps = (self.step..).zip(deleted).filter(|(_, record)| **record != steps::nop());
-        let steps: Vec<String> = steps.map(|(step, record)| format!("step {step}: {}", record.written())).collect();
-        let change = match (steps.len(), deleted.len()) {
-            (0, _) => return Change::nothing(),
-            (_, 1) => Change::new(format!("delete a step of task {task}")),
-            (_, many) => Change::new(format!("delete {many} steps of task {task}")),
+        // A step without effect counts as well: those behind it move up.
+        let steps = (self.step..).zip(deleted).map(|(step, record)| format!("step {step}: {}", record.written()));
+        let change = match deleted.len() {
+            1 => Change::new(format!("delete a step of task {task}")),
+            many => Change::new(format!("delete {many} steps of task {task}")),
         };
-        steps.into_iter().fold(change, Change::item)
+        steps.fold(change, Change::item).note("The steps behind move up.")
     }
 
     async fn delete(

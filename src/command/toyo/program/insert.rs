@@ -103,13 +103,12 @@ impl Insert {
         let room = steps::room(link, task, step).await?;
         let before = link.read_content(&steps::read_request(step)).await?;
         let last = link.read_content(&steps::read_request(room)).await?;
-        let change = if last == steps::nop() {
-            Change::nothing()
-        } else {
-            Change::new(format!("push the last step out of task {task}"))
-                .item(format!("step {room}: {}", last.written()))
-        };
-        authority.confirm(&change).await?;
+        if last != steps::nop() {
+            let message = format!("step {room}, the last of task {task}, would fall out: {}", last.written());
+            return Err(Failure::new(Kind::RefusedHere, message)
+                .hint("delete it first, or give the task more steps by the machine parameter E22 (task-steps)"));
+        }
+        authority.confirm(&Change::nothing()).await?;
         steps::open(link).await?;
         link.order(&self.order()).await?;
         if step < room {
@@ -132,7 +131,7 @@ impl Insert {
         tasks::choose(link, self.task).await?;
         link.plan(&steps::rooms_request(), "how many steps the task has");
         link.plan(&steps::read_request(self.step), "what moves on");
-        let last = Reason::about("the last step, which falls out").depending_on("how many steps the task has");
+        let last = Reason::about("the last step, which must be a NOP").depending_on("how many steps the task has");
         link.plan_depending("@RSTX ?", last);
         authority.confirm(&Change::nothing()).await?;
         steps::plan_open(link).await?;

@@ -148,9 +148,9 @@ fn steps_are_inserted_and_deleted() {
 #[test]
 fn nothing_falls_out_at_the_end() {
     let mut desk = Desk::with("steps = { 2 = [\"NOP\", \"END\"] }");
-    // What it loses is asked before: of a controller that does not take it, the refusal is told.
     let failure = desk.failure(&["insert", "1", "--task", "2"]);
-    assert_eq!(failure.kind, Kind::Refused);
+    assert_eq!(failure.kind, Kind::RefusedHere);
+    assert_eq!(failure.message, "step 2, the last of task 2, would fall out: END");
     assert_eq!(desk.text(&["--task", "2"]), "NOP\nEND\n");
 }
 

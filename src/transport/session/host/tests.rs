@@ -232,7 +232,10 @@ async fn told(spot: &Spot, frames: &[Control]) -> Vec<Frame> {
     for control in frames {
         Frame::Control(control.clone()).emit(&mut bytes);
     }
-    write.write_all(&bytes).await.unwrap();
+    // Who is not let in may be gone before he has said anything.
+    if write.write_all(&bytes).await.is_err() {
+        return Vec::new();
+    }
     let mut reader = crate::transport::session::wire::Reader::new(read);
     let mut told = Vec::new();
     while let Ok(Some(frame)) = reader.next().await {
