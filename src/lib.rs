@@ -21,10 +21,11 @@
 pub mod app;
 pub mod cli;
 pub mod command;
-pub mod controller;
 pub mod failure;
-pub mod files;
 pub mod gate;
 pub mod output;
 pub mod settings;
-pub mod transport;
+
+pub use armctl_controller as controller;
+pub use armctl_files as files;
+pub use armctl_transport as transport;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serialport::{SerialPortType, UsbPortInfo};
 
-use crate::files;
+use armctl_files as files;
 
 /// A serial port.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -26,7 +26,7 @@ mod unix {
 
     /// A pseudo-terminal.
     #[derive(Debug)]
-    pub(in crate::transport) struct Pty {
+    pub(crate) struct Pty {
         reader: Threaded,
         /// Writes while a thread has the reader.
         writer: TTYPort,
@@ -36,7 +36,7 @@ mod unix {
 
     impl Pty {
         /// Makes one; returns the path of the port, too.
-        pub(in crate::transport) fn open() -> io::Result<(Self, String)> {
+        pub(crate) fn open() -> io::Result<(Self, String)> {
             let (mut writer, port) = TTYPort::pair()?;
             let mut reader = writer.try_clone_native()?;
             reader.set_timeout(SLICE)?;
@@ -46,7 +46,7 @@ mod unix {
         }
 
         /// Waits for bytes.
-        pub(in crate::transport) async fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        pub(crate) async fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
             loop {
                 if let Some(len) = self.reader.receive(buffer, Instant::now() + LONG).await? {
                     return Ok(len);
@@ -55,7 +55,7 @@ mod unix {
         }
 
         /// Writes bytes, without waiting. What nobody reads is lost when it gets much, as on a line.
-        pub(in crate::transport) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
             for piece in bytes.chunks(PIECE) {
                 if self.port.bytes_to_read()? > MOST_UNREAD {
                     return Ok(());
@@ -76,19 +76,19 @@ mod elsewhere {
 
     /// There is none.
     #[derive(Debug)]
-    pub(in crate::transport) enum Pty {}
+    pub(crate) enum Pty {}
 
     impl Pty {
-        pub(in crate::transport) fn open() -> io::Result<(Self, String)> {
+        pub(crate) fn open() -> io::Result<(Self, String)> {
             let why = "only Unix has pseudo-terminals; serve on TCP instead";
             Err(io::Error::new(io::ErrorKind::Unsupported, why))
         }
 
-        pub(in crate::transport) async fn read(&mut self, _buffer: &mut [u8]) -> io::Result<usize> {
+        pub(crate) async fn read(&mut self, _buffer: &mut [u8]) -> io::Result<usize> {
             match *self {}
         }
 
-        pub(in crate::transport) fn write(&mut self, _bytes: &[u8]) -> io::Result<()> {
+        pub(crate) fn write(&mut self, _bytes: &[u8]) -> io::Result<()> {
             match *self {}
         }
     }

@@ -284,7 +284,7 @@ impl Record {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::controller::toyo::field::{Form, Number};
+    use crate::toyo::field::{Form, Number};
 
     const TWO: Layout = Layout::new(
         "MCNT CN{}={}",

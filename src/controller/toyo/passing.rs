@@ -2,7 +2,7 @@
 
 use super::request::Request;
 use super::table::commands::Command;
-use crate::controller::Risk;
+use crate::Risk;
 
 /// Whether all of these characters are whole blocks, each of which changes nothing or stops the robot (STOP, and JGST
 /// with no axis that moves; TO 2-7).

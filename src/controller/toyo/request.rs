@@ -6,7 +6,7 @@ use super::field::Value;
 use super::layout::{Layout, LayoutError, Misfit, Record, UNLISTED};
 use super::table::commands::{Command, Row};
 use super::table::{Instruction, Op, Pallet, Parameter};
-use crate::controller::Risk;
+use crate::Risk;
 
 /// Most bytes of a block, `@` and line end included (TO 1-4; ambiguity A1).
 pub const MOST: usize = 128;
@@ -405,7 +405,7 @@ fn fitting(forms: &[Layout], text: &str) -> Result<Record, LayoutError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::controller::toyo::table::commands::ROWS;
+    use crate::toyo::table::commands::ROWS;
 
     fn answer(request: &str, answer: &str) -> Result<Answer, BlockError> {
         Request::parse(request).unwrap().answer(answer)

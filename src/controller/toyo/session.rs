@@ -9,7 +9,7 @@ use std::time::Duration;
 
 pub use self::framer::{Framed, Framer};
 use super::request::{BlockError, Request};
-use crate::controller::{Now, Session, Step};
+use crate::{Now, Session, Step};
 
 /// How patient a session is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

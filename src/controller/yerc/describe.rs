@@ -7,7 +7,7 @@ use super::payload::PositionKind;
 use super::request::Request;
 use super::table::{Action, BATCH_BACKUP_PATH, Row, service};
 use super::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, RequestFrame, Status, WireError};
-use crate::controller::text::hex;
+use crate::text::hex;
 
 /// A frame in words.
 #[derive(Debug, Clone, PartialEq, Eq)]

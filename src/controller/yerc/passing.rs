@@ -3,7 +3,7 @@
 use super::request::Request;
 use super::table::service;
 use super::wire::RequestFrame;
-use crate::controller::Risk;
+use crate::Risk;
 
 /// Whether a datagram changes nothing, or stops the robot (HOLD on; FS and DX 3.3.20). Of a transfer, only what takes a
 /// file passes: a block of one that is sent does not.
@@ -20,7 +20,7 @@ pub fn only_reads_or_stops(datagram: &[u8]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::controller::yerc::files::{ack_frame, data_frame};
+    use crate::yerc::files::{ack_frame, data_frame};
 
     fn passes(command: u16, instance: u16, service: u8, data: &[u8]) -> bool {
         let data = data.to_vec();

@@ -28,7 +28,7 @@ use super::group::Group;
 use super::payload::{PayloadError, Reader, TextError};
 use super::request::{Request, RequestError};
 use super::table::service;
-use crate::controller::Risk;
+use crate::Risk;
 
 /// One exchange with the robot server.
 pub trait Query {

@@ -6,7 +6,7 @@ use super::Model;
 use super::files::{self, FileNameError};
 use super::table::{Action, Field, Kind, Plural, RiskRule, Row, Service, service, total};
 use super::wire::{Division, MAX_DATA, RequestFrame};
-use crate::controller::Risk;
+use crate::Risk;
 
 /// One request, complete but for its id.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]

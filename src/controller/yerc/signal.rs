@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::Model;
 use super::table::{Row, Span};
-use crate::controller::text::integer;
+use crate::text::integer;
 
 /// One signal by its logical number; the last digit is 0 to 7.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -14,7 +14,7 @@ pub use spans::{Instances, Span};
 
 use super::Model;
 use super::wire::Division;
-use crate::controller::Risk;
+use crate::Risk;
 
 /// Service numbers (FS and DX 3.3, 3.4).
 pub mod service {

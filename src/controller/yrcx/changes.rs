@@ -77,7 +77,7 @@ pub fn changes(side: Side, before: Option<&Image>, image: &Image) -> Vec<Change>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::controller::yrcx::signal::output;
+    use crate::yrcx::signal::output;
 
     #[test]
     fn only_what_is_new_is_told() {

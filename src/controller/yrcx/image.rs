@@ -1,6 +1,6 @@
 //! What master and controller show each other (chapter 1, section 1): 16 command words, 7 words of bits, one reserved.
 
-use crate::controller::Now;
+use crate::Now;
 
 /// Words of a remote command or its answer: WI0 to WI15, WO0 to WO15.
 pub const COMMAND_WORDS: usize = 16;

@@ -5,7 +5,7 @@ use super::image::Words;
 use super::table::parameter::Parameter;
 use super::table::{Command, Row, Rule};
 use super::value::{Key, Value, Values};
-use crate::controller::Risk;
+use crate::Risk;
 
 /// A command with valid words.
 #[derive(Debug, Clone, PartialEq)]

@@ -17,7 +17,7 @@ pub fn only_stops(before: &[u8], after: &[u8]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::controller::yrcx::signal::resting;
+    use crate::yrcx::signal::resting;
 
     fn passes(change: impl FnOnce(&mut Image)) -> bool {
         let before = resting();

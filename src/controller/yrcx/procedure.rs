@@ -2,7 +2,7 @@
 //! them out.
 
 use super::signal::{Side, Signal, input, output};
-use crate::controller::Risk;
+use crate::Risk;
 
 /// One step of a procedure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

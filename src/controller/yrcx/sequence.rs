@@ -6,7 +6,7 @@ use super::image::{Image, Output};
 use super::procedure::{Procedure, Step};
 use super::session::{ImageSession, Next, edge_due};
 use super::signal::Signal;
-use crate::controller::Now;
+use crate::Now;
 
 /// How a procedure ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -12,7 +12,7 @@ use std::time::Duration;
 use super::image::{Image, Output};
 use super::signal::Signal;
 use super::table::Pace;
-use crate::controller::Now;
+use crate::Now;
 
 pub use exchange::{Ended, Exchange, Hindrance, Outcome, Silence};
 
@@ -25,7 +25,7 @@ pub enum Next<T> {
     Done(T),
 }
 
-/// A conversation by images; what [`Session`](crate::controller::Session) is for bytes.
+/// A conversation by images; what [`Session`](crate::Session) is for bytes.
 pub trait ImageSession {
     /// How it ends, good or bad.
     type Outcome;

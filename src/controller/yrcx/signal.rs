@@ -8,8 +8,8 @@ use std::fmt;
 use thiserror::Error;
 
 use super::image::{DEDICATED_WORD, Image};
-use crate::controller::Risk;
-use crate::controller::nearest::nearest;
+use crate::Risk;
+use crate::nearest::nearest;
 
 /// Whose input or output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -12,7 +12,7 @@ pub use field::{COMMON_LINES, Charset, Field, Form, Need, Show, When};
 pub use rows::{Command, ROWS};
 
 use super::value::Key;
-use crate::controller::Risk;
+use crate::Risk;
 
 /// The status reset in WI0; also "no command".
 pub const STATUS_RESET: u16 = 0x0000;

@@ -2,7 +2,7 @@
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 
-use crate::transport::tap::Direction;
+use crate::tap::Direction;
 
 /// What is in a packet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,7 +80,7 @@ pub fn carried(link_type: u16, packet: &[u8]) -> Carried<'_> {
     carried.unwrap_or(Carried::Other)
 }
 
-/// A serial line as [`tap`](crate::transport::tap) records it.
+/// A serial line as [`tap`](crate::tap) records it.
 fn line(packet: &[u8]) -> Option<Carried<'_>> {
     let (direction, bytes) = packet.split_first()?;
     let direction = match direction {

@@ -142,7 +142,7 @@ fn pass_on(arrived: &Arrived<'_>, hear: &mut impl FnMut(&Message<'_>)) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::transport::tap::Capture;
+    use crate::tap::Capture;
 
     fn ends() -> (SocketAddr, SocketAddr) {
         ("10.0.0.1:40000".parse().unwrap(), "[fe80::2]:10040".parse().unwrap())

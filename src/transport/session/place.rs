@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::socket::{self, Lock};
 use super::wire::Info;
-use crate::files;
+use armctl_files as files;
 
 /// Most that a lock file says about its owner.
 const LONGEST_LOCK: u64 = 1 << 16;

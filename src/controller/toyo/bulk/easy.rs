@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use super::reading::{self, Reading};
-use crate::controller::toyo::field::{Field, Value};
-use crate::controller::toyo::findings::Finding;
-use crate::controller::toyo::table::Command;
+use crate::toyo::field::{Field, Value};
+use crate::toyo::findings::Finding;
+use crate::toyo::table::Command;
 
 /// An easy program: its number, and its values.
 pub type Filled = (i32, Vec<Value>);

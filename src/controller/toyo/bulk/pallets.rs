@@ -14,11 +14,11 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use super::reading::{self, Reading};
-use crate::controller::toyo::field::Value;
-use crate::controller::toyo::findings::Finding;
-use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::table::Pallet;
-use crate::controller::toyo::table::palletizing::RECORDS;
+use crate::toyo::field::Value;
+use crate::toyo::findings::Finding;
+use crate::toyo::layout::Record;
+use crate::toyo::table::Pallet;
+use crate::toyo::table::palletizing::RECORDS;
 
 /// A record with all its values.
 pub type Filled = (&'static Pallet, Vec<Value>);

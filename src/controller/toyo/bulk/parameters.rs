@@ -21,11 +21,11 @@ use toml_edit::{Item, TableLike};
 
 use super::reading::{self, Reading};
 use super::{Placed, Setting};
-use crate::controller::toyo::field::Value;
-use crate::controller::toyo::findings::{Finding, Place};
-use crate::controller::toyo::program::MOST_STEPS;
-use crate::controller::toyo::table::Parameter;
-use crate::controller::toyo::table::parameters::PARAMETERS;
+use crate::toyo::field::Value;
+use crate::toyo::findings::{Finding, Place};
+use crate::toyo::program::MOST_STEPS;
+use crate::toyo::table::Parameter;
+use crate::toyo::table::parameters::PARAMETERS;
 
 /// The table of all that has no rows.
 const SINGLE: &str = "parameters";

@@ -8,11 +8,11 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use super::{Placed, Setting, plain};
-use crate::controller::nearest::nearest;
-use crate::controller::toyo::field::{Field, Value};
-use crate::controller::toyo::findings::{Finding, Findings, Place};
-use crate::controller::toyo::source;
-use crate::controller::toyo::table::Parameter;
+use crate::nearest::nearest;
+use crate::toyo::field::{Field, Value};
+use crate::toyo::findings::{Finding, Findings, Place};
+use crate::toyo::source;
+use crate::toyo::table::Parameter;
 
 /// The columns, in the order of the fields of the table.
 const COLUMNS: [&str; 5] = ["point", "x_mm", "y_mm", "z_mm", "r_mm"];

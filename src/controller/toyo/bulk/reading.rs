@@ -6,10 +6,10 @@ use std::ops::Range;
 use toml_edit::{Document, Item, Table, TableLike, Value as Toml};
 
 use super::plain;
-use crate::controller::nearest::nearest;
-use crate::controller::toyo::field::{Field, Form, Value};
-use crate::controller::toyo::findings::{Finding, Findings, Place};
-use crate::controller::toyo::source;
+use crate::nearest::nearest;
+use crate::toyo::field::{Field, Form, Value};
+use crate::toyo::findings::{Finding, Findings, Place};
+use crate::toyo::source;
 
 /// What fields are, for people: `, mm` or `; J Japanese, E English`.
 pub(super) fn comment(fields: &[Field]) -> String {

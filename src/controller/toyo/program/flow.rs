@@ -1,8 +1,8 @@
 //! What runs after what: ends that are missing, steps that nothing reaches, jumps that only the controller knows.
 
 use super::tags::Resolved;
-use crate::controller::toyo::findings::{Findings, Place};
-use crate::controller::toyo::table::{Instruction, Op};
+use crate::toyo::findings::{Findings, Place};
+use crate::toyo::table::{Instruction, Op};
 
 /// Tells what looks wrong in a program without errors. A part of one may go on behind its last step.
 pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings) {

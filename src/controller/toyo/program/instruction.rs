@@ -1,10 +1,10 @@
 //! One instruction as a person writes it: short numbers, any case, labels for tags.
 
-use crate::controller::nearest::nearest;
-use crate::controller::toyo::field::{Field, FieldError, Form, Value};
-use crate::controller::toyo::findings::{Findings, Place};
-use crate::controller::toyo::table::instructions::INSTRUCTIONS;
-use crate::controller::toyo::table::{Instruction, Op};
+use crate::nearest::nearest;
+use crate::toyo::field::{Field, FieldError, Form, Value};
+use crate::toyo::findings::{Findings, Place};
+use crate::toyo::table::instructions::INSTRUCTIONS;
+use crate::toyo::table::{Instruction, Op};
 
 /// What stands in the place of a tag.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use super::instruction::is_tag;
-use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::table::{Op, Parameter};
+use crate::toyo::layout::Record;
+use crate::toyo::table::{Op, Parameter};
 
 /// Rows of tables, by the id of the table and their number; those that are there are explained in comments.
 pub type Rows = BTreeMap<(&'static str, i32), Record>;

@@ -2,9 +2,9 @@
 
 use super::instruction::{Cursor, Draft, TagUse, Target, is_label, read as read_instruction, shown};
 use super::{MOST_STEPS, Part};
-use crate::controller::toyo::findings::{Findings, Place};
-use crate::controller::toyo::source;
-use crate::controller::toyo::table::Op;
+use crate::toyo::findings::{Findings, Place};
+use crate::toyo::source;
+use crate::toyo::table::Op;
 
 /// What the lines of a file say.
 #[derive(Debug, Default)]

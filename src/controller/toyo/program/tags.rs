@@ -6,10 +6,10 @@ use std::collections::{BTreeSet, HashMap};
 use super::instruction::{Draft, Target};
 use super::reader::{Defined, Read};
 use super::{Label, Part, Program, Step};
-use crate::controller::nearest::nearest;
-use crate::controller::toyo::field::Value;
-use crate::controller::toyo::findings::{Findings, Place};
-use crate::controller::toyo::table::Op;
+use crate::nearest::nearest;
+use crate::toyo::field::Value;
+use crate::toyo::findings::{Findings, Place};
+use crate::toyo::table::Op;
 
 /// A program with the places of its steps.
 pub(super) struct Resolved {

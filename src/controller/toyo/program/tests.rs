@@ -1,6 +1,6 @@
 use super::*;
-use crate::controller::toyo::request;
-use crate::controller::toyo::table::instructions::INSTRUCTIONS;
+use crate::toyo::request;
+use crate::toyo::table::instructions::INSTRUCTIONS;
 
 fn texts(text: &str) -> Vec<String> {
     let checked = check(text.as_bytes(), MOST_STEPS);
@@ -290,8 +290,8 @@ fn what_is_not_in_the_manual_keeps_its_place_and_is_no_program() {
 }
 
 /// A value that a field may have.
-fn least(field: &crate::controller::toyo::field::Field) -> crate::controller::toyo::field::Value {
-    use crate::controller::toyo::field::{Form, Mask, Value};
+fn least(field: &crate::toyo::field::Field) -> crate::toyo::field::Value {
+    use crate::toyo::field::{Form, Mask, Value};
     match field.form {
         Form::Number(number) => Value::Number(number.least),
         Form::Word(words) => Value::Word(words[0].text),
@@ -308,10 +308,7 @@ fn a_listing_explains_what_it_names() {
     for (id, row, text) in
         [("T1", 1, "T1 PT=001 X=+0100.00 Y=+0020.00 Z=+0000.00 R=+0000.00"), ("T2", 5, "T2 V05=0250.0")]
     {
-        rows.insert(
-            (id, row),
-            crate::controller::toyo::table::Parameter::named(id).unwrap().layout.parse(text).unwrap(),
-        );
+        rows.insert((id, row), crate::toyo::table::Parameter::named(id).unwrap().layout.parse(text).unwrap());
     }
     assert_eq!(
         listing(&steps, whole(true), &rows).text,

@@ -1,6 +1,6 @@
 //! Characters of a line as blocks.
 
-use crate::controller::toyo::request::MOST;
+use crate::toyo::request::MOST;
 
 /// Finds blocks in what comes over a line, whatever else comes with them.
 #[derive(Debug, Default)]

@@ -5,9 +5,9 @@ use std::time::Duration;
 use super::io::Port;
 use super::memory::index;
 use super::motion::{AXES, Place};
-use crate::controller::toyo::field::Mask;
-use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::table::{Instruction, Op};
+use crate::toyo::field::Mask;
+use crate::toyo::layout::Record;
+use crate::toyo::table::{Instruction, Op};
 
 /// What a step does.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -388,7 +388,7 @@ fn tenths(tenths: i32) -> Duration {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::controller::toyo::request::instruction;
+    use crate::toyo::request::instruction;
 
     fn of(text: &str) -> Action {
         let record = instruction(text).unwrap();

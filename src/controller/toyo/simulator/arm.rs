@@ -4,7 +4,7 @@
 //! is rounded because the next move begins while the last one slows down.
 
 use super::motion::{AXES, Drive, Path, Place, Segment, minus, plus};
-use crate::controller::Now;
+use crate::Now;
 
 /// Owner of moves that no task makes: JOG and return to origin by the host.
 pub(super) const HOST: usize = 4;

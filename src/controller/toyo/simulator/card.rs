@@ -6,8 +6,8 @@ use super::errors::code;
 use super::memory::Content;
 use super::settings::Settings;
 use super::world::World;
-use crate::controller::Now;
-use crate::controller::toyo::table::Group;
+use crate::Now;
+use crate::toyo::table::Group;
 
 /// The slot.
 #[derive(Debug, Clone)]

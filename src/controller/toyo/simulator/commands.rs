@@ -3,10 +3,10 @@
 use super::memory::index;
 use super::operate::Refusal;
 use super::world::{Mode, World};
-use crate::controller::toyo::field::{Mask, Value};
-use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::request::{BlockError, Request};
-use crate::controller::toyo::table::Command;
+use crate::toyo::field::{Mask, Value};
+use crate::toyo::layout::Record;
+use crate::toyo::request::{BlockError, Request};
+use crate::toyo::table::Command;
 
 /// What a command is answered.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -4,8 +4,8 @@ use super::action::axis;
 use super::io::{Port, PortBit, Ports};
 use super::memory::TASKS;
 use super::world::{Kind, Mode, World};
-use crate::controller::toyo::field::Mask;
-use crate::controller::toyo::layout::Record;
+use crate::toyo::field::Mask;
+use crate::toyo::layout::Record;
 
 /// The lines there are, as `help` shows them.
 const USAGE: &str = "\

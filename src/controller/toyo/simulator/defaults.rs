@@ -1,10 +1,10 @@
 //! What is stored in a fresh controller. The manual prints samples, not initial values: these are plausible ones.
 
 use super::memory::TABLES;
-use crate::controller::toyo::field::Value;
-use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::table::Parameter;
-use crate::controller::toyo::table::parameters::PARAMETERS;
+use crate::toyo::field::Value;
+use crate::toyo::layout::Record;
+use crate::toyo::table::Parameter;
+use crate::toyo::table::parameters::PARAMETERS;
 
 /// Values by parameter, as on the line; they repeat until all fields have one.
 const VALUES: [(&str, &str); 76] = [

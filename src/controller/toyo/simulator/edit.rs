@@ -3,9 +3,9 @@
 use super::commands::{Fields, Reply};
 use super::memory::{Easy, NoRoom, TASKS};
 use super::world::World;
-use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::request::Request;
-use crate::controller::toyo::table::{Command, Group, Instruction, Pallet};
+use crate::toyo::layout::Record;
+use crate::toyo::request::Request;
+use crate::toyo::table::{Command, Group, Instruction, Pallet};
 
 /// Carries a change out.
 pub(super) fn carry_out(world: &mut World, request: &Request) -> Result<Reply, String> {

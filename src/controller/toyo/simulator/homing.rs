@@ -7,7 +7,7 @@ use super::task::Wait;
 use super::trace::What;
 use super::watch::NEAR;
 use super::world::{Jog, World};
-use crate::controller::Now;
+use crate::Now;
 
 /// How far an axis backs off its origin sensor to come upon it slowly, in mm.
 const BACK_OFF: f64 = 1.0;

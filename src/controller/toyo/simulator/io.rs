@@ -1,8 +1,8 @@
 //! Input, output and internal ports.
 
 use super::memory::index;
-use crate::controller::toyo::field::Mask;
-use crate::controller::toyo::layout::Record;
+use crate::toyo::field::Mask;
+use crate::toyo::layout::Record;
 
 /// Stations: the controller's own ports, and four more.
 pub(super) const STATIONS: usize = 5;

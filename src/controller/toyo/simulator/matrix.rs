@@ -4,7 +4,7 @@ use super::errors::code;
 use super::memory::index;
 use super::motion::{Place, minus};
 use super::world::World;
-use crate::controller::toyo::field::Value;
+use crate::toyo::field::Value;
 
 /// Axes that a matrix lies in; the last axis turns.
 const SPACE: usize = 3;

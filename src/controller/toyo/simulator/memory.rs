@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use super::action::{Action, action, place};
 use super::defaults;
 use super::motion::{AXES, Place};
-use crate::controller::toyo::field::{Field, Form, Value};
-use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::table::parameters::PARAMETERS;
-use crate::controller::toyo::table::{Group, Instruction, Op, Pallet, Parameter};
+use crate::toyo::field::{Field, Form, Value};
+use crate::toyo::layout::Record;
+use crate::toyo::table::parameters::PARAMETERS;
+use crate::toyo::table::{Group, Instruction, Op, Pallet, Parameter};
 
 pub(super) const TASKS: usize = 4;
 /// Rows of each task's coordinate table.
@@ -430,7 +430,7 @@ impl Memory {
 
     pub(super) fn copy_pallet(&mut self, from: usize, to: usize) -> Result<(), NoRoom> {
         let source = from.checked_sub(1).and_then(|place| self.content.pallets.get(place)).ok_or(NoRoom)?.clone();
-        crate::controller::toyo::table::palletizing::RECORDS
+        crate::toyo::table::palletizing::RECORDS
             .iter()
             .zip(&source)
             .try_for_each(|(record, values)| self.set_pallet(to, record, values))
@@ -469,7 +469,7 @@ impl Memory {
     pub(super) fn clear_pallets(&mut self) -> Result<(), NoRoom> {
         let blank = blank_pallet();
         for program in 1..=PALLETS {
-            for (record, values) in crate::controller::toyo::table::palletizing::RECORDS.iter().zip(&blank) {
+            for (record, values) in crate::toyo::table::palletizing::RECORDS.iter().zip(&blank) {
                 if self.content.pallets[program - 1][usize::from(record.number) - 1] != *values {
                     self.set_pallet(program, record, values)?;
                 }
@@ -533,7 +533,7 @@ pub(super) fn last_row(field: &Field) -> i32 {
 /// A palletizing program with the least in every field.
 fn blank_pallet() -> [Vec<Value>; PALLETS] {
     std::array::from_fn(|place| {
-        let record = &crate::controller::toyo::table::palletizing::RECORDS[place];
+        let record = &crate::toyo::table::palletizing::RECORDS[place];
         let least = |field: &Field| match field.form {
             Form::Number(number) => Value::Number(number.least.max(0)),
             Form::Word(words) => Value::Word(words[0].text),

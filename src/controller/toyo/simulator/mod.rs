@@ -87,7 +87,7 @@ use self::io::Port;
 use self::world::World;
 use super::layout::Record;
 use super::request::MOST;
-use crate::controller::Now;
+use crate::Now;
 
 /// Answers that wait to be fetched; the oldest give way to a host that does not wait for its turn.
 const MAX_WAITING: usize = 64;

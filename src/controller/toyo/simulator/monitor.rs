@@ -6,10 +6,10 @@ use super::io::Port;
 use super::memory::index;
 use super::routine::Routine;
 use super::world::World;
-use crate::controller::toyo::field::Value;
-use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::request::Request;
-use crate::controller::toyo::table::{Command, Pallet};
+use crate::toyo::field::Value;
+use crate::toyo::layout::Record;
+use crate::toyo::request::Request;
+use crate::toyo::table::{Command, Pallet};
 
 /// What MERP answers (ambiguity C5).
 const NO_POINT: &str = "         ";

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::time::Duration;
 
-use crate::controller::Now;
+use crate::Now;
 
 /// Axes a controller can have.
 pub(super) const AXES: usize = 4;

@@ -10,8 +10,8 @@ use super::memory::{Easy, index as to_index};
 use super::motion::Place;
 use super::run::Flow;
 use super::world::World;
-use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::table::Pallet;
+use crate::toyo::layout::Record;
+use crate::toyo::table::Pallet;
 
 /// What a task does besides its program.
 #[derive(Debug, Clone)]

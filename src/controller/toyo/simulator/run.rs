@@ -8,7 +8,7 @@ use super::task::Wait;
 use super::trace::What;
 use super::watch::OutputAt;
 use super::world::World;
-use crate::controller::toyo::field::Mask;
+use crate::toyo::field::Mask;
 
 /// Subroutines that may be called in each other. The manual does not tell.
 pub(super) const DEPTH: usize = 16;

@@ -3,8 +3,8 @@
 use super::io::PortBit;
 use super::memory::{Content, TASKS};
 use super::motion::{AXES, Place};
-use crate::controller::toyo::field::Value;
-use crate::controller::toyo::layout::Record;
+use crate::toyo::field::Value;
+use crate::toyo::layout::Record;
 
 /// An output that the controller drives by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -21,12 +21,12 @@ use super::settings::{Machine, Settings};
 use super::task::Task;
 use super::trace::Trace;
 use super::world::{COUNTERS, Mode, Switches, TIMERS, World};
-use crate::controller::Now;
-use crate::controller::entries::{self, At, Event};
-use crate::controller::toyo::field::{Mask, Value};
-use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::request::{Request, instruction};
-use crate::controller::toyo::table::{Command, KCA};
+use crate::Now;
+use crate::entries::{self, At, Event};
+use crate::toyo::field::{Mask, Value};
+use crate::toyo::layout::Record;
+use crate::toyo::request::{Request, instruction};
+use crate::toyo::table::{Command, KCA};
 
 /// What a simulated controller is like when it starts; [`Start::parse`] reads it (see [`EXAMPLE`]).
 #[derive(Debug, Clone)]

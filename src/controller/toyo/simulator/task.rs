@@ -3,7 +3,7 @@
 use super::action::{Move, Test, Torque};
 use super::motion::Place;
 use super::routine::Routine;
-use crate::controller::Now;
+use crate::Now;
 
 /// What a task that runs waits for.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use super::io::Port;
 use super::motion::Place;
-use crate::controller::Now;
+use crate::Now;
 
 /// Events that are kept; the oldest give way.
 const MOST: usize = 1 << 16;

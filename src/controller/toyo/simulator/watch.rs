@@ -9,8 +9,8 @@ use super::settings::Signal;
 use super::task::Wait;
 use super::trace::What;
 use super::world::World;
-use crate::controller::Now;
-use crate::controller::toyo::field::Mask;
+use crate::Now;
+use crate::toyo::field::Mask;
 
 /// Places that differ by no more than this many mm are the same.
 pub(super) const NEAR: f64 = 1e-6;

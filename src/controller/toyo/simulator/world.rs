@@ -14,9 +14,9 @@ use super::settings::{Machine, Settings, Special, axes_of};
 use super::task::{Task, Wait};
 use super::trace::{Trace, What};
 use super::watch::{OutputAt, Press};
-use crate::controller::Now;
-use crate::controller::toyo::field::Mask;
-use crate::controller::toyo::table::{FROM_3_36, Models};
+use crate::Now;
+use crate::toyo::field::Mask;
+use crate::toyo::table::{FROM_3_36, Models};
 
 /// Counters, the first one of which nobody can name, and timers likewise.
 pub(super) const COUNTERS: usize = 100;

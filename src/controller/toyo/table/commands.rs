@@ -6,9 +6,9 @@ use super::fields::{
 };
 use super::palletizing::MODE;
 use super::{EVERY, KCA, KCA20, Models};
-use crate::controller::Risk;
-use crate::controller::toyo::field::{Field, Form, Word};
-use crate::controller::toyo::layout::Layout;
+use crate::Risk;
+use crate::toyo::field::{Field, Form, Word};
+use crate::toyo::layout::Layout;
 
 /// A command of the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

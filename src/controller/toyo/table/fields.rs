@@ -1,6 +1,6 @@
 //! Fields and words that several tables share.
 
-use crate::controller::toyo::field::{Field, Form, Number, Word};
+use crate::toyo::field::{Field, Form, Number, Word};
 
 /// A word that says what it means.
 pub const fn plain(text: &'static str) -> Word {

@@ -5,8 +5,8 @@ use super::fields::{
     SPEED, STATION, SWITCH, TAG, TASK, TIME, TIMER, X, Y, Z, digits, fixed, place, plain, word, words,
 };
 use super::{EVERY, KCA25, Models};
-use crate::controller::toyo::field::Field;
-use crate::controller::toyo::layout::Layout;
+use crate::toyo::field::Field;
+use crate::toyo::layout::Layout;
 
 /// An instruction of a sequential program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! The 16 records of a palletizing program (TO 2-6).
 
 use super::fields::{AIM, ARRIVAL, COURSE, R, SPEED, TAG_OR_NONE, X, Y, Z, digits, place, word, words};
-use crate::controller::toyo::field::Field;
-use crate::controller::toyo::layout::Layout;
+use crate::toyo::field::Field;
+use crate::toyo::layout::Layout;
 
 /// A record of a palletizing program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

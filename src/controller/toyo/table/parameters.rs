@@ -8,8 +8,8 @@ use super::fields::{
     word, words,
 };
 use super::{EVERY, FROM_3_36, KCA, KCA20, KCA25, Models};
-use crate::controller::toyo::field::{Field, Form, Number, Word};
-use crate::controller::toyo::layout::Layout;
+use crate::toyo::field::{Field, Form, Number, Word};
+use crate::toyo::layout::Layout;
 
 /// What a parameter belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -583,8 +583,7 @@ mod tests {
     #[test]
     fn a_text_tells_its_parameter() {
         for row in &PARAMETERS {
-            let values: Vec<_> =
-                row.key.fields.iter().map(|_| crate::controller::toyo::field::Value::Number(1)).collect();
+            let values: Vec<_> = row.key.fields.iter().map(|_| crate::toyo::field::Value::Number(1)).collect();
             let key = row.key.emit(&values).unwrap();
             assert_eq!(Parameter::of(&key).map(|row| row.id), Some(row.id), "{key}");
         }

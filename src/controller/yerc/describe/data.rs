@@ -1,10 +1,10 @@
 //! The data part, by the fields of its row.
 
 use super::{Meaning, Notes, is_backup, little};
-use crate::controller::units::{self, Unit};
-use crate::controller::yerc::payload::PositionKind;
-use crate::controller::yerc::request::Request;
-use crate::controller::yerc::table::{Action, Bit, Field, Kind, Row, total};
+use crate::units::{self, Unit};
+use crate::yerc::payload::PositionKind;
+use crate::yerc::request::Request;
+use crate::yerc::table::{Action, Bit, Field, Kind, Row, total};
 
 impl Notes<'_> {
     /// Notes the data of a request that writes, or of an answer to one that reads.

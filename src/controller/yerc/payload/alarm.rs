@@ -1,9 +1,9 @@
 //! Alarms (FS and DX 3.3.1, 3.3.2; with sub-code strings 3.3.37, 3.3.38).
 
 use super::{PayloadError, Reader, Text, push_u32s};
-use crate::controller::yerc::Model;
-use crate::controller::yerc::subcode::{self, SubCode};
-use crate::controller::yerc::table::ALARM_KINDS;
+use crate::yerc::Model;
+use crate::yerc::subcode::{self, SubCode};
+use crate::yerc::table::ALARM_KINDS;
 
 /// How the sub-code of an alarm is to be read; numbers without a meaning are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

@@ -1,15 +1,15 @@
 //! Positions of robots, bases and external axes (FS and DX 3.3.6, 3.3.16 to 3.3.18).
 
 use super::{Axes, MAX_AXES, PayloadError, Reader, push_u32s};
-use crate::controller::units::{self, Unit};
-use crate::controller::yerc::table::Bit;
+use crate::units::{self, Unit};
+use crate::yerc::table::Bit;
 
 const fn bit(bit: u8, clear: &'static str, set: &'static str) -> Bit {
     Bit { bit, clear, set }
 }
 
 /// The form word: the words of the text form for each bit clear and set.
-pub(in crate::controller::yerc) const FORM_BITS: [Bit; 8] = [
+pub(in crate::yerc) const FORM_BITS: [Bit; 8] = [
     bit(0, "front", "back"),
     bit(1, "upper", "lower"),
     bit(2, "flip", "noflip"),
@@ -21,7 +21,7 @@ pub(in crate::controller::yerc) const FORM_BITS: [Bit; 8] = [
 ];
 
 /// The extended form word, likewise.
-pub(in crate::controller::yerc) const EXTENDED_FORM_BITS: [Bit; 5] = [
+pub(in crate::yerc) const EXTENDED_FORM_BITS: [Bit; 5] = [
     bit(0, "l-lt180", "l-ge180"),
     bit(1, "u-lt180", "u-ge180"),
     bit(2, "b-lt180", "b-ge180"),

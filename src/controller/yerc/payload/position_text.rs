@@ -8,9 +8,9 @@ use thiserror::Error;
 
 use super::position::{EXTENDED_FORM_BITS, FORM_BITS};
 use super::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, MAX_AXES, Position, PositionKind};
-use crate::controller::text::integer;
-use crate::controller::units::{self, Unit, UnitError};
-use crate::controller::yerc::table::Bit;
+use crate::text::integer;
+use crate::units::{self, Unit, UnitError};
+use crate::yerc::table::Bit;
 
 const PULSE_AXES: [&str; MAX_AXES] = ["s", "l", "u", "r", "b", "t", "e", "8"];
 const CARTESIAN_AXES: [&str; MAX_AXES] = ["x", "y", "z", "rx", "ry", "rz", "re", "8"];

@@ -1,7 +1,7 @@
 //! Controller status, two words of bits (FS and DX 3.3.3).
 
 use super::{PayloadError, Reader};
-use crate::controller::yerc::table::Bit;
+use crate::yerc::table::Bit;
 
 /// One condition of the controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -57,9 +57,9 @@ const BITS: [(StatusBit, usize, u8, &str); 14] = [
 ];
 
 /// The bits of word 1 for the table.
-pub(in crate::controller::yerc) const DATA_1_BITS: [Bit; 8] = table_bits::<8>(0);
+pub(in crate::yerc) const DATA_1_BITS: [Bit; 8] = table_bits::<8>(0);
 /// The bits of word 2 for the table.
-pub(in crate::controller::yerc) const DATA_2_BITS: [Bit; 6] = table_bits::<6>(8);
+pub(in crate::yerc) const DATA_2_BITS: [Bit; 6] = table_bits::<6>(8);
 
 const fn table_bits<const N: usize>(from: usize) -> [Bit; N] {
     let mut out = [Bit { bit: 0, clear: "", set: "" }; N];

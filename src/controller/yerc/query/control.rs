@@ -1,11 +1,11 @@
 //! Orders: reset, hold, servo, cycle, message, job, move (3.3.19 to 3.3.24, 3.3.39, 3.3.40).
 
 use super::{Query, QueryError, checked, in_range, known_task, write_one};
-use crate::controller::yerc::Model;
-use crate::controller::yerc::group::Group;
-use crate::controller::yerc::payload::{CartesianMove, CycleMode, PayloadError, PulseMove, SpeedClass, Text};
-use crate::controller::yerc::request::Request;
-use crate::controller::yerc::table::service;
+use crate::yerc::Model;
+use crate::yerc::group::Group;
+use crate::yerc::payload::{CartesianMove, CycleMode, PayloadError, PulseMove, SpeedClass, Text};
+use crate::yerc::request::Request;
+use crate::yerc::table::service;
 
 /// Greatest speed of a link move, in 0.01 %.
 const FULL_SPEED: u32 = 10_000;

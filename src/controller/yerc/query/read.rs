@@ -1,13 +1,13 @@
 //! Queries that only read.
 
 use super::{Query, QueryError, checked, in_range, known_group, known_task, read_all, reading};
-use crate::controller::yerc::Model;
-use crate::controller::yerc::group::Group;
-use crate::controller::yerc::payload::{
+use crate::yerc::Model;
+use crate::yerc::group::Group;
+use crate::yerc::payload::{
     Alarm, Axes, AxisNames, ControllerStatus, JobInfo, ManagementTime, PayloadError, Position, SystemInfo,
 };
-use crate::controller::yerc::request::Request;
-use crate::controller::yerc::table::{Row, service, total};
+use crate::yerc::request::Request;
+use crate::yerc::table::{Row, service, total};
 
 /// Both status words (0x72).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

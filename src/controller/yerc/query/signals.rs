@@ -1,10 +1,10 @@
 //! I/O groups of eight signals, and registers (0x78, 0x79, 0x300, 0x301).
 
 use super::{Query, QueryError, checked, elements, read_plural, reading, write_one, write_plural};
-use crate::controller::yerc::Model;
-use crate::controller::yerc::payload::{PayloadError, Reader};
-use crate::controller::yerc::request::Request;
-use crate::controller::yerc::table::service;
+use crate::yerc::Model;
+use crate::yerc::payload::{PayloadError, Reader};
+use crate::yerc::request::Request;
+use crate::yerc::table::service;
 
 macro_rules! signals {
     ($what:literal, $value:ty, $single:literal, $plural:literal,

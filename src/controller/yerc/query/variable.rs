@@ -1,11 +1,11 @@
 //! Variables, one or several (0x7A to 0x81, 0x8C, 0x302 to 0x309, 0x30C).
 
 use super::{Query, QueryError, checked, elements, read_all, read_plural, reading, write_one, write_plural};
-use crate::controller::yerc::Model;
-use crate::controller::yerc::payload::PayloadError;
-use crate::controller::yerc::request::Request;
-use crate::controller::yerc::table::service;
-use crate::controller::yerc::variables::{Value, VariableKind};
+use crate::yerc::Model;
+use crate::yerc::payload::PayloadError;
+use crate::yerc::request::Request;
+use crate::yerc::table::service;
+use crate::yerc::variables::{Value, VariableKind};
 
 /// Reads one variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

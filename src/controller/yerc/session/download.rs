@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::super::wire::{AnswerFrame, LAST_BLOCK, RequestFrame, Status};
 use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy};
-use crate::controller::{Now, Session, Step};
+use crate::{Now, Session, Step};
 
 /// Most times that a lost last ACK is made good.
 const MOST_LINGERS: u32 = 8;

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::super::wire::{AnswerFrame, RequestFrame, Status};
 use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy, is_damaged};
-use crate::controller::{Now, Session, Step};
+use crate::{Now, Session, Step};
 
 /// What a controller answered. A refusal is an answer.
 #[derive(Debug, Clone, PartialEq, Eq)]

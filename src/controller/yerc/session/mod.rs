@@ -21,7 +21,7 @@ use std::time::Duration;
 
 use super::status;
 use super::wire::{ANSWER_BIT, AnswerFrame, RequestFrame, Status, WireError};
-use crate::controller::Now;
+use crate::Now;
 
 mod download;
 mod exchange;
@@ -304,7 +304,7 @@ mod testing {
     //! What the tests of the sessions share.
 
     use super::*;
-    use crate::controller::{Session, Step};
+    use crate::{Session, Step};
 
     pub(super) fn hex(text: &str) -> Vec<u8> {
         assert!(text.len().is_multiple_of(2), "half a byte in {text}");

@@ -2,7 +2,7 @@
 
 use super::super::wire::{LAST_BLOCK, MAX_DATA, RequestFrame, Status};
 use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy};
-use crate::controller::{Now, Session, Step};
+use crate::{Now, Session, Step};
 
 /// How an upload ended. `sent` counts the file's bytes in the blocks that left, `taken` those in blocks the controller
 /// acknowledged.

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 
 use encoding_rs::SHIFT_JIS;
 
-use crate::controller::yerc::Model;
-use crate::controller::yerc::payload::{Alarm, AlarmKind, AlarmTexts, Text};
+use crate::yerc::Model;
+use crate::yerc::payload::{Alarm, AlarmKind, AlarmTexts, Text};
 
 /// Alarms that can be active at a time.
 pub(super) const ACTIVE: usize = 4;

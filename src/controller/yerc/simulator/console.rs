@@ -3,7 +3,7 @@
 use super::alarms::Class;
 use super::memory::io_class;
 use super::world::{Mode, World};
-use crate::controller::yerc::payload::CycleMode;
+use crate::yerc::payload::CycleMode;
 
 /// The lines there are, as `help` shows them.
 const USAGE: &str = "alarm CODE [DATA [TYPE]] [NAME] | alarm clear | error on|off | mode teach|play | remote on|off | \

@@ -4,10 +4,8 @@ use super::alarms::{Class, alarm, sjis};
 use super::memory::{Kind, Memory};
 use super::storage::{Content, Storage};
 use super::world::World;
-use crate::controller::yerc::Model;
-use crate::controller::yerc::payload::{
-    Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind,
-};
+use crate::yerc::Model;
+use crate::yerc::payload::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
 
 /// System software, robot model, application and parameter version (examples of FS and DX 3.3.26).
 pub(super) const fn versions(model: Model) -> [&'static str; 4] {

@@ -3,8 +3,8 @@
 //! The protocol is little-endian and so are the banks: an element's bytes are its wire form, for the single and for the
 //! plural commands alike.
 
-use crate::controller::yerc::Model;
-use crate::controller::yerc::table::{Row, Span};
+use crate::yerc::Model;
+use crate::yerc::table::{Row, Span};
 
 /// Elements of the byte, integer, double, real and string variables (DX 3.3.11 to 3.3.15).
 const SCALARS: usize = 100;

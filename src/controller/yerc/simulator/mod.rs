@@ -41,7 +41,7 @@ pub use start::{EXAMPLE, Start};
 use self::transfer::FileServer;
 use self::world::{Refusal, World, code};
 use super::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, RequestFrame, Status, WireError};
-use crate::controller::Now;
+use crate::Now;
 
 /// Answers that wait to be fetched; the oldest give way to a flood.
 const MAX_WAITING: usize = 4096;

@@ -7,7 +7,7 @@
 
 use std::time::Duration;
 
-use crate::controller::Now;
+use crate::Now;
 
 /// Axes a group can have in the protocol.
 pub(super) const AXES: usize = 8;

@@ -5,8 +5,8 @@
 
 use super::motion::{AXES, Family, MAX_ANGULAR_DEG_S, MAX_LINEAR_MM_S, Pose, Pulses, Speed, forward, inverse};
 use super::world::{Refusal, World, code};
-use crate::controller::yerc::Model;
-use crate::controller::yerc::payload::{CartesianMove, MoveLayout, PositionKind, PulseMove, SpeedClass};
+use crate::yerc::Model;
+use crate::yerc::payload::{CartesianMove, MoveLayout, PositionKind, PulseMove, SpeedClass};
 
 /// Instances of the moves.
 const LINK: u16 = 1;

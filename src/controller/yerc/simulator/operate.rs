@@ -2,8 +2,8 @@
 
 use super::robot::{Answer, command};
 use super::world::{Mode, Refusal, World, code};
-use crate::controller::yerc::payload::{CycleMode, Text};
-use crate::controller::yerc::table::Row;
+use crate::yerc::payload::{CycleMode, Text};
+use crate::yerc::table::Row;
 
 /// Usable characters of a message; the field has two more bytes.
 const MESSAGE_LEN: usize = 30;

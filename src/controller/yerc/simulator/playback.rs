@@ -8,8 +8,8 @@ use super::job::{Arithmetic, Condition, Instruction, Move, Operand, Place, Progr
 use super::memory::Kind;
 use super::motion::{AXES, Family, MAX_LINEAR_MM_S, Pose, Pulses, Speed, inverse};
 use super::world::World;
-use crate::controller::Now;
-use crate::controller::yerc::payload::{CycleMode, JobInfo, Text};
+use crate::Now;
+use crate::yerc::payload::{CycleMode, JobInfo, Text};
 
 /// What a line takes that neither moves nor waits.
 const LINE_TIME: Duration = Duration::from_millis(2);

@@ -3,11 +3,11 @@
 use super::motion::{AXES, Family, Group, MAX_LINEAR_MM_S, whole};
 use super::robot::{Answer, Store, command};
 use super::world::{Refusal, World, code, format_time};
-use crate::controller::Now;
-use crate::controller::yerc::payload::{
+use crate::Now;
+use crate::yerc::payload::{
     Alarm, Axes, AxisNames, ExtendedForm, Form, ManagementTime, Position, PositionKind, SystemInfo, Text,
 };
-use crate::controller::yerc::table::Row;
+use crate::yerc::table::Row;
 
 /// Instances of the groups: robots from 1, bases from 11, stations from 21; robots and bases once more, cartesian.
 const FIRST_BASE: u16 = 11;

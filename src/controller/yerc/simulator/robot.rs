@@ -4,9 +4,9 @@
 
 use super::memory::Kind;
 use super::world::{Refusal, World, code};
-use crate::controller::yerc::Model;
-use crate::controller::yerc::table::{Action, Attribute, Availability, Plural, Row, Service, service, total};
-use crate::controller::yerc::wire::RequestFrame;
+use crate::yerc::Model;
+use crate::yerc::table::{Action, Attribute, Availability, Plural, Row, Service, service, total};
+use crate::yerc::wire::RequestFrame;
 
 /// The data of an answer, or why there is none.
 pub(super) type Answer = Result<Vec<u8>, Refusal>;

@@ -18,12 +18,10 @@ use super::motion::{AXES, Arm, Family, Group};
 use super::playback::Player;
 use super::storage::{Content, Storage, check_stored_name};
 use super::world::{Holds, Meters, Mode, Switches, World};
-use crate::controller::Now;
-use crate::controller::entries::{self, At, Event};
-use crate::controller::yerc::Model;
-use crate::controller::yerc::payload::{
-    Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind,
-};
+use crate::Now;
+use crate::entries::{self, At, Event};
+use crate::yerc::Model;
+use crate::yerc::payload::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
 
 /// What a simulated controller is like when it starts; [`Start::parse`] reads it (see [`EXAMPLE`]), [`Start::default`]
 /// is a DX200.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::job::Program;
 use super::world::{Refusal, World, code};
-use crate::controller::yerc::Model;
-use crate::controller::yerc::table::BATCH_BACKUP_PATH;
+use crate::yerc::Model;
+use crate::yerc::table::BATCH_BACKUP_PATH;
 
 /// The extensions that can be listed, in the order of the manual (DX 3.4.4).
 const EXTENSIONS: [&[u8]; 6] = [JOB, b".DAT", b".CND", b".PRM", b".SYS", b".LST"];

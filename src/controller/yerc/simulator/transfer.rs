@@ -14,10 +14,10 @@ use std::time::Duration;
 use super::robot::has;
 use super::storage::{Content, Found};
 use super::world::{Refusal, World, code};
-use crate::controller::Now;
-use crate::controller::yerc::Model;
-use crate::controller::yerc::table::{BATCH_BACKUP_PATH, Row, service};
-use crate::controller::yerc::wire::{AnswerFrame, Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
+use crate::Now;
+use crate::yerc::Model;
+use crate::yerc::table::{BATCH_BACKUP_PATH, Row, service};
+use crate::yerc::wire::{AnswerFrame, Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
 
 /// A repeat within this time of the last frame is an echo.
 const ECHO: Duration = Duration::from_millis(20);

@@ -11,10 +11,10 @@ use super::memory::Memory;
 use super::motion::{Arm, End, Family, Group};
 use super::playback::Player;
 use super::storage::Storage;
-use crate::controller::Now;
-use crate::controller::yerc::Model;
-use crate::controller::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
-use crate::controller::yerc::wire::Status;
+use crate::Now;
+use crate::yerc::Model;
+use crate::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
+use crate::yerc::wire::Status;
 
 /// Added status codes (DX chapter 4) that several parts answer.
 pub(super) mod code {

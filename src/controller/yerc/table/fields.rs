@@ -1,7 +1,7 @@
 //! The data of each command, field by field.
 
-use crate::controller::units::{self, Unit};
-use crate::controller::yerc::payload::{DATA_1_BITS, DATA_2_BITS, EXTENDED_FORM_BITS, FORM_BITS};
+use crate::units::{self, Unit};
+use crate::yerc::payload::{DATA_1_BITS, DATA_2_BITS, EXTENDED_FORM_BITS, FORM_BITS};
 
 /// A bit and its words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

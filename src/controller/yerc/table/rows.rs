@@ -3,8 +3,8 @@
 use super::fields::{self as data, Field};
 use super::spans::{self as at, Instances};
 use super::{Action, Attribute, Availability, Plural, RiskRule, Row, Service, service};
-use crate::controller::Risk;
-use crate::controller::yerc::wire::Division;
+use crate::Risk;
+use crate::yerc::wire::Division;
 
 /// How the row of the batch backup is told from that of save.
 pub(super) const BATCH_BACKUP_SECTION: &str = "3.4.5";

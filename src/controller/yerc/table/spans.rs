@@ -1,6 +1,6 @@
 //! What each command can address, by model.
 
-use crate::controller::yerc::Model;
+use crate::yerc::Model;
 
 /// A run of instance numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,14 +7,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::hash::Hash;
 
 use super::{Reference, Value, VariableKind};
-use crate::controller::yerc::Model;
-use crate::controller::yerc::payload::PayloadError;
-use crate::controller::yerc::query::{
+use crate::yerc::Model;
+use crate::yerc::payload::PayloadError;
+use crate::yerc::query::{
     Query, QueryError, ReadIo, ReadIoGroups, ReadRegister, ReadRegisters, ReadVariable, ReadVariables, WriteIo,
     WriteIoGroups, WriteRegister, WriteRegisters, WriteVariable, WriteVariables,
 };
-use crate::controller::yerc::request::Request;
-use crate::controller::yerc::table::{Plural, Row};
+use crate::yerc::request::Request;
+use crate::yerc::table::{Plural, Row};
 
 /// Numbers from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

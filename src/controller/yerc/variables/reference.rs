@@ -5,9 +5,9 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use crate::controller::text::integer;
-use crate::controller::yerc::Model;
-use crate::controller::yerc::table::{Plural, Row};
+use crate::text::integer;
+use crate::yerc::Model;
+use crate::yerc::table::{Plural, Row};
 
 /// A kind of variable. S variables hold 16 bytes on FS100 and 32 on DX200, where both forms can be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

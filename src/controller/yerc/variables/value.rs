@@ -3,8 +3,8 @@
 use thiserror::Error;
 
 use super::VariableKind;
-use crate::controller::text::integer;
-use crate::controller::yerc::payload::{
+use crate::text::integer;
+use crate::yerc::payload::{
     BasePosition, ExternalPosition, PayloadError, Position, PositionTextError, Reader, Text, TextError,
 };
 

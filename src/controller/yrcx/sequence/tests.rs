@@ -1,8 +1,8 @@
 //! Procedures with a small controller that answers as the timing charts show, in virtual time.
 
 use super::*;
-use crate::controller::yrcx::image::DEDICATED_WORD;
-use crate::controller::yrcx::signal::{Side, input, output, resting};
+use crate::yrcx::image::DEDICATED_WORD;
+use crate::yrcx::signal::{Side, input, output, resting};
 
 const RPI: u64 = 20;
 

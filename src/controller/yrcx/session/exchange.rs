@@ -3,13 +3,13 @@
 use std::time::Duration;
 
 use super::{ImageSession, Next, Policy, edge_due};
-use crate::controller::yrcx::answer::{Answer, Status};
-use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Output, Words};
-use crate::controller::yrcx::order::Order;
-use crate::controller::yrcx::signal::input;
-use crate::controller::yrcx::table::{Pace, Row, STATUS_RESET};
-use crate::controller::yrcx::value::Values;
-use crate::controller::{Now, Risk};
+use crate::yrcx::answer::{Answer, Status};
+use crate::yrcx::image::{COMMAND_WORDS, Image, Output, Words};
+use crate::yrcx::order::Order;
+use crate::yrcx::signal::input;
+use crate::yrcx::table::{Pace, Row, STATUS_RESET};
+use crate::yrcx::value::Values;
+use crate::{Now, Risk};
 
 /// How an exchange ended.
 #[derive(Debug, Clone, PartialEq)]

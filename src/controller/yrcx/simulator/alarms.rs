@@ -6,9 +6,9 @@
 use std::collections::VecDeque;
 use std::fmt;
 
-use crate::controller::yrcx::alarm::Alarm;
+use crate::yrcx::alarm::Alarm;
 
-pub(super) use crate::controller::yrcx::alarm::{INPUT_FORMAT, STOP_INPUT};
+pub(super) use crate::yrcx::alarm::{INPUT_FORMAT, STOP_INPUT};
 
 /// Given by the manual, or known for this maker's controllers.
 pub(super) const SOFT_LIMIT: Alarm = Alarm::new(2, 334);

@@ -4,9 +4,9 @@ use super::alarms::{Fault, NOT_ENABLED, Place, UNKNOWN_COMMAND};
 use super::request::Request;
 use super::world::{Action, World};
 use super::{motions, operate, reads, records};
-use crate::controller::Now;
-use crate::controller::yrcx::table::Pace;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::Now;
+use crate::yrcx::table::Pace;
+use crate::yrcx::value::{Key, Values};
 
 /// What a command comes to.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,7 +8,7 @@ use super::memory::{PORT_NAMES, SI};
 use super::program::assigned;
 use super::robot::{Axis, Servo};
 use super::world::{Mode, World};
-use crate::controller::yrcx::alarm::Alarm;
+use crate::yrcx::alarm::Alarm;
 
 /// The lines there are, as `help` shows them.
 const USAGE: &str = "estop on|off | mode auto|manual | box on|off | inputs on|off | warning on|off | \

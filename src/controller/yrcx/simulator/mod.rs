@@ -72,7 +72,7 @@ use self::remote::Remote;
 use self::signals::Dedicated;
 use self::world::{Link, SCAN, World};
 use super::image::Image;
-use crate::controller::Now;
+use crate::Now;
 
 /// Scans of one call; a longer gap passes at rest.
 const MAX_SCANS: u32 = 1_000_000;

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::alarms::Fault;
 use super::geometry::{Arm, Four, Geometry};
-use crate::controller::Now;
+use crate::Now;
 
 /// Seconds in which an axis comes to full speed with a coefficient of 100 %.
 const ACCELERATION_TIME: f64 = 0.2;
@@ -247,7 +247,7 @@ impl Motion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::controller::yrcx::simulator::geometry::Kind;
+    use crate::yrcx::simulator::geometry::Kind;
 
     const GEOMETRY: Geometry = Geometry { kind: Kind::Cartesian, per_unit: [1.0; 4], hand: None };
 

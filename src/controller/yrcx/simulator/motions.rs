@@ -9,8 +9,8 @@ use super::moves::{Frame, Homing, Rate, Speed};
 use super::request::Request;
 use super::robot::{ALL, Kept, Method, RESET_PITCH};
 use super::world::World;
-use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::yrcx::table::Command;
+use crate::yrcx::value::{Key, Values};
 
 /// Parameters of a push (4.4.2).
 const PUSH_FORCE: u16 = 266;

@@ -13,8 +13,8 @@ use super::request::Request;
 use super::robot::{Method, RESET_PITCH, Servo};
 use super::task::{State, TASKS, Task};
 use super::world::{Action, World};
-use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::yrcx::table::Command;
+use crate::yrcx::value::{Key, Values};
 
 /// Time in which servos switch, and motor power comes on.
 const SERVO_TIME: Duration = Duration::from_millis(50);

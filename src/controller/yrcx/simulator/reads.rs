@@ -8,8 +8,8 @@ use super::request::Request;
 use super::robot::{AXES, Axis, MAX_OF_RATED, Robot};
 use super::task::TASKS;
 use super::world::World;
-use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::yrcx::table::Command;
+use crate::yrcx::value::{Key, Values};
 
 /// No axis, no task.
 const NONE: i32 = 9;

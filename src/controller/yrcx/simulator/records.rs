@@ -6,8 +6,8 @@ use super::memory::{Hand, Number, Operation, Pallet, Point, PointUnit};
 use super::motions::axis;
 use super::request::Request;
 use super::world::World;
-use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Value, Values};
+use crate::yrcx::table::Command;
+use crate::yrcx::value::{Key, Value, Values};
 
 /// Parameters that belong to the robot, and the payload of an axis (4.4.2).
 const WEIGHT: i32 = 1;

@@ -7,11 +7,11 @@ use super::motions;
 use super::reads;
 use super::request::Request;
 use super::world::{Link, SCAN, World};
-use crate::controller::Now;
-use crate::controller::yrcx::answer::Status;
-use crate::controller::yrcx::image::{COMMAND_WORDS, Words};
-use crate::controller::yrcx::table::Pace;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::Now;
+use crate::yrcx::answer::Status;
+use crate::yrcx::image::{COMMAND_WORDS, Words};
+use crate::yrcx::table::Pace;
+use crate::yrcx::value::{Key, Values};
 
 const NO_WORDS: Words = [0; COMMAND_WORDS];
 const RUN_STATUS: Words = {

@@ -2,11 +2,11 @@
 //! by the checks of the client.
 
 use super::alarms::{Fault, Place, UNKNOWN_COMMAND};
-use crate::controller::yrcx::answer::Status;
-use crate::controller::yrcx::image::{COMMAND_WORDS, Words};
-use crate::controller::yrcx::table::parameter::Parameter;
-use crate::controller::yrcx::table::{Charset, Command, Field, Form, Row, Show};
-use crate::controller::yrcx::value::{Key, Value, Values};
+use crate::yrcx::answer::Status;
+use crate::yrcx::image::{COMMAND_WORDS, Words};
+use crate::yrcx::table::parameter::Parameter;
+use crate::yrcx::table::{Charset, Command, Field, Form, Row, Show};
+use crate::yrcx::value::{Key, Value, Values};
 
 /// Robots there can be.
 pub(super) const ROBOTS: usize = 4;

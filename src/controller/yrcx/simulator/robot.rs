@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use super::alarms::{Fault, Place, SOFT_LIMIT};
 use super::geometry::{Arm, Four, Geometry, Kind};
 use super::motion::{End, Motion, Owner};
-use crate::controller::Now;
-use crate::controller::yrcx::image::Words;
+use crate::Now;
+use crate::yrcx::image::Words;
 
 /// Axes a robot can have.
 pub(super) const AXES: usize = 4;

@@ -9,9 +9,9 @@ use super::moves::Homing;
 use super::operate::MOTOR_TIME;
 use super::robot::Robot;
 use super::world::{Action, Link, Mode, World};
-use crate::controller::Now;
-use crate::controller::yrcx::image::{DEDICATED_WORD, Image};
-use crate::controller::yrcx::signal::{Signal, input, output, resting};
+use crate::Now;
+use crate::yrcx::image::{DEDICATED_WORD, Image};
+use crate::yrcx::signal::{Signal, input, output, resting};
 
 /// Edges closer than this are not seen (chapter 1, section 3).
 const EDGE_INTERVAL: Duration = Duration::from_millis(100);

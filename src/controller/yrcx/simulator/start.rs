@@ -19,11 +19,11 @@ use super::defaults::{self, STOCK};
 use super::memory::Memory;
 use super::robot::{Method, Motor};
 use super::world::{Link, Mode, Switches, World};
-use crate::controller::Now;
-use crate::controller::entries::{self, At, Event};
-use crate::controller::yrcx::signal::resting;
-use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Value};
+use crate::Now;
+use crate::entries::{self, At, Event};
+use crate::yrcx::signal::resting;
+use crate::yrcx::table::Command;
+use crate::yrcx::value::{Key, Value};
 
 /// What a simulated controller is like when it starts; [`Start::parse`] reads it (see [`EXAMPLE`]), [`Start::default`]
 /// has four robots.

@@ -7,7 +7,7 @@ use super::motion::{End, Owner};
 use super::moves::Speed;
 use super::program::{Line, Operand, PortRef};
 use super::world::World;
-use crate::controller::Now;
+use crate::Now;
 
 /// Calls within each other.
 const MAX_CALLS: usize = 16;

@@ -16,10 +16,10 @@ use super::motion::{End, Motion, Owner};
 use super::program::Program;
 use super::robot::{ALL, Robot, Servo};
 use super::task::Task;
-use crate::controller::Now;
-use crate::controller::yrcx::alarm::Alarm;
-use crate::controller::yrcx::image::Image;
-use crate::controller::yrcx::signal::input;
+use crate::Now;
+use crate::yrcx::alarm::Alarm;
+use crate::yrcx::image::Image;
+use crate::yrcx::signal::input;
 
 /// The scan of the controller (chapter 2, 1.2).
 pub(super) const SCAN: Duration = Duration::from_millis(5);

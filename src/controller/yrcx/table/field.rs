@@ -1,7 +1,7 @@
 //! Fields of words: where they stand, what they hold, when they count.
 
-use crate::controller::units::{self, Unit, UnitError};
-use crate::controller::yrcx::value::{Key, Value};
+use crate::units::{self, Unit, UnitError};
+use crate::yrcx::value::{Key, Value};
 
 /// A field of a command or an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

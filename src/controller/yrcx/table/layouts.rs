@@ -3,8 +3,8 @@
 use super::field::{Charset, Show};
 use super::field::{FINE_PERCENT, Field, MM, MM_S, MS, PERCENT, PLAIN, PULSE};
 use super::parameter;
-use crate::controller::units::Unit;
-use crate::controller::yrcx::value::Key;
+use crate::units::Unit;
+use crate::yrcx::value::Key;
 
 type Layout = &'static [Field];
 

@@ -1,7 +1,7 @@
 //! One row a command, in the order of the codes.
 
 use super::{Pace, Row, Rule, layouts};
-use crate::controller::Risk;
+use crate::Risk;
 
 /// Declares the commands and their rows.
 macro_rules! commands {

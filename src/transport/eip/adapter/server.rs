@@ -14,7 +14,7 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use super::super::engine::{Alarm, Engine, Prepared, spawn};
 use super::super::{IO_PORT, Now, PORT};
 use super::{Adapter, Application, Output, Setup};
-use crate::transport::fault::Faults;
+use crate::fault::Faults;
 
 /// Room for the largest datagram.
 const BUFFER: usize = 65_536;

@@ -8,8 +8,8 @@ use tokio::sync::{Notify, mpsc};
 use tokio::task::JoinHandle;
 use tokio::time::{Instant, timeout_at};
 
-use crate::transport::session::socket::{ReadHalf, WriteHalf};
-use crate::transport::session::wire::{Change, Control, Frame, Peer, Reader};
+use crate::session::socket::{ReadHalf, WriteHalf};
+use crate::session::wire::{Change, Control, Frame, Peer, Reader};
 
 /// What came from whom; `None` when he has gone.
 pub type Letter = (u64, Option<Frame>);

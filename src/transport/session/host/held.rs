@@ -10,11 +10,11 @@ use std::time::Duration;
 use futures_util::future::select_all;
 use tokio::time::{Instant, sleep_until};
 
-use crate::transport::image::{Event, ImageLink};
-use crate::transport::session::wire::{self, Change};
-use crate::transport::sim::{InProcess, Peer};
-use crate::transport::stream::Stream;
-use crate::transport::udp::Udp;
+use crate::image::{Event, ImageLink};
+use crate::session::wire::{self, Change};
+use crate::sim::{InProcess, Peer};
+use crate::stream::Stream;
+use crate::udp::Udp;
 
 /// A link.
 pub enum Held {

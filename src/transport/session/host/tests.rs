@@ -8,10 +8,10 @@ use tokio::time::Instant;
 
 use super::held::{Datagrams, Held, Images, Rules};
 use super::*;
-use crate::transport::image::{Event, ImageLink, ImagePeer};
-use crate::transport::session::client::{Attached, Found, Hindrance, attach_at, status};
-use crate::transport::session::place::Spot;
-use crate::transport::sim;
+use crate::image::{Event, ImageLink, ImagePeer};
+use crate::session::client::{Attached, Found, Hindrance, attach_at, status};
+use crate::session::place::Spot;
+use crate::sim;
 
 /// Shows what it is shown.
 #[derive(Debug, Default)]
@@ -227,7 +227,7 @@ async fn a_client_for_another_device_is_sent_away() {
 async fn told(spot: &Spot, frames: &[Control]) -> Vec<Frame> {
     use tokio::io::AsyncWriteExt as _;
 
-    let (read, mut write) = crate::transport::session::socket::connect(&spot.socket()).await.unwrap().unwrap();
+    let (read, mut write) = crate::session::socket::connect(&spot.socket()).await.unwrap().unwrap();
     let mut bytes = Vec::new();
     for control in frames {
         Frame::Control(control.clone()).emit(&mut bytes);
@@ -236,7 +236,7 @@ async fn told(spot: &Spot, frames: &[Control]) -> Vec<Frame> {
     if write.write_all(&bytes).await.is_err() {
         return Vec::new();
     }
-    let mut reader = crate::transport::session::wire::Reader::new(read);
+    let mut reader = crate::session::wire::Reader::new(read);
     let mut told = Vec::new();
     while let Ok(Some(frame)) = reader.next().await {
         told.push(frame);

@@ -1,8 +1,8 @@
 //! Who commands, and what is refused when.
 
 use super::Bench;
-use crate::controller::toyo::request::Request;
-use crate::controller::toyo::table::commands::ROWS;
+use crate::toyo::request::Request;
+use crate::toyo::table::commands::ROWS;
 
 #[test]
 fn commands_that_need_the_host_are_refused_without_it() {

@@ -15,7 +15,7 @@ use std::time::Duration;
 
 use super::trace::What;
 use super::{Simulator, Start};
-use crate::controller::Now;
+use crate::Now;
 
 /// A controller with the time.
 struct Bench {

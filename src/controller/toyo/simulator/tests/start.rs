@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::super::{EXAMPLE, Start};
 use super::Bench;
-use crate::controller::toyo::request::instruction;
+use crate::toyo::request::instruction;
 
 #[test]
 fn the_example_is_a_start_state() {

@@ -3,10 +3,10 @@
 use std::time::Duration;
 
 use super::{Bench, Start};
-use crate::controller::toyo::field::{Field, Form, Mask, Value};
-use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::simulator::Simulator;
-use crate::controller::toyo::table::instructions::INSTRUCTIONS;
+use crate::toyo::field::{Field, Form, Mask, Value};
+use crate::toyo::layout::Record;
+use crate::toyo::simulator::Simulator;
+use crate::toyo::table::instructions::INSTRUCTIONS;
 
 /// A value in range; small numbers come often, so that counters, tags and ports meet.
 fn value(field: &Field, random: &mut fastrand::Rng) -> Value {

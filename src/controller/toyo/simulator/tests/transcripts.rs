@@ -3,8 +3,8 @@
 use serde_json::Value as Json;
 
 use super::Bench;
-use crate::controller::toyo::request::{Answer, Request};
-use crate::controller::toyo::table::Instruction;
+use crate::toyo::request::{Answer, Request};
+use crate::toyo::table::Instruction;
 
 fn transcripts() -> Json {
     serde_json::from_str(include_str!("../../../../../tests/data/toyo-transcripts.json")).unwrap()

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use super::*;
-use crate::controller::yerc::Model;
-use crate::controller::yerc::payload::{
+use crate::yerc::Model;
+use crate::yerc::payload::{
     AxisNames, CartesianMove, ControllerStatus, JobInfo, MoveLayout, Position, PulseMove, StatusBit,
 };
 
@@ -178,7 +178,7 @@ fn plain(code: u8) -> Status {
 }
 
 fn cartesian(instance_speed: (u32, u32), coordinate: u32, target: [i32; 6]) -> CartesianMove {
-    use crate::controller::yerc::payload::{ExtendedForm, Form, PositionKind, SpeedClass};
+    use crate::yerc::payload::{ExtendedForm, Form, PositionKind, SpeedClass};
     CartesianMove {
         layout: MoveLayout::Words26,
         robot: 1,

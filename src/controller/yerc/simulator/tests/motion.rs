@@ -81,8 +81,8 @@ fn moves_that_must_not_be_sent() {
         (2, |order| order.speed = 0, 0xB009),
         (2, |order| order.speed = 15_001, 0xB009),
         (1, |_| (), 0xB009),
-        (2, |order| order.coordinate = crate::controller::yerc::payload::PositionKind::Tool, 0xB00B),
-        (2, |order| order.coordinate = crate::controller::yerc::payload::PositionKind::Pulse, 0xB00B),
+        (2, |order| order.coordinate = crate::yerc::payload::PositionKind::Tool, 0xB00B),
+        (2, |order| order.coordinate = crate::yerc::payload::PositionKind::Pulse, 0xB00B),
         (2, |order| order.reserved[1] = 1, 0xB004),
         (2, |order| order.form.0 = 0x40, 0xB00C),
         (2, |order| order.tool = 64, 0xB00D),
@@ -95,7 +95,7 @@ fn moves_that_must_not_be_sent() {
         change(&mut order);
         assert_eq!(bench.write(0x8A, instance, 1, 0x02, &order.emit()), refused(expected), "{order:?}");
     }
-    let user = |user| CartesianMove { coordinate: crate::controller::yerc::payload::PositionKind::User, user, ..good };
+    let user = |user| CartesianMove { coordinate: crate::yerc::payload::PositionKind::User, user, ..good };
     assert_eq!(bench.write(0x8A, 2, 1, 0x02, &user(0).emit()), refused(0xB00E));
     assert_eq!(bench.write(0x8A, 2, 1, 0x02, &user(9).emit()), refused(0x3350));
     assert_eq!(bench.write(0x8A, 2, 1, 0x02, &good.emit()[..96]), refused(0xB003));

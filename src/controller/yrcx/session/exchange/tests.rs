@@ -4,10 +4,10 @@
 use std::time::Duration;
 
 use super::*;
-use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
-use crate::controller::yrcx::signal::{Side, Signal, resting};
-use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::yrcx::alarm::{Alarm, STOP_INPUT};
+use crate::yrcx::signal::{Side, Signal, resting};
+use crate::yrcx::table::Command;
+use crate::yrcx::value::{Key, Values};
 
 const STEP: u64 = 5;
 const RPI: u64 = 20;

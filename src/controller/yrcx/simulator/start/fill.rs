@@ -5,19 +5,19 @@ use std::collections::BTreeMap;
 use toml::Spanned;
 
 use super::{AlarmEntry, ArmEntry, At, Entries, KindEntry, Number, PointEntry, RobotEntry, ServoEntry, StateEntry};
-use crate::controller::yrcx::alarm::Alarm;
-use crate::controller::yrcx::simulator::alarms::{Entry, Place};
-use crate::controller::yrcx::simulator::defaults::{CARTESIAN, PARAMETERS, SCARA};
-use crate::controller::yrcx::simulator::geometry::{Arm, Kind, STEPS, whole};
-use crate::controller::yrcx::simulator::memory::{HANDS, Hand, POINTS, Pallet, Point, PointUnit, SHIFTS};
-use crate::controller::yrcx::simulator::program::{Program, assigned};
-use crate::controller::yrcx::simulator::request::ROBOTS;
-use crate::controller::yrcx::simulator::robot::{AXES, Axis, FULL_TORQUE, Method, Motor, Robot, Servo};
-use crate::controller::yrcx::simulator::task::{State, TASKS, Task};
-use crate::controller::yrcx::simulator::world::World;
-use crate::controller::yrcx::table::parameter::PARAMETERS as KNOWN_PARAMETERS;
-use crate::controller::yrcx::table::{Charset, Field};
-use crate::controller::yrcx::value::{Key, Value};
+use crate::yrcx::alarm::Alarm;
+use crate::yrcx::simulator::alarms::{Entry, Place};
+use crate::yrcx::simulator::defaults::{CARTESIAN, PARAMETERS, SCARA};
+use crate::yrcx::simulator::geometry::{Arm, Kind, STEPS, whole};
+use crate::yrcx::simulator::memory::{HANDS, Hand, POINTS, Pallet, Point, PointUnit, SHIFTS};
+use crate::yrcx::simulator::program::{Program, assigned};
+use crate::yrcx::simulator::request::ROBOTS;
+use crate::yrcx::simulator::robot::{AXES, Axis, FULL_TORQUE, Method, Motor, Robot, Servo};
+use crate::yrcx::simulator::task::{State, TASKS, Task};
+use crate::yrcx::simulator::world::World;
+use crate::yrcx::table::parameter::PARAMETERS as KNOWN_PARAMETERS;
+use crate::yrcx::table::{Charset, Field};
+use crate::yrcx::value::{Key, Value};
 
 /// Puts the robots there.
 pub(super) fn robots(
@@ -259,8 +259,7 @@ fn variable(name: &str) -> Option<usize> {
 }
 
 fn alarm(entry: &AlarmEntry) -> Result<Entry, String> {
-    let alarm: Alarm =
-        entry.alarm.parse().map_err(|error: crate::controller::yrcx::alarm::AlarmError| error.to_string())?;
+    let alarm: Alarm = entry.alarm.parse().map_err(|error: crate::yrcx::alarm::AlarmError| error.to_string())?;
     let place = match entry.place.as_str() {
         "" | "C1" => Some(Place::Controller),
         "C1O1" => Some(Place::Slot),

@@ -3,12 +3,12 @@
 use std::time::Duration;
 
 use super::*;
-use crate::controller::yrcx::answer::{Answer, Status};
-use crate::controller::yrcx::image::Words;
-use crate::controller::yrcx::order::Draft;
-use crate::controller::yrcx::signal::{Side, Signal, input, output, resting};
-use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::yrcx::answer::{Answer, Status};
+use crate::yrcx::image::Words;
+use crate::yrcx::order::Draft;
+use crate::yrcx::signal::{Side, Signal, input, output, resting};
+use crate::yrcx::table::Command;
+use crate::yrcx::value::{Key, Values};
 
 mod examples;
 mod handshake;

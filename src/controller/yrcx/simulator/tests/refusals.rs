@@ -3,9 +3,9 @@
 use fastrand::Rng;
 
 use super::*;
-use crate::controller::yrcx::order::Order;
-use crate::controller::yrcx::simulator::request::Request;
-use crate::controller::yrcx::table::{ROWS, Row};
+use crate::yrcx::order::Order;
+use crate::yrcx::simulator::request::Request;
+use crate::yrcx::table::{ROWS, Row};
 
 /// Commands that the client would send, one for each row at least.
 fn sendable() -> Vec<Words> {
@@ -28,7 +28,7 @@ fn every_command_is_answered() {
         let row = Row::of(words[0]).unwrap();
         let mut bench = Bench::default();
         bench.begin(words);
-        if row.pace == crate::controller::yrcx::table::Pace::Jog {
+        if row.pace == crate::yrcx::table::Pace::Jog {
             bench.set(input::STOP, false);
         }
         let answer = bench.end();

@@ -2,11 +2,11 @@
 //! image every 20 ms.
 
 use super::*;
-use crate::controller::yrcx::image::Output;
-use crate::controller::yrcx::order::Order;
-use crate::controller::yrcx::procedure::Procedure;
-use crate::controller::yrcx::sequence::{self, Sequence};
-use crate::controller::yrcx::session::{Ended, Exchange, Hindrance, ImageSession, Next, Outcome, Policy, Silence};
+use crate::yrcx::image::Output;
+use crate::yrcx::order::Order;
+use crate::yrcx::procedure::Procedure;
+use crate::yrcx::sequence::{self, Sequence};
+use crate::yrcx::session::{Ended, Exchange, Hindrance, ImageSession, Next, Outcome, Policy, Silence};
 
 const RPI: u64 = 20;
 
@@ -113,7 +113,7 @@ fn a_motion_and_a_read() {
 fn every_answer_is_understood() {
     for (id, words, _) in examples::examples() {
         let order = Order::parse(&words).unwrap();
-        if order.row().pace == crate::controller::yrcx::table::Pace::Jog {
+        if order.row().pace == crate::yrcx::table::Pace::Jog {
             continue;
         }
         let outcome = Line::new("run_scans = 9").run_with(&mut Exchange::new(order, Policy::default()), |_, _| {});
