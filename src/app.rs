@@ -20,7 +20,7 @@ use clap::error::ErrorKind;
 use self::parser::Parser;
 use self::ready::{Ready, Wanted};
 use crate::cli::{Cli, Globals, Words};
-use crate::command::run::Stopped;
+use crate::command::frame::run::Stopped;
 use crate::failure::{Failure, Kind};
 use crate::output::envelope::Envelope;
 use crate::output::{ColorChoice, Format, Screen, jq};

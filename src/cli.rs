@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::command::common::batch::Batch;
-use crate::command::common::repl::Repl;
-use crate::command::{ValueKind, common, toyo, yerc, yrcx};
+use crate::command::frame::batch::Batch;
+use crate::command::frame::repl::Repl;
+use crate::command::{ValueKind, commands, toyo, yerc, yrcx};
 use crate::controller::text::Encoding;
 use crate::gate::OnInterrupt;
 use crate::output::{ColorChoice, Format};
@@ -57,7 +57,7 @@ pub enum Top {
     Batch(Batch),
     /// Commands that every family shares
     #[command(flatten)]
-    Common(common::Common),
+    Common(commands::Common),
 }
 
 /// The first word of a line for `yerc`.

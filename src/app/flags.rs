@@ -2,8 +2,8 @@
 
 use super::ready::Work;
 use crate::cli::Globals;
-use crate::command::common::Common;
-use crate::command::common::robots::Robots;
+use crate::command::commands::Common;
+use crate::command::fleet::robots::Robots;
 use crate::failure::Failure;
 use crate::gate::OnInterrupt;
 

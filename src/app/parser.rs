@@ -8,7 +8,7 @@ use clap::{ArgMatches, Args as _, Command, CommandFactory as _, FromArgMatches, 
 use super::misplaced;
 use crate::cli::{Cli, OfToyo, OfYerc, OfYrcx, Top, Words};
 use crate::command::Noun as _;
-use crate::command::common::Common;
+use crate::command::commands::Common;
 use crate::command::toyo::Toyo;
 use crate::command::yerc::Yerc;
 use crate::command::yrcx::{Unit, Yrcx};

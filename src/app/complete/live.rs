@@ -14,7 +14,7 @@ use tokio::time::timeout;
 use super::Candidate;
 use crate::app::parser::Parser;
 use crate::app::ready::{Wanted, Work};
-use crate::command::authority::Authority;
+use crate::command::frame::authority::Authority;
 use crate::command::{Access, AnyCommand, Context, Family as CommandFamily};
 use crate::output::{ColorChoice, Format, Screen, escape};
 use crate::settings::target::Family;

@@ -12,7 +12,7 @@ use super::live::{self, Wish};
 use crate::app::ready::{Need, sources};
 use crate::cli::Globals;
 use crate::command::ValueKind;
-use crate::command::common::{help, schema};
+use crate::command::about::{help, schema};
 use crate::controller::toyo;
 use crate::controller::toyo::table::instructions::INSTRUCTIONS;
 use crate::controller::toyo::table::palletizing::RECORDS;

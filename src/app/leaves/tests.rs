@@ -7,8 +7,8 @@ use clap::Parser as _;
 use super::*;
 use crate::app::ready::{Wanted, Work};
 use crate::cli::Cli;
-use crate::command::common::Common;
-use crate::command::run::Run;
+use crate::command::commands::Common;
+use crate::command::frame::run::Run;
 use crate::command::{AnyCommand, Family};
 use crate::failure::{Failure, Kind};
 use crate::gate::Intent;
@@ -51,7 +51,7 @@ fn run(selection: Selection) -> Run {
         screen: Screen::new(Format::Json, ColorChoice::Never, true, 0),
         sources: Sources { selection, inventory, ..Sources::default() },
         gate: crate::gate::Gate::default(),
-        repeat: crate::command::run::Repeat::default(),
+        repeat: crate::command::frame::run::Repeat::default(),
         filter: None,
         trace: None,
         line: None,

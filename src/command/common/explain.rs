@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::command::Report;
 use crate::command::ValueKind;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::run::{Run, Stopped};
 use crate::controller::toyo::errors;
 use crate::controller::yerc::status;
 use crate::controller::yrcx::alarm::Alarm;
@@ -38,7 +38,8 @@ pub enum Explain {
 }
 
 impl Explain {
-    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
+    /// Does it.
+    pub fn run(self, run: &Run) -> Result<(), Stopped> {
         match self {
             Self::Yerc { code } => {
                 let found = status::lookup(&code).map_err(|error| {

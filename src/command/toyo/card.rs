@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Family;
 use super::waiting::{Accepted, Work};
-use crate::command::dry_run::{Known as _, unknown};
+use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;

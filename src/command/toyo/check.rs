@@ -3,7 +3,7 @@
 use super::Family;
 use super::info;
 use super::link::Link;
-use crate::command::checks::{Layer, Layers};
+use crate::command::face::layers::{Layer, Layers};
 use crate::command::{Access, Family as _};
 use crate::controller::toyo::errors;
 use crate::controller::toyo::status::RunMode;

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::Family;
 use super::link::wrong;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::{Command, Context, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};

@@ -8,7 +8,7 @@ use super::Family;
 use super::link::Link;
 use super::status::ErrorCode;
 use super::waiting::{becomes, status_page};
-use crate::command::dry_run::unknown;
+use crate::command::frame::dry_run::unknown;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::errors;

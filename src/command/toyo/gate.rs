@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::testing::{Bench, Fate, Heard, gated, plan, text};
 use crate::command::Noun as _;
-use crate::command::testing::{QUIET, frames};
+use crate::command::frame::testing::{QUIET, frames};
 use crate::controller::Risk::{self, Destroy, Motion, Read, Write};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::commands::Row;

@@ -5,7 +5,7 @@ use clap::Args;
 use super::Family;
 use super::orders::not_so;
 use super::waiting::becomes;
-use crate::command::orders::{Done, Switch};
+use crate::command::frame::orders::{Done, Switch};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;

@@ -10,7 +10,7 @@ use super::Family;
 use super::link::Link;
 use super::task;
 use super::waiting::status_page;
-use crate::command::dry_run::{Known as _, unknown};
+use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;

@@ -8,7 +8,7 @@ use super::Family;
 use super::link::Moving;
 use super::position::Place;
 use super::waiting::becomes;
-use crate::command::orders::{Done, Switch};
+use crate::command::frame::orders::{Done, Switch};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;

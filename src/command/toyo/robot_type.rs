@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Family;
 use super::numbers::number;
-use crate::command::dry_run::{Known as _, unknown};
+use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};

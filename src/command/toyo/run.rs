@@ -8,7 +8,7 @@ use super::Family;
 use super::link::Link;
 use super::position::Place;
 use super::waiting::{Accepted, End, Work, step};
-use crate::command::dry_run::{Known as _, Reason, unknown};
+use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;

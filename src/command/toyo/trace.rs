@@ -2,7 +2,8 @@
 
 use std::net::SocketAddr;
 
-use crate::command::{Access, trace};
+use crate::command::Access;
+use crate::command::frame::trace;
 use crate::controller::text::hex;
 use crate::controller::toyo::describe::{Sender, summary};
 use crate::controller::toyo::request::Request;

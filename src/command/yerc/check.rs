@@ -2,7 +2,7 @@
 
 use super::Family;
 use super::link::Link;
-use crate::command::checks::{Layer, Layers};
+use crate::command::face::layers::{Layer, Layers};
 use crate::command::{Access, Family as _};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::StatusBit;

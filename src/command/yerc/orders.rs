@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use super::Family;
-use crate::command::orders::{Done, Switch};
+use crate::command::frame::orders::{Done, Switch};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yerc::payload::CycleMode;

@@ -3,7 +3,7 @@
 use super::Family;
 use super::eip::board::{Board, MAKER, Probed};
 use super::link::Link;
-use crate::command::checks::{Layer, Layers};
+use crate::command::face::layers::{Layer, Layers};
 use crate::command::{Access, Family as _};
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::image::Image;

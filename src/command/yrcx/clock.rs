@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::Family;
 use super::link::Link;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Order;

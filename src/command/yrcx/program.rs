@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::single::Single;
 use super::{Family, link};
 use crate::command::ValueKind;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::{Report, commands};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::{COMMON_LINES, Command};

@@ -7,7 +7,7 @@ use super::arguments::Hand as HandSystem;
 use super::link;
 use super::single::Single;
 use crate::command::commands;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;

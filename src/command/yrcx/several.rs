@@ -8,7 +8,7 @@ use super::link::{Given, Link};
 use super::numbers::Numbers;
 use super::refusal::refused;
 use crate::command::Context;
-use crate::command::items::{ItemError, ItemOutcome, verdict};
+use crate::command::frame::items::{ItemError, ItemOutcome, verdict};
 use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use crate::controller::yrcx::answer::Answer;
 use crate::controller::yrcx::order::Order;

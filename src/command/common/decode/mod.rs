@@ -10,7 +10,7 @@ use clap::Subcommand;
 use self::toyo::Toyo;
 use self::yerc::Yerc;
 use self::yrcx::Yrcx;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::run::{Run, Stopped};
 use crate::failure::Failure;
 use crate::files;
 
@@ -26,7 +26,8 @@ pub enum Decode {
 }
 
 impl Decode {
-    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
+    /// Does it.
+    pub fn run(self, run: &Run) -> Result<(), Stopped> {
         match self {
             Self::Yerc(yerc) => yerc.run(run),
             Self::Yrcx(yrcx) => yrcx.run(run),

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::capture::{self, Selection};
 use super::stdin;
 use crate::command::Report;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::run::{Run, Stopped};
 use crate::controller::toyo::describe::{Description, FieldNote, Sender, describe};
 use crate::controller::toyo::request::Request;
 use crate::failure::{Failure, Kind};

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::capture::{self, Selection};
 use super::stdin;
 use crate::command::Report;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::run::{Run, Stopped};
 use crate::controller::yerc::describe::{Description, FieldNote, Sender, describe};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::table::service;

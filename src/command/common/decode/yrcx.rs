@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::capture::{self, Selection};
 use crate::command::Report;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::run::{Run, Stopped};
 use crate::command::yrcx::words;
 use crate::controller::yrcx::describe::{Description, FieldNote, answer, command};
 use crate::controller::yrcx::image::Words;

@@ -13,8 +13,8 @@ use tokio::io::{AsyncBufReadExt as _, BufReader, Lines, Stdin};
 use self::toyo::SimToyo;
 use self::yerc::SimYerc;
 use self::yrcx::SimYrcx;
-use crate::command::interrupt::interruptible;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::interrupt::interruptible;
+use crate::command::frame::run::{Run, Stopped};
 use crate::failure::{Failure, Kind, plain};
 
 /// Which simulator to serve.
@@ -36,7 +36,8 @@ enum SimFamily {
 }
 
 impl Sim {
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+    /// Does it.
+    pub async fn run(self, run: &Run) -> Result<(), Stopped> {
         match self.family {
             Some(SimFamily::Yerc(yerc)) => yerc.run(run).await,
             Some(SimFamily::Yrcx(yrcx)) => yrcx.run(run).await,

@@ -10,8 +10,8 @@ use serde::Serialize;
 
 use super::{Served, address, cannot_listen, serve};
 use crate::command::Report;
-use crate::command::interrupt::catch_interrupts;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::interrupt::catch_interrupts;
+use crate::command::frame::run::{Run, Stopped};
 use crate::command::toyo::simulated::{self, Simulated};
 use crate::failure::{Failure, plain};
 use crate::output::view::View;

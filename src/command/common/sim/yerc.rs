@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::{Served, address, cannot_listen, serve};
 use crate::command::Report;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::run::{Run, Stopped};
 use crate::command::yerc::simulated::{self, Simulated};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::simulator::Simulator;

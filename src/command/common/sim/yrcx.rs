@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::{Served, address, cannot_listen, serve};
 use crate::command::Report;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::run::{Run, Stopped};
 use crate::command::yrcx::simulated::{self, Controller, faults, mischief};
 use crate::output::view::View;
 use crate::transport::eip::adapter::Mischief;

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::{field, read};
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::toyo::copies::{self, Copied};
 use crate::command::toyo::numbers::number;
 use crate::command::toyo::numbers::{not_held, read_back};

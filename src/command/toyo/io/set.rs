@@ -10,7 +10,7 @@ use super::super::Family;
 use super::super::link::wrong;
 use super::super::numbers::number;
 use super::{listed, name, numbers};
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Mask, Value};

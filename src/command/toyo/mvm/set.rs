@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Group, SHEETS, VALUES, field, reads, sheet};
-use crate::command::dry_run::unknown;
+use crate::command::frame::dry_run::unknown;
 use crate::command::toyo::cells::{Cells, THERE};
 use crate::command::toyo::numbers::{number, read_contents};
 use crate::command::toyo::stores::{self, Store, Work, parameter_cell, parameter_sketch};

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::{parse_program, reads};
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::toyo::copies::{self, Copied};
 use crate::command::toyo::numbers::{not_held, read_back};
 use crate::command::toyo::{Family, link};

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::list::AXES;
 use super::{OTHER_TASK, Row, field};
-use crate::command::authority::Authority;
+use crate::command::frame::authority::Authority;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::numbers::{number, runs};

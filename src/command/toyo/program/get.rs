@@ -7,8 +7,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::steps;
-use crate::command::dry_run::unknown;
-use crate::command::local::Target;
+use crate::command::frame::dry_run::unknown;
+use crate::command::frame::local::Target;
 use crate::command::toyo::link::{Link, misuse};
 use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};

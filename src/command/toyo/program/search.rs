@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::steps;
-use crate::command::dry_run::unknown;
+use crate::command::frame::dry_run::unknown;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::waiting::status_page;
 use crate::command::toyo::{Family, tasks};

@@ -12,7 +12,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::transfer;
-use crate::command::local::{Target, folder_of, make_folder, own_folder};
+use crate::command::frame::local::{Target, folder_of, make_folder, own_folder};
 use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};

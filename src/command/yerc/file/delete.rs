@@ -7,7 +7,7 @@ use super::name::{self, Shown};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
 use crate::command::ValueKind;
-use crate::command::dry_run::Reason;
+use crate::command::frame::dry_run::Reason;
 use crate::command::yerc::Family;
 use crate::command::{Command, Context};
 use crate::controller::Risk;

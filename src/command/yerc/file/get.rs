@@ -10,7 +10,7 @@ use super::name::{self, Shown};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
 use crate::command::ValueKind;
-use crate::command::local::{LocalNames, Target, make_folder, own_folder};
+use crate::command::frame::local::{LocalNames, Target, make_folder, own_folder};
 use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::Family;
 use crate::command::commands;
-use crate::command::items::{ItemError, ItemOutcome};
+use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::signal::Signal;
 use crate::failure::Failure;

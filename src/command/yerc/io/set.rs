@@ -14,7 +14,7 @@ use super::super::register::unsigned;
 use super::super::writes::{Order, runs, write_all};
 use super::signal;
 use super::{GroupState, SignalState, group_table, signal_table};
-use crate::command::dry_run::{Reason, unknown};
+use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;

@@ -9,7 +9,7 @@ use super::entry::Entry;
 use super::in_form;
 use super::read::{once, read_all};
 use crate::command::ValueKind;
-use crate::command::items;
+use crate::command::frame::items;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::variables::{Reference, parse_references};
 use crate::failure::Failure;

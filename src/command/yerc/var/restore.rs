@@ -15,7 +15,7 @@ use super::dump::{FORMAT, VERSION};
 use super::entry::{Entry, Reading, is_undefined};
 use super::read::{Answers, read_whatever};
 use super::{listed, parse_kind};
-use crate::command::dry_run::{Known as _, Reason, unknown};
+use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;

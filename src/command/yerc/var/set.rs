@@ -15,7 +15,7 @@ use super::entry::{Entry, Reading, position_in};
 use super::part::{self, Word, Words};
 use super::{in_form, listed};
 use crate::command::ValueKind;
-use crate::command::dry_run::unknown;
+use crate::command::frame::dry_run::unknown;
 use crate::command::yerc::link::Link;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;

@@ -6,11 +6,12 @@ use clap::Args;
 
 use super::content::{self, Controller, Store};
 use super::parts::Part;
+use crate::command::backup::manifest;
+use crate::command::backup::manifest::{LeftOut, State};
 use crate::command::backup::{Item, Items, Only, Restored, Restoring};
-use crate::command::dry_run::{Reason, unknown};
-use crate::command::interrupt::interruptible;
-use crate::command::local::own_folder;
-use crate::command::manifest::{self, LeftOut, State};
+use crate::command::frame::dry_run::{Reason, unknown};
+use crate::command::frame::interrupt::interruptible;
+use crate::command::frame::local::own_folder;
 use crate::command::yrcx::Family;
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::refusal::refused;

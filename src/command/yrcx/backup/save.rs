@@ -8,11 +8,12 @@ use clap::Args;
 
 use super::content::{self, Controller, GAP, Text, Wanted};
 use super::parts::{POINTS, Part, THOUSAND};
+use crate::command::backup::manifest;
+use crate::command::backup::manifest::{Entry, Reason, State};
 use crate::command::backup::{BackedUp, Item, Items, Making, Only, cut_off, write_text};
-use crate::command::dry_run::unknown;
-use crate::command::interrupt::interruptible;
-use crate::command::local::{make_folder, own_folder};
-use crate::command::manifest::{self, Entry, Reason, State};
+use crate::command::frame::dry_run::unknown;
+use crate::command::frame::interrupt::interruptible;
+use crate::command::frame::local::{make_folder, own_folder};
 use crate::command::yrcx::Family;
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::numbers::{Numbers, runs};

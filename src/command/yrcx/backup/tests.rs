@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use crate::command::Family as _;
-use crate::command::testing::{context, everything};
+use crate::command::frame::testing::{context, everything};
 use crate::command::yrcx::Family;
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::testing::{frames, quiet, resolved, risk, words};

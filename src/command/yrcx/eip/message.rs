@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::board::{Object, shown};
 use super::{Family, NO_UNIT};
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::{Command, Context, Need, Report};
 use crate::controller::Risk;
 use crate::controller::text;

@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::items::{ItemError, verdict};
+use crate::command::frame::items::{ItemError, verdict};
 use crate::command::yrcx::Family;
 use crate::command::yrcx::several::ask_each;
 use crate::command::yrcx::single::shown;

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::{Family, input, named};
 use crate::command::ValueKind;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::yrcx::link::Link;
 use crate::command::{Command, Context};
 use crate::controller::Risk;

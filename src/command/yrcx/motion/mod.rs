@@ -22,7 +22,7 @@ use super::Family;
 use super::arguments::{Axes, Ending, Which};
 use super::link::{Done, Link};
 use super::position::{Position, Unit};
-use crate::command::dry_run::{Reason, unknown};
+use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::{Draft, Order};

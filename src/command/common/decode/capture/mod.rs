@@ -18,7 +18,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::run::{Run, Stopped};
 use crate::failure::{Failure, Kind};
 use crate::files;
 use crate::output::Format;

@@ -8,7 +8,7 @@ use serde::ser::{Serialize, SerializeSeq as _, Serializer};
 
 use super::{Capture, Field, Heard, Link, Links, Listener, Problems, Row, Source, Whole};
 use crate::command::Report as _;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::run::{Run, Stopped};
 use crate::failure::Failure;
 use crate::output::Format;
 use crate::output::busy::busy;

@@ -1,0 +1,7 @@
+//! Commands for robots of any family.
+
+pub mod backup;
+pub mod robots;
+pub mod session;
+pub mod status;
+pub mod top;

@@ -1,0 +1,89 @@
+//! A command line that is one of several in this process: of a REPL, or of a batch.
+
+use std::cell::RefCell;
+use std::fmt;
+use std::path::Path;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::{Access, Need};
+use crate::command::fleet::session::host::{By, Holder};
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::envelope::Envelope;
+use crate::settings::Robot;
+use crate::settings::target::Family;
+
+/// What such a line has that a single one has not.
+#[derive(Debug, Clone)]
+pub struct Line {
+    /// As it was typed, for others who want the same robot.
+    pub typed: Arc<str>,
+    /// Who keeps links open from one line to the next.
+    pub holder: Holder,
+    /// Where it stands.
+    pub origin: Option<Origin>,
+    /// Where its envelopes go instead of stdout.
+    pub results: Option<Rc<RefCell<Vec<Value>>>>,
+}
+
+/// Where a line of a batch stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Origin {
+    /// The file, `-` for stdin.
+    pub file: Arc<str>,
+    /// Its line, from 1.
+    pub line: usize,
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let file = if &*self.file == "-" { "stdin" } else { &self.file };
+        write!(f, "{file}:{}", self.line)
+    }
+}
+
+impl Line {
+    /// Has the link to a robot held from now on.
+    pub async fn hold(&self, robot: &Robot, trace: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
+        let trace = trace.map(Path::to_owned);
+        let access = Access { trace, ..Access::reading(Need::Command) };
+        self.connecting(robot, access, screen).await.map(|_| ())
+    }
+
+    /// Has the link to a robot held if the command wants one, so that it stays open for the next line; simulators always,
+    /// as they live no longer than their link. Says how the command is to connect.
+    pub async fn connecting(&self, robot: &Robot, access: Access, screen: &Screen) -> Result<Access, Failure> {
+        let access = Access { typed: Some(Arc::clone(&self.typed)), ..access };
+        if access.need != Need::Command && !robot.target.value.is_simulated() {
+            return Ok(access);
+        }
+        // Packets of a YRCX are seen where the link is held; those of the others in each line.
+        let is_to_file = access.trace.as_deref().is_some_and(|path| path.as_os_str() != "-");
+        let held_trace = if robot.family == Family::Yrcx && is_to_file { access.trace.clone() } else { None };
+        let holding = Access { trace: held_trace.clone(), need: Need::Command, ..access.clone() };
+        let by = self.holder.hold(robot, &holding, screen).await?;
+        let is_traced = by == By::This && held_trace.is_some();
+        Ok(Access { trace: access.trace.clone().filter(|_| !is_traced), ..access })
+    }
+
+    /// The envelope with where the line stands.
+    pub fn marked(&self, envelope: Envelope) -> Envelope {
+        match &self.origin {
+            Some(Origin { file, line }) => Envelope { file: Some(file.to_string()), line: Some(*line), ..envelope },
+            None => envelope,
+        }
+    }
+
+    /// Keeps envelopes if they are wanted all at once. What is to be written now, if anything.
+    pub fn pass(&self, value: Value) -> Option<Value> {
+        let Some(results) = &self.results else { return Some(value) };
+        match value {
+            Value::Array(values) => results.borrow_mut().extend(values),
+            value => results.borrow_mut().push(value),
+        }
+        None
+    }
+}
