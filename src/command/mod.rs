@@ -5,15 +5,16 @@
 //! | [`frame`] | what runs every command: the traits, the one loop, dry run, questions, Ctrl-C, printing |
 //! | [`face`] | what the rest of the house may ask of a family |
 //! | [`backup`] | what backups of every family have in common |
-//! | [`yerc`], [`yrcx`], [`toyo`] | the commands of a family, and its link |
+//! | [`yerc`], [`yrcx`], [`toyo`] | the commands of a family, its link, and its [`face`] |
+//! | [`families`] | the list of families |
 //! | [`fleet`] | commands for robots of any family: status, top, backup, robots, session |
 //! | [`about`] | commands about this program: help, man pages, schemas, completions |
 
 pub mod about;
 pub mod backup;
-pub mod commands;
 pub mod common;
 pub mod face;
+pub mod families;
 pub mod fleet;
 pub mod frame;
 pub mod toyo;
@@ -22,6 +23,6 @@ pub mod yrcx;
 
 pub(crate) use frame::commands;
 pub use frame::{
-    Access, AnyCommand, AnyReport, AtDesk, Command, Context, Desk, Entry, Family, Need, Noun, Outcome, Report,
-    SchemaEntry, ValueKind, Verbs,
+    Access, AnyCommand, AnyContext, AnyReport, Command, CommandSet, ConnectMode, Connection, Context, Entry, Family,
+    Offline, OfflineCommand, Outcome, Report, SchemaEntry, Subcommands, ValueKind,
 };

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use tokio::time::timeout;
 
+use crate::command::face::overview::OverviewReport;
 use crate::command::fleet::status;
-use crate::command::fleet::status::OverviewReport;
 use crate::command::frame::script_line::Line;
 use crate::output::render::painted;
 use crate::output::view::{Cell, Tone};

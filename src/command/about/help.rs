@@ -1,12 +1,12 @@
 //! `armctl help [TOPIC | COMMAND …]`.
 
-use clap::{Args, CommandFactory as _};
+use clap::{Args, Command};
 
-use crate::cli::Cli;
 use crate::command::ValueKind;
+use crate::command::face::Face;
+use crate::command::families::FAMILIES;
 use crate::command::frame::run::Run;
 use crate::controller::nearest::nearest;
-use crate::controller::{toyo, yerc, yrcx};
 use crate::failure::{Failure, Kind};
 
 /// Explains a topic, or a command.
@@ -19,7 +19,7 @@ pub struct Help {
 }
 
 /// Topics with a line about each and their text.
-const TOPICS: [(&str, &str, &str); 13] = [
+const TOPICS: [(&str, &str, &str); 10] = [
     ("targets", "how to say which robot", include_str!("topics/targets.txt")),
     ("inventory", "robots.toml", include_str!("topics/inventory.txt")),
     ("output", "tables, JSON, jq, colour", include_str!("topics/output.txt")),
@@ -30,9 +30,6 @@ const TOPICS: [(&str, &str, &str); 13] = [
     ("batch", "files of commands", include_str!("topics/batch.txt")),
     ("completion", "what Tab offers, in which shells", include_str!("topics/completion.txt")),
     (SIMULATOR, "servers, start state, console, faults", include_str!("topics/simulator.txt")),
-    ("toyo-setup", "cable and settings of a Toyo controller", include_str!("topics/toyo-setup.txt")),
-    ("yerc-setup", "settings of an FS100 or DX200", include_str!("topics/yerc-setup.txt")),
-    ("yrcx-setup", "settings of a YRCX", include_str!("topics/yrcx-setup.txt")),
 ];
 
 /// The topic that ends with the examples that the simulators' own tests read.
@@ -42,20 +39,31 @@ const SIMULATOR: &str = "simulator";
 const EXIT_CODES: &str = "exit-codes";
 
 impl Help {
-    /// Does it.
-    pub fn run(self, run: &Run) -> Result<(), Failure> {
-        run.screen.data(&text(&self.words, run.screen.stdout_color())?)
+    /// Does it; `root` makes the whole command line.
+    pub fn run(self, run: &Run, root: fn() -> Command) -> Result<(), Failure> {
+        run.screen.data(&text(&self.words, run.screen.stdout_color(), root)?)
     }
 }
 
 /// Every topic with a line about it.
-pub fn topics() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let exit = (EXIT_CODES, "what the exit codes mean");
-    std::iter::once(exit).chain(TOPICS.iter().map(|(name, about, _)| (*name, *about)))
+pub fn topics() -> impl Iterator<Item = (String, &'static str)> {
+    let exit = (EXIT_CODES.to_owned(), "what the exit codes mean");
+    let texts = TOPICS.iter().map(|(name, about, _)| ((*name).to_owned(), *about));
+    std::iter::once(exit).chain(texts).chain(setups().into_iter().map(|(name, about, _)| (name, about)))
+}
+
+/// The topics of the families.
+fn setups() -> Vec<(String, &'static str, &'static str)> {
+    let mut setups = FAMILIES.map(|face| {
+        let (about, text) = face.setup();
+        (format!("{}-setup", face.family()), about, text)
+    });
+    setups.sort_unstable();
+    setups.into()
 }
 
 /// The help on some words; on none, that of the whole tool and the list of topics.
-pub fn text(words: &[String], color: bool) -> Result<String, Failure> {
+pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<String, Failure> {
     if let [word] = words {
         if word == EXIT_CODES {
             return Ok(exit_codes());
@@ -64,16 +72,19 @@ pub fn text(words: &[String], color: bool) -> Result<String, Failure> {
             let examples = if word == SIMULATOR { start_states() } else { String::new() };
             return Ok(format!("{text}{examples}"));
         }
+        if let Some((.., text)) = setups().iter().find(|(name, ..)| name == word) {
+            return Ok((*text).to_owned());
+        }
     }
-    let mut root = Cli::command();
+    let mut root = root();
     root.build();
     let mut command = &mut root;
     for word in words {
         let known: Vec<String> = command.get_subcommands().map(|sub| sub.get_name().to_owned()).collect();
         let Some(sub) = command.find_subcommand_mut(word) else {
             let failure = Failure::usage(format!("there is no topic or command '{word}'"));
-            let topics = topics().map(|(name, _)| name);
-            return Err(match nearest(word, known.iter().map(String::as_str).chain(topics)) {
+            let known: Vec<String> = known.into_iter().chain(topics().map(|(name, _)| name)).collect();
+            return Err(match nearest(word, known.iter().map(String::as_str)) {
                 Some(near) => failure.hint(format!("did you mean '{near}'?")),
                 None => failure.hint("`armctl help` lists topics and commands"),
             });
@@ -92,8 +103,17 @@ pub fn text(words: &[String], color: bool) -> Result<String, Failure> {
 }
 
 fn start_states() -> String {
-    let [yerc, yrcx, toyo] = [yerc::simulator::EXAMPLE, yrcx::simulator::EXAMPLE, toyo::simulator::EXAMPLE];
-    format!("{yerc}\nThis one those of yrcx:\n\n{yrcx}\nAnd this one those of toyo:\n\n{toyo}")
+    let last = FAMILIES.len() - 1;
+    let example = |(index, face): (usize, &&dyn Face)| {
+        let family = face.family();
+        let heading = match index {
+            0 => String::new(),
+            _ if index == last => format!("\nAnd this one those of {family}:\n\n"),
+            _ => format!("\nThis one those of {family}:\n\n"),
+        };
+        format!("{heading}{}", face.start_state())
+    };
+    FAMILIES.iter().enumerate().map(example).collect()
 }
 
 fn exit_codes() -> String {

@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Command, CommandFactory as _};
+use clap::{Args, Command};
 
-use crate::cli::Cli;
 use crate::command::frame::run::Run;
 use crate::failure::Failure;
 
@@ -17,9 +16,9 @@ pub struct Man {
 }
 
 impl Man {
-    /// Does it.
-    pub fn run(self, run: &Run) -> Result<(), Failure> {
-        let pages = pages()?;
+    /// Does it; `root` makes the whole command line.
+    pub fn run(self, run: &Run, root: fn() -> Command) -> Result<(), Failure> {
+        let pages = pages(root())?;
         let Some(dir) = self.dir else {
             let first = pages.first().map(|(_, page)| page.as_slice()).unwrap_or_default();
             return run.screen.bytes(first);
@@ -37,8 +36,7 @@ fn write(path: &Path, page: &[u8]) -> Result<(), Failure> {
 }
 
 /// File name and text of every man page: `armctl.1`, `armctl-yerc-status.1`, …
-pub fn pages() -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    let mut root = Cli::command();
+pub fn pages(mut root: Command) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     root.build();
     let mut pages = Vec::new();
     page(&root, "armctl", &mut pages)?;

@@ -4,13 +4,11 @@ use clap::Args;
 use serde_json::json;
 
 use crate::command::ValueKind;
-use crate::command::fleet::status::{Fleet, Overview};
+use crate::command::families::FAMILIES;
+use crate::command::fleet::status::Overview;
 use crate::command::frame::dry_run::DryRun;
 use crate::command::frame::run::Run;
-use crate::command::toyo::{self, Toyo};
-use crate::command::yerc::{self, Yerc};
-use crate::command::yrcx::{self, Yrcx};
-use crate::command::{Noun, SchemaEntry};
+use crate::command::{CommandSet, SchemaEntry};
 use crate::controller::nearest::nearest;
 use crate::failure::Failure;
 use crate::output::envelope::{Envelope, ErrorBody};
@@ -47,13 +45,11 @@ impl SchemaOf {
 
 /// The schemas of all reports, of the envelope and of what it holds when there is none.
 pub fn all() -> Vec<SchemaEntry> {
-    let mut all = <Yerc as Noun<yerc::Family>>::schemas();
-    all.extend(<Yrcx as Noun<yrcx::Family>>::schemas());
-    all.extend(<Toyo as Noun<toyo::Family>>::schemas());
-    all.extend(<Overview as Noun<Fleet>>::schemas());
-    all.extend(<crate::command::fleet::backup::Backup as Noun<Fleet>>::schemas());
-    all.extend(<crate::command::fleet::backup::Restore as Noun<Fleet>>::schemas());
-    all.extend(<crate::command::fleet::backup::Diff as Noun<Fleet>>::schemas());
+    let mut all: Vec<SchemaEntry> = FAMILIES.iter().flat_map(|face| face.schemas()).collect();
+    all.extend(<Overview as CommandSet>::schemas());
+    all.extend(<crate::command::fleet::backup::Backup as CommandSet>::schemas());
+    all.extend(<crate::command::fleet::backup::Restore as CommandSet>::schemas());
+    all.extend(<crate::command::fleet::backup::Diff as CommandSet>::schemas());
     all.extend([
         SchemaEntry::of::<crate::command::fleet::backup::Checked>("backup.check"),
         SchemaEntry::of::<crate::command::common::decode::toyo::Lines>("decode.toyo"),
@@ -82,7 +78,7 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<crate::command::fleet::robots::Shown>("robots.show"),
         SchemaEntry::of::<crate::command::fleet::session::Closed>("session.close"),
         SchemaEntry::of::<crate::command::fleet::session::Sessions>("session.list"),
-        SchemaEntry::of::<crate::command::fleet::session::Opened>("session.open"),
+        SchemaEntry::of::<crate::command::frame::background::Opened>("session.open"),
         SchemaEntry::of::<crate::command::common::sim::toyo::Serving>("sim.toyo"),
         SchemaEntry::of::<crate::command::common::sim::yerc::Serving>("sim.yerc"),
         SchemaEntry::of::<crate::command::common::sim::yrcx::Serving>("sim.yrcx"),

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::command::Report;
 use crate::command::ValueKind;
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::controller::toyo::errors;
 use crate::controller::yerc::status;
 use crate::controller::yrcx::alarm::Alarm;
@@ -39,7 +39,7 @@ pub enum Explain {
 
 impl Explain {
     /// Does it.
-    pub fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub fn run(self, run: &Run) -> Result<(), RunError> {
         match self {
             Self::Yerc { code } => {
                 let found = status::lookup(&code).map_err(|error| {

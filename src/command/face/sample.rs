@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use crate::command::fleet::status::OverviewReport;
+use crate::command::face::overview::OverviewReport;
 use crate::output::view::Tone;
 
 /// How much is asked.

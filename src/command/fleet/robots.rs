@@ -10,7 +10,7 @@ use toml_edit::{ArrayOfTables, DocumentMut, Item, value};
 
 use crate::command::Report;
 use crate::command::ValueKind;
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
 use crate::files;
@@ -89,7 +89,7 @@ impl Robots {
     }
 
     /// Does it.
-    pub async fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub async fn run(self, run: &Run) -> Result<(), RunError> {
         let inventory = &run.sources.inventory;
         match self {
             Self::List => run.local("robots.list", &List::of(inventory)),
@@ -103,11 +103,11 @@ impl Robots {
 }
 
 impl Show {
-    fn run(&self, run: &Run) -> Result<(), Stopped> {
+    fn run(&self, run: &Run) -> Result<(), RunError> {
         let entry = known(&run.sources.inventory, &self.name)?;
         let robot = run.sources.resolved(entry, None)?;
         let mut settings = vec![row("target", &robot.target, ToString::to_string)];
-        if robot.family == Family::Yerc {
+        if robot.family.has_model() {
             settings.push(row("model", &robot.model, ToString::to_string));
         }
         settings.extend([
@@ -131,7 +131,7 @@ fn row<T>(name: &'static str, setting: &Setting<T>, show: impl Fn(&T) -> String)
 }
 
 impl Add {
-    fn run(self, run: &Run) -> Result<(), Stopped> {
+    fn run(self, run: &Run) -> Result<(), RunError> {
         if !is_name(&self.name) {
             return Err(Failure::usage(format!("'{}' is no robot name", self.name))
                 .hint("use letters, digits, '-', '_' and '.'")
@@ -179,7 +179,7 @@ impl Add {
 }
 
 impl Remove {
-    fn run(self, run: &Run) -> Result<(), Stopped> {
+    fn run(self, run: &Run) -> Result<(), RunError> {
         let target = known(&run.sources.inventory, &self.name)?.target.url().to_owned();
         let file = edit(run, |document| {
             let list = document.get_mut("robot").and_then(Item::as_array_of_tables_mut);
@@ -195,8 +195,8 @@ impl Remove {
 }
 
 /// What was changed is changed, also where that could not be reported.
-fn told(reported: Result<(), Stopped>) -> Result<(), Stopped> {
-    reported.map_err(|stopped| Stopped { failure: after_a_change(stopped.failure), ..stopped })
+fn told(reported: Result<(), RunError>) -> Result<(), RunError> {
+    reported.map_err(|stopped| RunError { failure: after_a_change(stopped.failure), ..stopped })
 }
 
 /// Changes the file and keeps its comments; it is written beside and renamed. What comes back is where it is.

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::Report;
+use super::report::Report;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Table, View};
 

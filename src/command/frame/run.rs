@@ -14,11 +14,13 @@ use self::print::{Place, timed};
 pub use self::rounds::Repeat;
 use self::rounds::Rounds;
 use super::authority::{self, Authority};
+use super::background;
+use super::command::{AnyCommand, AnyContext};
+use super::connection::{Access, Connection, Entry};
 use super::dry_run::{Plan, is_end};
 use super::interrupt::{catch_interrupts, interruptible};
+use super::report::Outcome;
 use super::script_line::Line;
-use super::{Access, AnyCommand, Context, Entry, Family, Outcome};
-use crate::command::fleet::session::open_for;
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Confirmation, Gate, Grant, Intent, OnInterrupt};
@@ -53,7 +55,7 @@ pub struct Run {
 
 /// A failure on its way to stderr, with what the envelope needs to know.
 #[derive(Debug)]
-pub struct Stopped {
+pub struct RunError {
     /// What happened.
     pub failure: Failure,
     /// To whom, in doing what.
@@ -62,14 +64,14 @@ pub struct Stopped {
     pub told: bool,
 }
 
-impl From<Failure> for Stopped {
+impl From<Failure> for RunError {
     fn from(failure: Failure) -> Self {
         Self { failure, envelope: None, told: false }
     }
 }
 
-impl Stopped {
-    fn at<F: Family>(robot: &Robot, command: &dyn AnyCommand<F>, failure: Failure) -> Self {
+impl RunError {
+    fn at(robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Self {
         let envelope = Some(Box::new(Envelope::of(robot, command.id(), Err(failure.clone()))));
         Self { failure, envelope, told: false }
     }
@@ -83,7 +85,7 @@ const PARALLEL: usize = 128;
 
 impl Run {
     /// Runs `command` on the robots it is for, and reports.
-    pub async fn robots<F: Family>(&self, command: &dyn AnyCommand<F>) -> Result<(), Stopped> {
+    pub async fn robots(&self, command: &dyn AnyCommand) -> Result<(), RunError> {
         if let Some(outcome) = command.without_robot(&self.screen) {
             return self.local(command.id(), &*outcome?);
         }
@@ -96,17 +98,17 @@ impl Run {
             // From here on Ctrl-C, at a question too, ends in a message and an exit code instead of a killed process.
             catch_interrupts();
             for robot in &robots {
-                self.check_model(command, robot).await.map_err(|failure| Stopped::at(robot, command, failure))?;
+                self.check_model(command, robot).await.map_err(|failure| RunError::at(robot, command, failure))?;
             }
         }
         for robot in &robots {
             let intent = self.intent(command, robot);
             let passed = authority::pass(self.gate, &self.screen, robot, &intent).await;
-            passed.map_err(|failure| Stopped::at(robot, command, failure))?;
+            passed.map_err(|failure| RunError::at(robot, command, failure))?;
         }
         for robot in robots.iter_mut().filter(|robot| self.opens_session(command, robot)) {
-            let opened = open_for(robot, self.sources.inventory.path.as_deref(), &self.screen).await;
-            opened.map_err(|failure| Stopped::at(robot, command, failure))?;
+            let opened = background::open_for(robot, self.sources.inventory.path.as_deref(), &self.screen).await;
+            opened.map_err(|failure| RunError::at(robot, command, failure))?;
             robot.sessions = Sessions::Only;
         }
         self.begin_trace()?;
@@ -117,7 +119,7 @@ impl Run {
     }
 
     /// The robots that a command is for, if it can be for these.
-    fn chosen<F: Family>(&self, command: &dyn AnyCommand<F>) -> Result<Vec<Robot>, Failure> {
+    fn chosen(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, Failure> {
         if command.intent(None).risk > Risk::Read && self.repeat.is_wanted() {
             return Err(Failure::usage("--watch, --count and --until repeat commands that only read")
                 .hint("run this command once, and watch `status` or `position`"));
@@ -126,10 +128,10 @@ impl Run {
             return Err(Failure::usage("nothing would end this motion: there is no terminal for Ctrl-C")
                 .hint("add --for TIME, such as --for 500ms"));
         }
-        let mut robots = self.sources.robots(F::FAMILY)?;
+        let mut robots = self.sources.robots(command.family())?;
         for robot in &mut robots {
             // A session that ends meanwhile must not leave the way that nobody was asked about.
-            if !self.gate.dry_run && F::entry(robot, command.need()) == Entry::ThroughSession {
+            if !self.gate.dry_run && command.entry(robot) == Entry::ThroughSession {
                 robot.sessions = Sessions::Only;
             }
         }
@@ -142,19 +144,19 @@ impl Run {
     }
 
     /// Whether a session is to be opened for what a command does, because the robot's entry says so.
-    fn opens_session<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> bool {
+    fn opens_session(&self, command: &dyn AnyCommand, robot: &Robot) -> bool {
         let is_wanted = robot.hold.value && !robot.read_only.value && robot.sessions == Sessions::Shared;
         is_wanted
             && !self.gate.dry_run
             && !command.intent(Some(robot)).is_stop
-            && matches!(F::entry(robot, command.need()), Entry::Stops(_))
+            && matches!(command.entry(robot), Entry::Stops(_))
     }
 
     /// What the gate is told of a command for a robot: what it does, and what its connection does.
-    fn intent<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Intent {
+    fn intent(&self, command: &dyn AnyCommand, robot: &Robot) -> Intent {
         let intent = command.intent(Some(robot)).of_unit(self.unit);
         let is_free = self.gate.dry_run || intent.is_stop || self.opens_session(command, robot);
-        let entry = if is_free { Entry::Harmless } else { F::entry(robot, command.need()) };
+        let entry = if is_free { Entry::Harmless } else { command.entry(robot) };
         let Entry::Stops(entry) = entry else { return intent };
         // What asks by itself, later, says then what it does; whatever else needs a yes says it in this question.
         let (asks, confirmation) = match intent.confirmation {
@@ -167,7 +169,7 @@ impl Run {
     }
 
     /// Finds what is refused without asking anybody: robots that are not there, a gate that stays closed.
-    pub fn check_gate<F: Family>(&self, command: &dyn AnyCommand<F>) -> Result<(), Failure> {
+    pub fn check_gate(&self, command: &dyn AnyCommand) -> Result<(), Failure> {
         if !command.takes_robot() {
             return Ok(());
         }
@@ -176,17 +178,17 @@ impl Run {
         asked.try_for_each(|(robot, intent)| self.gate.must_ask(&self.screen, robot, &intent).map(|_| ()))
     }
 
-    async fn one<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Stopped> {
+    async fn one(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), RunError> {
         if (self.repeat.is_wanted() || command.is_endless()) && !self.gate.dry_run {
             return self.watch(command, robot).await;
         }
-        let report = self.once(command, robot).await.map_err(|failure| Stopped::at(robot, command, failure))?;
+        let report = self.once(command, robot).await.map_err(|failure| RunError::at(robot, command, failure))?;
         let printed = self.print(robot, command.id(), &*report, Place::Alone);
         match report.failure() {
             // A reader that went away, or a full disk behind stdout, does not turn a failure into something else.
             Some(failure) => {
                 let told = printed.is_ok() && !self.is_for_people();
-                Err(Stopped { failure, envelope: None, told })
+                Err(RunError { failure, envelope: None, told })
             }
             None => Ok(printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?),
         }
@@ -201,22 +203,22 @@ impl Run {
     }
 
     /// Repeats a reading command over one connection.
-    async fn watch<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Stopped> {
-        let stopped = |failure| Stopped::at(robot, command, failure);
+    async fn watch(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), RunError> {
+        let stopped = |failure| RunError::at(robot, command, failure);
         let (mut link, _) = self.connect(command, robot).await.map_err(stopped)?;
-        let watched = self.watch_over(command, robot, &mut link).await;
-        let closed = F::close(link, &self.screen).await;
+        let watched = self.watch_over(command, robot, &mut *link).await;
+        let closed = link.close(&self.screen).await;
         watched?;
         closed.map_err(stopped)
     }
 
-    async fn watch_over<F: Family>(
+    async fn watch_over(
         &self,
-        command: &dyn AnyCommand<F>,
+        command: &dyn AnyCommand,
         robot: &Robot,
-        link: &mut F::Link,
-    ) -> Result<(), Stopped> {
-        let stopped = |failure| Stopped::at(robot, command, failure);
+        link: &mut dyn Connection,
+    ) -> Result<(), RunError> {
+        let stopped = |failure| RunError::at(robot, command, failure);
         let mut rounds = Rounds::new(&self.repeat, if command.is_endless() { Duration::ZERO } else { EVERY });
         loop {
             let grant = Grant::of(Risk::Read);
@@ -249,7 +251,7 @@ impl Run {
             };
             if !rounds.next().await.map_err(stopped)? {
                 return match silence {
-                    Some(failure) => Err(Stopped { failure, envelope: None, told: true }),
+                    Some(failure) => Err(RunError { failure, envelope: None, told: true }),
                     None => rounds.end().map_err(stopped),
                 };
             }
@@ -257,21 +259,16 @@ impl Run {
     }
 
     /// A failure that ends a watch: in a stream for programs it stands in its place on stdout.
-    fn broken_off<F: Family>(
-        &self,
-        robot: &Robot,
-        command: &dyn AnyCommand<F>,
-        failure: Failure,
-    ) -> Result<Stopped, Failure> {
+    fn broken_off(&self, robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Result<RunError, Failure> {
         if self.is_for_people() || failure.kind == Kind::Interrupted {
-            return Ok(Stopped::at(robot, command, failure));
+            return Ok(RunError::at(robot, command, failure));
         }
         self.emit(timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
-        Ok(Stopped { failure, envelope: None, told: true })
+        Ok(RunError { failure, envelope: None, told: true })
     }
 
     /// Runs on several robots at a time, over a connection each, and reports in the order they were named.
-    async fn many<F: Family>(&self, command: &dyn AnyCommand<F>, robots: &[Robot]) -> Result<(), Stopped> {
+    async fn many(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
         if self.gate.dry_run || !self.repeat.is_wanted() {
             let outcomes = at_a_time(robots.iter().map(|robot| self.once(command, robot))).await;
             let printed = self.print_many(command.id(), robots, &outcomes, Place::First);
@@ -282,23 +279,23 @@ impl Run {
         let verdict = self.many_over(command, robots, &mut links).await;
         let mut closed = Ok(());
         for (link, _) in links.into_iter().flatten() {
-            closed = closed.and(F::close(link, &self.screen).await);
+            closed = closed.and(link.close(&self.screen).await);
         }
         verdict?;
         Ok(closed?)
     }
 
-    async fn many_over<F: Family>(
+    async fn many_over(
         &self,
-        command: &dyn AnyCommand<F>,
+        command: &dyn AnyCommand,
         robots: &[Robot],
-        links: &mut [Result<(F::Link, Grant), Failure>],
-    ) -> Result<(), Stopped> {
+        links: &mut [Result<(Box<dyn Connection>, Grant), Failure>],
+    ) -> Result<(), RunError> {
         let mut rounds = Rounds::new(&self.repeat, EVERY);
         loop {
             let attempts = robots.iter().zip(&mut *links).map(|(robot, link)| async move {
                 match link {
-                    Ok((link, grant)) => self.attempt(command, robot, link, grant).await,
+                    Ok((link, grant)) => self.attempt(command, robot, &mut **link, grant).await,
                     Err(failure) => Err(failure.clone()),
                 }
             });
@@ -310,13 +307,13 @@ impl Run {
             }
             if !rounds.next().await? {
                 self.verdict(&outcomes)?;
-                return rounds.end().map_err(Stopped::from);
+                return rounds.end().map_err(RunError::from);
             }
         }
     }
 
     /// What the outcomes of several robots come to.
-    fn verdict(&self, outcomes: &[Outcome]) -> Result<(), Stopped> {
+    fn verdict(&self, outcomes: &[Outcome]) -> Result<(), RunError> {
         let failures: Vec<Failure> = outcomes
             .iter()
             .filter_map(|outcome| outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |r| r.failure()))
@@ -327,76 +324,72 @@ impl Run {
         } else {
             Failure::new(Kind::Mixed, format!("{} of {} robots failed", failures.len(), outcomes.len()))
         };
-        Err(Stopped { failure, envelope: None, told: !self.is_for_people() })
+        Err(RunError { failure, envelope: None, told: !self.is_for_people() })
     }
 
     /// One connection, one run.
-    async fn once<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Outcome {
+    async fn once(&self, command: &dyn AnyCommand, robot: &Robot) -> Outcome {
         if self.gate.dry_run {
             return Ok(Box::new(self.plan(command, robot, &self.screen).await?.into_report()));
         }
         let (mut link, grant) = self.connect(command, robot).await?;
-        let outcome = self.attempt(command, robot, &mut link, &grant).await;
+        let outcome = self.attempt(command, robot, &mut *link, &grant).await;
         // What became of the command is worth more than what became of the record of it.
-        let closed = F::close(link, &self.screen).await;
+        let closed = link.close(&self.screen).await;
         let report = outcome?;
         closed.map_err(|failure| Failure { message: format!("it was done, but {}", failure.message), ..failure })?;
         Ok(report)
     }
 
-    async fn connect<F: Family>(
-        &self,
-        command: &dyn AnyCommand<F>,
-        robot: &Robot,
-    ) -> Result<(F::Link, Grant), Failure> {
+    async fn connect(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(Box<dyn Connection>, Grant), Failure> {
         let access = self.access(command, robot);
         let grant = access.granted.clone();
         let access = match &self.line {
             Some(line) => line.connecting(robot, access, &self.screen).await?,
             None => access,
         };
-        let link = interruptible(Box::pin(F::connect(robot, access, &self.screen))).await??;
+        let link = interruptible(command.connect(robot, access, &self.screen)).await??;
         Ok((link, grant))
     }
 
     /// How a command may use its link when it begins.
-    fn access<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Access {
+    fn access(&self, command: &dyn AnyCommand, robot: &Robot) -> Access {
         Access {
             granted: Grant::of(command.intent(Some(robot)).granted_at_first()),
             dry_run: self.gate.dry_run,
             trace: self.trace.clone(),
-            need: command.need(),
+            mode: command.connect_mode(),
             typed: None,
             unit: self.unit,
         }
     }
 
-    fn context<'a, F: Family>(
+    fn context<'a>(
         &'a self,
-        command: &dyn AnyCommand<F>,
+        command: &dyn AnyCommand,
         robot: &'a Robot,
-        link: &'a mut F::Link,
+        connection: &'a mut dyn Connection,
         (screen, grant): (&'a Screen, &Grant),
-    ) -> Context<'a, F> {
+    ) -> AnyContext<'a> {
         let most = command.intent(Some(robot)).risk;
         let authority = Authority::new(self.gate, screen, robot, most, grant.clone());
-        Context { robot, link, screen, several: self.sources.selection.is_plural(), authority }
+        AnyContext { robot, connection, screen, several: self.sources.selection.is_plural(), authority }
     }
 
     /// One run. Ctrl-C during a motion stops the robot first.
-    async fn attempt<F: Family>(
+    async fn attempt(
         &self,
-        command: &dyn AnyCommand<F>,
+        command: &dyn AnyCommand,
         robot: &Robot,
-        link: &mut F::Link,
+        link: &mut dyn Connection,
         grant: &Grant,
     ) -> Outcome {
         let risk = command.intent(Some(robot)).risk;
         let context = self.context(command, robot, link, (&self.screen, grant));
         match interruptible(command.run(context)).await {
             Ok(outcome) => outcome,
-            Err(_) if risk == Risk::Motion && (self.gate.on_interrupt == OnInterrupt::Stop || F::must_halt(link)) => {
-                Err(match F::halt(link).await {
+            Err(_) if risk == Risk::Motion && (self.gate.on_interrupt == OnInterrupt::Stop || link.must_halt()) => {
+                Err(match link.halt().await {
                     Ok(done) => Failure::new(Kind::Interrupted, done),
                     Err(failure) => Failure::new(Kind::Interrupted, format!("the robot may still move: {failure}"))
                         .hint("use the pendant or the emergency stop if it must not"),
@@ -416,28 +409,23 @@ impl Run {
     }
 
     /// What `command` would send: it runs to its end against a link that takes notes and has no answers.
-    async fn plan<F: Family>(
-        &self,
-        command: &dyn AnyCommand<F>,
-        robot: &Robot,
-        screen: &Screen,
-    ) -> Result<Plan, Failure> {
+    async fn plan(&self, command: &dyn AnyCommand, robot: &Robot, screen: &Screen) -> Result<Plan, Failure> {
         let access = Access { dry_run: true, ..self.access(command, robot) };
         let grant = access.granted.clone();
-        let mut link = F::connect(robot, access, screen).await?;
+        let mut link = command.connect(robot, access, screen).await?;
         let gate = Gate { dry_run: true, ..self.gate };
         let several = self.sources.selection.is_plural();
         let authority = Authority::new(gate, screen, robot, command.intent(Some(robot)).risk, grant);
-        let ended = command.run(Context { robot, link: &mut link, screen, several, authority }).await;
+        let ended = command.run(AnyContext { robot, connection: &mut *link, screen, several, authority }).await;
         match ended {
             Err(failure) if !is_end(&failure) => Err(failure),
-            Ok(_) | Err(_) => Ok(F::rehearsed(&mut link)),
+            Ok(_) | Err(_) => Ok(link.planned()),
         }
     }
 
     /// Finds before anybody is asked what this controller's model cannot do: nobody should clear a cell for a mistyped
     /// command. Simulators ask nobody, and may be of another model than their settings say.
-    async fn check_model<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Result<(), Failure> {
+    async fn check_model(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), Failure> {
         if self.gate.dry_run || robot.target.value.is_simulated() {
             return Ok(());
         }

@@ -8,13 +8,12 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::{Access, Need};
-use crate::command::fleet::session::host::{By, Holder};
+use super::connection::{Access, ConnectMode};
+use super::session_manager::{By, SessionManager};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::envelope::Envelope;
 use crate::settings::Robot;
-use crate::settings::target::Family;
 
 /// What such a line has that a single one has not.
 #[derive(Debug, Clone)]
@@ -22,7 +21,7 @@ pub struct Line {
     /// As it was typed, for others who want the same robot.
     pub typed: Arc<str>,
     /// Who keeps links open from one line to the next.
-    pub holder: Holder,
+    pub manager: SessionManager,
     /// Where it stands.
     pub origin: Option<Origin>,
     /// Where its envelopes go instead of stdout.
@@ -49,7 +48,7 @@ impl Line {
     /// Has the link to a robot held from now on.
     pub async fn hold(&self, robot: &Robot, trace: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
         let trace = trace.map(Path::to_owned);
-        let access = Access { trace, ..Access::reading(Need::Command) };
+        let access = Access { trace, ..Access::reading(ConnectMode::Control) };
         self.connecting(robot, access, screen).await.map(|_| ())
     }
 
@@ -57,15 +56,13 @@ impl Line {
     /// as they live no longer than their link. Says how the command is to connect.
     pub async fn connecting(&self, robot: &Robot, access: Access, screen: &Screen) -> Result<Access, Failure> {
         let access = Access { typed: Some(Arc::clone(&self.typed)), ..access };
-        if access.need != Need::Command && !robot.target.value.is_simulated() {
+        if access.mode != ConnectMode::Control && !robot.target.value.is_simulated() {
             return Ok(access);
         }
-        // Packets of a YRCX are seen where the link is held; those of the others in each line.
-        let is_to_file = access.trace.as_deref().is_some_and(|path| path.as_os_str() != "-");
-        let held_trace = if robot.family == Family::Yrcx && is_to_file { access.trace.clone() } else { None };
-        let holding = Access { trace: held_trace.clone(), need: Need::Command, ..access.clone() };
-        let by = self.holder.hold(robot, &holding, screen).await?;
-        let is_traced = by == By::This && held_trace.is_some();
+        // Some families record where the link is held, others in each line.
+        let trace = access.trace.clone().filter(|path| path.as_os_str() != "-");
+        let holding = Access { trace, mode: ConnectMode::Control, ..access.clone() };
+        let is_traced = self.manager.hold(robot, &holding, screen).await? == By::This { records: true };
         Ok(Access { trace: access.trace.clone().filter(|_| !is_traced), ..access })
     }
 

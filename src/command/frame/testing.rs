@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::authority::Authority;
 use super::dry_run::is_end;
-use super::{Access, AnyCommand, Context, Family, Need};
+use super::{Access, AnyCommand, ConnectMode, Context, Family};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::gate::{Gate, Grant};
@@ -17,7 +17,7 @@ pub static QUIET: Screen = Screen::silent();
 
 /// A link that may do anything.
 pub fn everything() -> Access {
-    Access { granted: Grant::of(Risk::Motion), ..Access::reading(Need::Command) }
+    Access { granted: Grant::of(Risk::Motion), ..Access::reading(ConnectMode::Control) }
 }
 
 /// What a command needs beside its arguments; all questions are answered by `--yes`.
@@ -35,7 +35,7 @@ pub fn planned<F: Family>(
 ) -> Result<Value, Failure> {
     let intent = command.intent(Some(robot));
     let grant = Grant::of(intent.granted_at_first());
-    let access = Access { granted: grant.clone(), dry_run: true, ..Access::reading(command.need()) };
+    let access = Access { granted: grant.clone(), dry_run: true, ..Access::reading(command.connect_mode()) };
     let mut link = F::connect(robot, access, &QUIET).now_or_never().expect("a dry run opens nothing")?;
     prepare(&mut link);
     let gate = Gate { dry_run: true, ..Gate::default() };
@@ -43,7 +43,7 @@ pub fn planned<F: Family>(
     let context = Context { robot, link: &mut link, screen: &QUIET, several: false, authority };
     match command.run(context).now_or_never().expect("a dry run waits for nothing") {
         Err(failure) if !is_end(&failure) => Err(failure),
-        _ => super::AnyReport::data(&F::rehearsed(&mut link).into_report()),
+        _ => super::AnyReport::data(&F::planned(&mut link).into_report()),
     }
 }
 

@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use super::Access;
+use super::connection::Access;
 use crate::failure::{Failure, plain};
 use crate::output::Screen;
 use crate::transport::tap::Capture;

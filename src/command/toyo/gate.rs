@@ -6,7 +6,7 @@ use std::time::Duration;
 use serde_json::Value;
 
 use super::testing::{Bench, Fate, Heard, gated, plan, text};
-use crate::command::Noun as _;
+use crate::command::CommandSet as _;
 use crate::command::frame::testing::{QUIET, frames};
 use crate::controller::Risk::{self, Destroy, Motion, Read, Write};
 use crate::controller::toyo::request::Request;

@@ -155,7 +155,7 @@ impl Family for Toyo {
         link.moving == Some(Moving::Jog)
     }
 
-    fn rehearsed(link: &mut Link) -> Plan {
+    fn planned(link: &mut Link) -> Plan {
         link.plan_end();
         match &mut link.transport {
             Transport::Notes(plan) => std::mem::take(plan),

@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Toyo;
 use crate::command::common::decode::toyo::{FieldRow, field_table};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -61,7 +61,7 @@ impl Block {
 }
 
 impl Command for Raw {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Exchange;
     const ID: &'static str = "toyo.raw";
 
@@ -74,7 +74,7 @@ impl Command for Raw {
         format!("send {} ({about})", self.block.text())
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Exchange, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Exchange, Failure> {
         let link = context.link;
         let answer = match &self.block {
             Block::Known(request) => {

@@ -9,14 +9,14 @@ use std::time::Duration;
 use clap::Parser as _;
 use serde_json::Value;
 
-use super::Family;
 use super::link::Link;
+use super::link::Toyo;
 use super::link::fence::FENCE;
 use super::simulated::Simulated;
 use crate::cli::{Cli, OfToyo, Top, Verb};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::testing::{QUIET, context, everything, frames, planned};
-use crate::command::{AnyCommand, Context, Family as _, Noun as _};
+use crate::command::{AnyCommand, CommandSet as _, Context, Family as _};
 use crate::controller::Risk;
 use crate::controller::toyo::simulator::Start;
 use crate::failure::Failure;
@@ -166,7 +166,7 @@ impl Bench {
     /// Runs `armctl toyo WORDS…` until Ctrl-C comes after a while; what is said then.
     pub(super) fn interrupted(&mut self, words: &[&str], after: Duration) -> Result<String, Failure> {
         self.left(words, after);
-        self.runtime.block_on(Family::halt(&mut self.link))
+        self.runtime.block_on(Toyo::halt(&mut self.link))
     }
 
     /// Runs `armctl toyo WORDS…` for a while and leaves it there; whether that must not be.
@@ -179,7 +179,7 @@ impl Bench {
                 panic!("{words:?} has ended before: {:?}", done.map(|report| report.data()));
             }
         });
-        Family::must_halt(&self.link)
+        Toyo::must_halt(&self.link)
     }
 
     /// Lets time pass.
@@ -198,14 +198,14 @@ impl Bench {
 
     /// Closes the link.
     pub(super) fn close(self) -> Result<(), Failure> {
-        self.runtime.block_on(Family::close(self.link, &quiet()))
+        self.runtime.block_on(Toyo::close(self.link, &quiet()))
     }
 
     /// A simulator by its URL.
     pub(super) fn new(target: &str) -> Self {
         let runtime = runtime();
         let (robot, _) = resolved(target, &["status"]).expect("a robot");
-        let link = runtime.block_on(Family::connect(&robot, everything(), &quiet())).expect("a link");
+        let link = runtime.block_on(Toyo::connect(&robot, everything(), &quiet())).expect("a link");
         Self { runtime, robot, link }
     }
 
@@ -250,7 +250,7 @@ fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
 }
 
 /// Robot and command of a line.
-fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Family>>), Failure> {
+fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Toyo>>), Failure> {
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Toyo))?.remove(0);

@@ -119,13 +119,13 @@ fn text(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::Need;
+    use crate::command::ConnectMode;
     use crate::output::{ColorChoice, Format};
 
     /// What a capture file holds of a request and its answer.
     fn recorded(ends: Option<(SocketAddr, SocketAddr)>) -> Vec<u8> {
         let file = tempfile::NamedTempFile::new().unwrap();
-        let access = Access { trace: Some(file.path().to_owned()), ..Access::reading(Need::Command) };
+        let access = Access { trace: Some(file.path().to_owned()), ..Access::reading(ConnectMode::Control) };
         let mut trace = Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 0), ends).unwrap();
         trace.record(Direction::Sent, b"@HSON\r\n");
         trace.record(Direction::Received, b"");
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn text_waits_while_it_is_held() {
-        let access = Access::reading(Need::Command);
+        let access = Access::reading(ConnectMode::Control);
         let mut trace = Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 2), None).unwrap();
         trace.hold();
         trace.record(Direction::Sent, b"@HSON\r\n");

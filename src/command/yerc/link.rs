@@ -131,7 +131,7 @@ impl Family for Yerc {
         Ok("the robot was stopped: HOLD is on; `yerc hold off` releases it".to_owned())
     }
 
-    fn rehearsed(link: &mut Link) -> Plan {
+    fn planned(link: &mut Link) -> Plan {
         match &mut link.transport {
             Transport::Notes(plan) => std::mem::take(plan),
             Transport::Udp(_) | Transport::Sim(_) | Transport::Session(_) => Plan::default(),

@@ -6,9 +6,9 @@ use clap::{Args, ValueEnum};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Serialize, Serializer};
 
-use super::Family;
 use super::fitted::Fitted;
 use super::link::Link;
+use super::link::Yerc;
 use super::orders::usage;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::items;
@@ -43,11 +43,11 @@ enum Which {
 }
 
 impl Command for Position {
-    type Family = Family;
+    type Family = Yerc;
     type Report = PositionReport;
     const ID: &'static str = "yerc.position";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<PositionReport, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<PositionReport, Failure> {
         let link = context.link;
         let which = match (self.coordinates, self.group) {
             (Some(which), _) => which,

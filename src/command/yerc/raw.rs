@@ -7,8 +7,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::Instant;
 
-use super::Family;
 use super::file::download_failed;
+use super::link::Yerc;
 use super::link::{self, Link, Refusal};
 use super::register::unsigned;
 use crate::command::common::decode::yerc::{FieldRow, field_table, parse_hex};
@@ -92,7 +92,7 @@ impl Raw {
 }
 
 impl Command for Raw {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Answer;
     const ID: &'static str = "yerc.raw";
 
@@ -113,7 +113,7 @@ impl Command for Raw {
         )
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Answer, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Answer, Failure> {
         let Context { link, screen, .. } = context;
         let request = self.request();
         if !self.file && request.division() == Division::File {

@@ -3,12 +3,12 @@
 use clap::Parser as _;
 use serde_json::Value;
 
-use super::Family;
 use super::link::Link;
+use super::link::Yerc;
 use crate::cli::{Cli, OfYerc, Top, Verb};
 use crate::command::frame::testing;
 use crate::command::frame::testing::{context, everything, planned};
-use crate::command::{AnyCommand, Family as _, Noun as _};
+use crate::command::{AnyCommand, CommandSet as _, Family as _};
 use crate::controller::text::hex;
 use crate::failure::Failure;
 use crate::output::{ColorChoice, Format, Screen};
@@ -73,7 +73,7 @@ pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Fa
     for words in lines {
         let (robot, command) = resolved(&target, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap();
         if link.is_none() {
-            link = Some(Family::connect(&robot, everything(), &quiet()).await.unwrap());
+            link = Some(Yerc::connect(&robot, everything(), &quiet()).await.unwrap());
         }
         let link = link.as_mut().expect("connected by the first line");
         let context = context(&robot, link);
@@ -98,7 +98,7 @@ impl Bench {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
         let (robot, _) = resolved(target, &["status"]).expect("a robot");
-        let link = runtime.block_on(Family::connect(&robot, everything(), &quiet())).expect("a link");
+        let link = runtime.block_on(Yerc::connect(&robot, everything(), &quiet())).expect("a link");
         Self { runtime, robot, link }
     }
 
@@ -125,7 +125,7 @@ fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
 }
 
 /// Robot and command of a line.
-pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Family>>), Failure> {
+pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Yerc>>), Failure> {
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let flags = Options { encoding: cli.globals.encoding, ..Options::default() };

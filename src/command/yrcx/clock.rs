@@ -6,8 +6,8 @@ use jiff::civil::{Date, DateTime, Time};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::link::Link;
+use super::link::Yrcx;
 use crate::command::frame::orders::Done;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -19,7 +19,7 @@ use crate::output::view::View;
 
 commands! {
     /// What can be done with the controller's clock.
-    pub enum Clock of Family {
+    pub enum Clock {
         /// Read date and time
         Get(Get),
         /// Set date and time: now, 2026-03-01T08:45:00, 2026-03-01 or 08:45
@@ -37,11 +37,11 @@ const CENTURY: i16 = 2000;
 pub struct Get {}
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Reading;
     const ID: &'static str = "yrcx.clock.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Reading, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Reading, Failure> {
         let link = context.link;
         let date = link.draft(table::Command::DateGet)?.build()?;
         let time = link.draft(table::Command::TimeGet)?.build()?;
@@ -169,7 +169,7 @@ fn digits<N: std::str::FromStr>(text: &str, count: usize) -> Option<N> {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Done;
     const ID: &'static str = "yrcx.clock.set";
 
@@ -177,7 +177,7 @@ impl Command for Set {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
         let link = context.link;
         let (date, time) = match self.moment {
             Moment::Given { date, time } => (date, time),

@@ -6,13 +6,14 @@ use std::time::Duration;
 
 use serde_json::Value;
 
+use super::Yrcx;
 use super::link::Link;
+use super::link::Yrcx;
 use super::simulated::in_process;
 use super::testing::{planned_line, resolved};
-use super::{Family, Yrcx};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::testing::QUIET;
-use crate::command::{Access, AnyCommand, Context, Need, Noun as _};
+use crate::command::{Access, AnyCommand, CommandSet as _, ConnectMode, Context};
 use crate::controller::Risk;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
 use crate::controller::yrcx::signal::{Side, Signal, resting};
@@ -139,9 +140,9 @@ const SHOWN: [&str; 2] = ["io watch", "status-reset"];
 const WORD: &str = "abs-reset --axis 2";
 
 /// Folders that lines name, made by a backup.
-struct Desk(tempfile::TempDir);
+struct OfflineCommand(tempfile::TempDir);
 
-impl Desk {
+impl OfflineCommand {
     fn new() -> Self {
         let desk = Self(tempfile::tempdir().unwrap());
         let mut bench = Bench::new();
@@ -166,7 +167,7 @@ fn lines() -> impl Iterator<Item = (&'static str, Risk)> {
 const AT_DESK: [&str; 1] = ["yrcx.io.map"];
 
 /// A controller that nothing is sent to, and the command of a line.
-fn real(line: &str) -> (Robot, Box<dyn AnyCommand<Family>>) {
+fn real(line: &str) -> (Robot, Box<dyn AnyCommand<Yrcx>>) {
     let line: Vec<&str> = line.split(' ').collect();
     resolved("eip://127.0.0.1", &line).unwrap_or_else(|failure| panic!("{line:?}: {failure}"))
 }
@@ -200,7 +201,7 @@ fn a_read_only_robot_is_read_and_stopped() {
 
 #[test]
 fn what_overwrites_is_not_done_where_nobody_says_yes() {
-    let desk = Desk::new();
+    let desk = OfflineCommand::new();
     for (before, line) in DESTROYS {
         let mut bench = Bench::new();
         bench.run(before, true).unwrap();
@@ -226,7 +227,7 @@ fn what_overwrites_is_not_done_where_nobody_says_yes() {
 
 #[test]
 fn what_is_new_wants_no_yes() {
-    let desk = Desk::new();
+    let desk = OfflineCommand::new();
     for line in [
         "teach --point 7 --in pulse",
         "point set 7 --mm 1,2,3,4",
@@ -244,7 +245,7 @@ fn what_is_new_wants_no_yes() {
 
 #[test]
 fn a_dry_run_shows_a_frame_of_its_own_risk() {
-    let desk = Desk::new();
+    let desk = OfflineCommand::new();
     for (line, risk) in lines() {
         let plan =
             planned_line("eip://127.0.0.1", &desk.line(line)).unwrap_or_else(|failure| panic!("{line}: {failure}"));
@@ -263,7 +264,7 @@ fn a_dry_run_shows_a_frame_of_its_own_risk() {
 
 #[test]
 fn a_dry_run_shows_what_is_sent() {
-    let desk = Desk::new();
+    let desk = OfflineCommand::new();
     let befores = DESTROYS.iter().map(|(before, line)| (Some(*before), *line));
     let others = lines().filter(|(_, risk)| *risk != Risk::Destroy).map(|(line, _)| (None, line));
     for (before, line) in befores.chain(others).filter(|(_, line)| !line.starts_with("eip ") && !SHOWN.contains(line)) {
@@ -379,7 +380,7 @@ impl Bench {
         let (simulated, _) = resolved("sim:", &["status"]).unwrap();
         let shown = Arc::default();
         let peer = Noting(in_process(&Sim::default()).unwrap(), Image::default(), Arc::clone(&shown));
-        let access = Access::reading(Need::Command);
+        let access = Access::reading(ConnectMode::Control);
         let link = runtime.block_on(Link::to_peer(&simulated, &access, &QUIET, Box::new(peer))).unwrap();
         // The gate is to take it for a real one.
         let (robot, _) = real("status");

@@ -4,8 +4,9 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::link::Yrcx;
 use super::refusal::refused;
-use super::{Family, link, overwrite};
+use super::{link, overwrite};
 use crate::command::common::decode::yrcx::{FieldRow, field_table};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -56,7 +57,7 @@ pub fn words(text: &str) -> Result<Words, String> {
 }
 
 impl Command for Raw {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Exchange;
     const ID: &'static str = "yrcx.raw";
 
@@ -72,7 +73,7 @@ impl Command for Raw {
         overwrite::confirmation(self.wi.command())
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Exchange, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Exchange, Failure> {
         context.link.no_unit("the words name the robot")?;
         if self.confirmation() == Confirmation::WhenKnown {
             overwrite::confirm(context.link, &context.authority, &self.wi).await?;

@@ -7,12 +7,12 @@ use std::time::Duration;
 use clap::Parser as _;
 use serde_json::Value;
 
-use super::Family;
 use super::link::Link;
+use super::link::Yrcx;
 use crate::cli::{Cli, OfYrcx, Top, Verb};
 use crate::command::frame::testing;
 use crate::command::frame::testing::{context, planned};
-use crate::command::{Access, AnyCommand, Family as _, Need, Noun as _};
+use crate::command::{Access, AnyCommand, CommandSet as _, ConnectMode, Family as _};
 use crate::controller::Risk;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Words};
 use crate::controller::yrcx::signal::output;
@@ -197,7 +197,7 @@ impl Bench {
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
         let peer = Shared::new(scripted.into());
-        let access = Access { granted: Grant::of(granted), ..Access::reading(Need::Command) };
+        let access = Access { granted: Grant::of(granted), ..Access::reading(ConnectMode::Control) };
         let screen = quiet();
         let opening = Link::to_peer(&robot, &access, &screen, Box::new(Handle(Shared::clone(&peer))));
         let link = runtime.block_on(opening).expect("a link");
@@ -237,7 +237,7 @@ impl Bench {
 
     /// What Ctrl-C does to a motion.
     pub(super) fn halt(&mut self) -> Result<String, Failure> {
-        self.runtime.block_on(Family::halt(&mut self.link))
+        self.runtime.block_on(Yrcx::halt(&mut self.link))
     }
 
     /// Changes the controller from outside, or looks at it.
@@ -247,7 +247,7 @@ impl Bench {
 
     /// Ends the link, and returns the controller.
     pub(super) fn into_peer(self) -> Scripted {
-        self.runtime.block_on(Family::close(self.link, &quiet())).expect("it closes");
+        self.runtime.block_on(Yrcx::close(self.link, &quiet())).expect("it closes");
         std::sync::Arc::into_inner(self.peer).expect("the link is gone").into_inner().unwrap()
     }
 }
@@ -390,7 +390,7 @@ fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
 }
 
 /// Robot and command of a line.
-pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Family>>), Failure> {
+pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Yrcx>>), Failure> {
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Yrcx))?.remove(0);

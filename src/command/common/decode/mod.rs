@@ -10,7 +10,7 @@ use clap::Subcommand;
 use self::toyo::Toyo;
 use self::yerc::Yerc;
 use self::yrcx::Yrcx;
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::files;
 
@@ -27,7 +27,7 @@ pub enum Decode {
 
 impl Decode {
     /// Does it.
-    pub fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub fn run(self, run: &Run) -> Result<(), RunError> {
         match self {
             Self::Yerc(yerc) => yerc.run(run),
             Self::Yrcx(yrcx) => yrcx.run(run),

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::capture::{self, Selection};
 use super::stdin;
 use crate::command::Report;
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::controller::toyo::describe::{Description, FieldNote, Sender, describe};
 use crate::controller::toyo::request::Request;
 use crate::failure::{Failure, Kind};
@@ -35,7 +35,7 @@ const MARKS: [(&str, Sender); 2] = [("->", Sender::Host), ("<-", Sender::Control
 const REMARK: &str = "  # ";
 
 impl Toyo {
-    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
         if let Some(path) = capture::named(&self.lines) {
             return capture::tell(run, "decode.toyo.capture", &path, &self.selection, capture::toyo::Lines::default());
         }

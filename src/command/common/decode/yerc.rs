@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::capture::{self, Selection};
 use super::stdin;
 use crate::command::Report;
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::controller::yerc::describe::{Description, FieldNote, Sender, describe};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::table::service;
@@ -51,7 +51,7 @@ fn number(text: &str) -> Result<u16, String> {
 }
 
 impl Yerc {
-    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
         if let Some(path) = capture::named(&self.hex) {
             return capture::tell(run, "decode.yerc.capture", &path, &self.selection, capture::yerc::Frames::default());
         }

@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::capture::{self, Selection};
 use crate::command::Report;
-use crate::command::frame::run::{Run, Stopped};
-use crate::command::yrcx::words;
+use crate::command::frame::run::{Run, RunError};
+use crate::command::yrcx::raw::words;
 use crate::controller::yrcx::describe::{Description, FieldNote, answer, command};
 use crate::controller::yrcx::image::Words;
 use crate::failure::{Failure, Kind};
@@ -41,7 +41,7 @@ pub struct Yrcx {
 }
 
 impl Yrcx {
-    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
         if let Some(path) = &self.file {
             let images = capture::yrcx::Images::new(self.every_image);
             return capture::tell(run, "decode.yrcx.capture", path, &self.selection, images);

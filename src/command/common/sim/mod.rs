@@ -14,7 +14,7 @@ use self::toyo::SimToyo;
 use self::yerc::SimYerc;
 use self::yrcx::SimYrcx;
 use crate::command::frame::interrupt::interruptible;
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::failure::{Failure, Kind, plain};
 
 /// Which simulator to serve.
@@ -37,7 +37,7 @@ enum SimFamily {
 
 impl Sim {
     /// Does it.
-    pub async fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub async fn run(self, run: &Run) -> Result<(), RunError> {
         match self.family {
             Some(SimFamily::Yerc(yerc)) => yerc.run(run).await,
             Some(SimFamily::Yrcx(yrcx)) => yrcx.run(run).await,
@@ -61,7 +61,7 @@ async fn serve(
     served: &mut impl Served,
     address: Option<SocketAddr>,
     with_console: bool,
-) -> Result<(), Stopped> {
+) -> Result<(), RunError> {
     if address.is_some_and(|address| !address.ip().is_loopback()) {
         run.screen.note("warning: others on the network can reach this simulator");
     }

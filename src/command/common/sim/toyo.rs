@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::{Served, address, cannot_listen, serve};
 use crate::command::Report;
 use crate::command::frame::interrupt::catch_interrupts;
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::command::toyo::simulated::{self, Simulated};
 use crate::failure::{Failure, plain};
 use crate::output::view::View;
@@ -61,7 +61,7 @@ const PORT: u16 = 4001;
 const BITS: u32 = 11;
 
 impl SimToyo {
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         let start = simulated::start(self.state.as_deref(), self.axes, self.fault.as_ref())?;
         let speed = self.baud.map(|baud| Pace::new(baud, BITS));
         let settings = self.baud.map(|baud| format!("?baud={baud}")).unwrap_or_default();

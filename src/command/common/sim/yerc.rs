@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::{Served, address, cannot_listen, serve};
 use crate::command::Report;
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::command::yerc::simulated::{self, Simulated};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::simulator::Simulator;
@@ -58,7 +58,7 @@ impl Default for SimYerc {
 }
 
 impl SimYerc {
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         let model = self.model.unwrap_or(Model::Dx200);
         let start = simulated::start(self.state.as_deref(), model, self.fault.as_ref())?;
         if let Some(model) = self.model.filter(|model| *model != start.model()) {

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::{Served, address, cannot_listen, serve};
 use crate::command::Report;
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::command::yrcx::simulated::{self, Controller, faults, mischief};
 use crate::output::view::View;
 use crate::transport::eip::adapter::Mischief;
@@ -54,7 +54,7 @@ fn listen(text: &str) -> Result<SocketAddrV4, String> {
 }
 
 impl SimYrcx {
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         let start = simulated::start(self.state.as_deref())?;
         let io_port = self.io_port.unwrap_or(if self.bind.port() == 0 { 0 } else { IO_PORT });
         let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port };

@@ -10,7 +10,7 @@ use super::{family_of, make, place, reading_risk};
 use crate::command::backup::manifest;
 use crate::command::backup::{Making, Only};
 use crate::command::fleet::status::Fleet;
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
@@ -53,7 +53,7 @@ impl Diff {
     }
 
     /// Does it.
-    pub async fn run(&self, run: &Run) -> Result<(), Stopped> {
+    pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         let Some(new) = &self.new else { return run.robots(self).await };
         let (old, new) = (Self::side(self.old.clone())?, Self::side(new.clone())?);
         run.local(Self::ID, &self.compare(&old, &new)?)

@@ -18,13 +18,14 @@ pub use restore::Restore;
 
 use crate::command::backup::manifest;
 use crate::command::backup::{BackedUp, Making, Only};
+use crate::command::face::Face;
+use crate::command::families;
 use crate::command::fleet::status::{Fleet, Link};
 use crate::command::frame::local::own_folder;
-use crate::command::frame::run::{Run, Stopped};
-use crate::command::{Command, Context, toyo, yerc, yrcx};
+use crate::command::frame::run::{Run, RunError};
+use crate::command::{AnyContext, Command, Context};
 use crate::controller::Risk;
 use crate::failure::Failure;
-use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::Family;
 
@@ -61,7 +62,7 @@ impl Backup {
     }
 
     /// Does it.
-    pub async fn run(&self, run: &Run) -> Result<(), Stopped> {
+    pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         if self.check {
             return run.local("backup.check", &Checked::of(&self.folder)?);
         }
@@ -91,38 +92,24 @@ impl Command for Backup {
 
 /// What it takes to read all of a controller.
 fn reading_risk(robot: &Robot) -> Risk {
-    if robot.family == Family::Toyo && !robot.read_only.value { Risk::Write } else { Risk::Read }
+    families::of(robot.family).backup_risk(robot)
 }
 
 /// Makes a backup of a robot of any family.
 async fn make(context: Context<'_, Fleet>, making: Making) -> Result<BackedUp, Failure> {
+    let (face, context) = opened(context)?;
+    face.back_up(context, &making).await
+}
+
+/// The connection of a robot of any family, and what it can be asked.
+fn opened(context: Context<'_, Fleet>) -> Result<(&'static dyn Face, AnyContext<'_>), Failure> {
     let Context { link, screen, robot, authority, .. } = context;
     match link {
-        Link::Yerc(link) => {
-            let context = Context { robot, link: &mut **link, screen, several: false, authority };
-            Ok(yerc::file::Backup::of(&making).run(context).await?.into())
-        }
-        Link::Yrcx(link) => {
-            let context = Context { robot, link: &mut **link, screen, several: false, authority };
-            yrcx::backup::Backup::of(&making).run(context).await
-        }
-        Link::Toyo(link) => {
-            let current_task = robot.read_only.value;
-            if current_task {
-                note_current_task(screen, robot);
-            }
-            let context = Context { robot, link: &mut **link, screen, several: false, authority };
-            Ok(toyo::backup::Backup::of(&making, current_task).run(context).await?.into())
+        Link::Open(face, connection) => {
+            Ok((*face, AnyContext { robot, connection: &mut **connection, screen, several: false, authority }))
         }
         Link::Absent(failure) => Err(failure.clone()),
     }
-}
-
-fn note_current_task(screen: &Screen, robot: &Robot) {
-    screen.note(&format!(
-        "{}: it is read-only, and to choose another task is a change: only the current task's points and program",
-        robot.label()
-    ));
 }
 
 /// The folder of a robot's backup in what was named: the folder of its name in it, where several robots have one.

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::Value;
 
-use super::{family_of, place};
+use super::{family_of, opened, place};
 use crate::command::backup::manifest;
-use crate::command::backup::{Items, Only, Restored, Restoring};
-use crate::command::fleet::status::{Fleet, Link};
-use crate::command::{Command, Context, toyo, yerc, yrcx};
+use crate::command::backup::{Only, Restored, Restoring};
+use crate::command::fleet::status::Fleet;
+use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::gate::Confirmation;
@@ -63,26 +63,12 @@ impl Command for Restore {
     }
 
     async fn run(&self, context: Context<'_, Fleet>) -> Result<Restored, Failure> {
-        let Context { link, screen, robot, several, authority } = context;
-        let folder = place(&self.folder, robot, several);
+        let robot = context.robot;
+        let folder = place(&self.folder, robot, context.several);
         manifest::admit(&manifest::existing::<Value>(&folder)?, robot, self.force)?;
         let only = Only(self.only.clone());
-        let restoring = Restoring { folder: folder.clone(), only, machine: self.machine, force: self.force };
-        match link {
-            Link::Yerc(link) => {
-                let context = Context { robot, link: &mut **link, screen, several: false, authority };
-                let results = yerc::file::Restore::of(&restoring).run(context).await?;
-                Ok(Restored::new(&folder, Items::from(results)))
-            }
-            Link::Yrcx(link) => {
-                let context = Context { robot, link: &mut **link, screen, several: false, authority };
-                yrcx::backup::Restore::of(&restoring).run(context).await
-            }
-            Link::Toyo(link) => {
-                let context = Context { robot, link: &mut **link, screen, several: false, authority };
-                Ok(toyo::backup::Restore::of(&restoring).run(context).await?.of_folder(&folder))
-            }
-            Link::Absent(failure) => Err(failure.clone()),
-        }
+        let restoring = Restoring { folder, only, machine: self.machine, force: self.force };
+        let (face, context) = opened(context)?;
+        face.restore(context, &restoring).await
     }
 }

@@ -7,8 +7,9 @@ use serde::Serialize;
 use crate::command::ValueKind;
 use crate::command::face::layers;
 use crate::command::face::layers::Layer;
+use crate::command::families;
 use crate::command::frame::dry_run::Plan;
-use crate::command::{Access, Command, Context, Family, Need, Report, toyo, yerc, yrcx};
+use crate::command::{Access, Command, ConnectMode, Context, Family, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::View;
@@ -40,7 +41,7 @@ impl Family for Checked {
         Ok("nothing was sent that moves the robot".to_owned())
     }
 
-    fn rehearsed(_link: &mut Access) -> Plan {
+    fn planned(_link: &mut Access) -> Plan {
         Plan::default()
     }
 
@@ -54,8 +55,8 @@ impl Command for Check {
     type Report = CheckReport;
     const ID: &'static str = "robots.check";
 
-    fn need(&self) -> Need {
-        Need::Messages
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
     }
 
     async fn run(&self, context: Context<'_, Checked>) -> Result<CheckReport, Failure> {
@@ -64,11 +65,7 @@ impl Command for Check {
         if access.dry_run {
             return Err(Failure::usage("what a check asks next depends on the answers").hint("it only reads"));
         }
-        let layers = match robot.family {
-            target::Family::Yerc => yerc::check(robot, access, screen).await?,
-            target::Family::Yrcx => yrcx::check(robot, access, screen).await?,
-            target::Family::Toyo => toyo::check(robot, access, screen).await?,
-        };
+        let layers = families::of(robot.family).check(robot, access, screen).await?;
         Ok(CheckReport { layers, family: robot.family.name() })
     }
 }

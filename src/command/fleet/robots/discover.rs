@@ -7,11 +7,11 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::command::toyo::ports::{self, Port};
 use crate::command::yrcx::eip::board::{Identity, MAKER};
 use crate::command::yrcx::trace::Recorder;
-use crate::command::{Access, Need, Report};
+use crate::command::{Access, ConnectMode, Report};
 use crate::failure::{Failure, Kind, plain};
 use crate::output::view::{Cell, Table, View};
 use crate::settings::duration;
@@ -56,7 +56,7 @@ fn wait(text: &str) -> Result<Duration, String> {
 }
 
 impl Discover {
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         if run.gate.dry_run {
             return Err(Failure::usage("nothing is found without asking").hint("it only asks who is there").into());
         }
@@ -66,7 +66,7 @@ impl Discover {
         if is_everybody {
             targets.push(SocketAddrV4::new(Ipv4Addr::BROADCAST, PORT));
         }
-        let access = Access { trace: run.trace.clone(), ..Access::reading(Need::Messages) };
+        let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Explicit) };
         run.begin_trace()?;
         let (recorder, tap) = Recorder::start(&access, &run.screen)?.unzip();
         let asked = list_identity(self.bind, &targets, self.wait, &tap.unwrap_or_default()).await;

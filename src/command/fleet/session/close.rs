@@ -8,7 +8,7 @@ use super::list::spots;
 use crate::command::Report;
 use crate::command::ValueKind;
 use crate::command::frame::attach::{no_place, refused};
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Table, View};
@@ -46,7 +46,7 @@ struct Session {
 }
 
 impl Close {
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         let selection = &run.sources.selection;
         let mut names: Vec<&str> = self.names.iter().chain(&selection.robots).map(String::as_str).collect();
         names.extend(selection.target.as_ref().map(Target::url));

@@ -2,48 +2,44 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
-use std::fmt;
 use std::rc::Rc;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::{JoinSet, LocalSet};
 
+use crate::command::Access;
+use crate::command::face::HeldLink;
+use crate::command::families;
 use crate::command::frame::attach::{key_of, no_place};
-use crate::command::frame::interrupt::interruptible;
-use crate::command::{Access, toyo, yerc, yrcx};
-use crate::controller::toyo::passing as toyo_passing;
-use crate::controller::yerc::passing as yerc_passing;
-use crate::controller::yrcx::passing as yrcx_passing;
+use crate::command::frame::session_manager::{By, Order, SessionManager};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
-use crate::settings::target::Family;
-use crate::transport::session::host::held::Held;
-use crate::transport::session::host::{Guard, Host};
+use crate::transport::session::host::Host;
 use crate::transport::session::place::Place;
 use crate::transport::session::wire::Info;
 
 /// A link that this process holds, and lets clients have.
-pub struct Holding {
+pub struct SessionHost {
     host: Host,
-    recorder: Option<yrcx::Recorder>,
+    /// What is to be done once the link is closed.
+    finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
     label: String,
 }
 
 /// Whether a link could be held.
 pub enum Attempt {
     /// It is.
-    Held(Box<Holding>),
+    Held(Box<SessionHost>),
     /// Somebody has it already.
     Taken,
     /// There is no place for sessions, and why.
     NoPlace(Failure),
 }
 
-impl Holding {
+impl SessionHost {
     /// Opens the link to a robot, and lets clients in. `say` is told what happens from then on.
     pub async fn open(
         robot: &Robot,
@@ -63,14 +59,15 @@ impl Holding {
             Ok(None) => return Ok(Attempt::Taken),
             Err(error) => return Ok(Attempt::NoPlace(no_place(&error))),
         };
-        let (held, recorder) = link(robot, access, screen).await?;
+        let face = families::of(robot.family);
+        let HeldLink { held, finish } = face.hold(robot, access, screen).await?;
         let host =
             Host::new(claim, key, info, held, say).map_err(|error| Failure::io(spot.socket().display(), &error))?;
-        let host = if robot.read_only.value { host.guarded(guard(robot.family)) } else { host };
-        Ok(Attempt::Held(Box::new(Self { host, recorder, label: robot.label() })))
+        let host = if robot.read_only.value { host.guarded(face.guard()) } else { host };
+        Ok(Attempt::Held(Box::new(Self { host, finish, label: robot.label() })))
     }
 
-    /// Serves until a client has it end. The future may be dropped: [`Holding::end`] goes on from there.
+    /// Serves until a client has it end. The future may be dropped: [`SessionHost::end`] goes on from there.
     pub async fn serve(&mut self) {
         self.host.serve().await;
     }
@@ -85,109 +82,39 @@ impl Holding {
         if let Err(trouble) = self.host.end(why).await {
             screen.note(&format!("{}: the connection was not closed properly: {trouble}", self.label));
         }
-        self.recorder.map_or(Ok(()), yrcx::Recorder::finish)
+        self.finish.map_or(Ok(()), |finish| finish())
     }
-}
-
-/// What may pass to a read-only robot, whoever sends it.
-fn guard(family: Family) -> Guard {
-    let nothing = Guard { sends: |_| false, shows: |_, _| false };
-    match family {
-        Family::Yerc => Guard { sends: yerc_passing::only_reads_or_stops, ..nothing },
-        Family::Yrcx => Guard { shows: yrcx_passing::only_stops, ..nothing },
-        Family::Toyo => Guard { sends: toyo_passing::only_reads_or_stops, ..nothing },
-    }
-}
-
-/// The link of whichever family. One that is open reaches its controller.
-async fn link(robot: &Robot, access: &Access, screen: &Screen) -> Result<(Held, Option<yrcx::Recorder>), Failure> {
-    match robot.family {
-        Family::Yrcx => {
-            let (images, recorder) = yrcx::hold(robot, access, screen).await?;
-            Ok((Held::Images(images), recorder))
-        }
-        Family::Yerc => Ok((Held::Datagrams(yerc::hold(robot, access, screen).await?), None)),
-        Family::Toyo => Ok((Held::Stream(toyo::hold(robot, access, screen).await?), None)),
-    }
-}
-
-/// Holds the links that the lines of this process use, on a thread of its own: a line that computes for long must not
-/// let a link drop.
-#[derive(Debug, Clone)]
-pub struct Holder {
-    orders: mpsc::UnboundedSender<Order>,
-    /// Whether it has been told that links cannot be held here.
-    told: Arc<AtomicBool>,
-}
-
-enum Order {
-    Hold { robot: Box<Robot>, access: Access, screen: Screen, done: oneshot::Sender<Result<By, Failure>> },
-    End(oneshot::Sender<()>),
-}
-
-impl fmt::Debug for Order {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Order")
-    }
-}
-
-/// Who holds a link.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum By {
-    /// This process.
-    This,
-    /// A session of another process.
-    Another,
-    /// Nobody: there is no place for sessions, and why.
-    Nobody(Failure),
 }
 
 /// What a link has to tell at any time, to whoever types.
 type Say = Arc<dyn Fn(&str) + Send + Sync>;
 
-impl Holder {
-    /// Begins to hold nothing yet. What happens to links is told to `say`.
-    pub fn start(say: impl Fn(&str) + Send + Sync + 'static) -> Result<(Self, HolderThread), Failure> {
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-        let runtime = runtime.map_err(|error| Failure::io("start", &error))?;
-        let (orders, ordered) = mpsc::unbounded_channel();
-        let say: Say = Arc::new(say);
-        let work = move || LocalSet::new().block_on(&runtime, work(ordered, say));
-        let thread = std::thread::Builder::new().name("links".to_owned()).spawn(work);
-        let thread = thread.map_err(|error| Failure::io("start", &error))?;
-        let holder = Self { orders, told: Arc::default() };
-        Ok((holder.clone(), HolderThread { holder, thread }))
-    }
-
-    /// Makes sure that the link to a robot is held from now on, and says by whom.
-    pub async fn hold(&self, robot: &Robot, access: &Access, screen: &Screen) -> Result<By, Failure> {
-        let (done, is_done) = oneshot::channel();
-        let order = Order::Hold { robot: Box::new(robot.clone()), access: access.clone(), screen: *screen, done };
-        let broken = || Failure::local("the thread that holds links has ended");
-        self.orders.send(order).map_err(|_| broken())?;
-        let by = interruptible(is_done).await?.map_err(|_| broken())??;
-        if let By::Nobody(why) = &by
-            && !self.told.swap(true, Ordering::Relaxed)
-        {
-            screen.note(&format!("links are not held from one line to the next: {why}"));
-        }
-        Ok(by)
-    }
+/// Begins to hold nothing yet. What happens to links is told to `say`.
+pub fn start(say: impl Fn(&str) + Send + Sync + 'static) -> Result<(SessionManager, ManagerThread), Failure> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(|error| Failure::io("start", &error))?;
+    let (orders, ordered) = mpsc::unbounded_channel();
+    let say: Say = Arc::new(say);
+    let work = move || LocalSet::new().block_on(&runtime, work(ordered, say));
+    let thread = std::thread::Builder::new().name("links".to_owned()).spawn(work);
+    let thread = thread.map_err(|error| Failure::io("start", &error))?;
+    let manager = SessionManager::new(orders);
+    Ok((manager.clone(), ManagerThread { manager, thread }))
 }
 
-/// The thread behind a [`Holder`].
+/// The thread behind a [`SessionManager`].
 #[derive(Debug)]
-pub struct HolderThread {
-    holder: Holder,
+pub struct ManagerThread {
+    manager: SessionManager,
     thread: JoinHandle<()>,
 }
 
-impl HolderThread {
+impl ManagerThread {
     /// Lets all links go, and waits until they are gone.
     pub async fn end(self) {
         let (done, is_done) = oneshot::channel();
         // A thread that has ended holds nothing.
-        if self.holder.orders.send(Order::End(done)).is_ok() && is_done.await.is_ok() {
+        if self.manager.end(done) && is_done.await.is_ok() {
             let _ = self.thread.join();
         }
     }
@@ -231,9 +158,11 @@ async fn hold(
         move |text: &str| say(&format!("{label}: {text}"))
     };
     let is_held = held.borrow().contains(&key);
+    let records = access.trace.is_some() && families::of(robot.family).session_records();
+    let access = Access { trace: access.trace.filter(|_| records), ..access };
     let attempt = async {
         match Place::find() {
-            _ if !is_held => Holding::open(&robot, &access, &screen, tell).await.map(Some),
+            _ if !is_held => SessionHost::open(&robot, &access, &screen, tell).await.map(Some),
             Ok(Some(place)) if place.spot(&key).socket().exists() => Ok(None),
             // A line that goes around the link that is held would meet another simulator, or open a second connection.
             _ => Err(Failure::local(format!("{label}: somebody has removed the socket of the link that is held"))
@@ -245,8 +174,8 @@ async fn hold(
         () = done.closed() => return,
     };
     let (by, holding) = match attempt {
-        Ok(None) => (Ok(By::This), None),
-        Ok(Some(Attempt::Held(holding))) => (Ok(By::This), Some(holding)),
+        Ok(None) => (Ok(By::This { records }), None),
+        Ok(Some(Attempt::Held(holding))) => (Ok(By::This { records }), Some(holding)),
         Ok(Some(Attempt::Taken)) => (Ok(By::Another), None),
         Ok(Some(Attempt::NoPlace(why))) => (Ok(By::Nobody(why)), None),
         Err(failure) => (Err(failure), None),

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::command::Report;
 use crate::command::frame::attach::no_place;
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::transport::session::client::{AttachError, status};
@@ -21,7 +21,7 @@ use crate::transport::session::wire::{Leftover, Peer, Status, VERSION};
 pub struct List {}
 
 impl List {
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         let mut sessions = Vec::new();
         for spot in spots()? {
             sessions.push(Session::of(&spot, status(&spot).await));

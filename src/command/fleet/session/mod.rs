@@ -9,9 +9,8 @@ use clap::Subcommand;
 
 pub use close::Closed;
 pub use list::Sessions;
-pub use open::{Opened, open_for};
 
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 
 /// What can be done with sessions.
 #[derive(Debug, Subcommand)]
@@ -36,7 +35,7 @@ impl Session {
     }
 
     /// Does it.
-    pub async fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub async fn run(self, run: &Run) -> Result<(), RunError> {
         match self {
             Self::Open(open) => open.run(run).await,
             Self::List(list) => list.run(run).await,

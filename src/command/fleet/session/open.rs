@@ -1,32 +1,29 @@
 //! `armctl session open`: holds the link to a robot, in the foreground or behind it.
 
 use std::cell::RefCell;
-use std::ffi::OsString;
 use std::fs::OpenOptions;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::rc::Rc;
 
 use clap::Args;
 use jiff::Timestamp;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-use tokio::task::spawn_blocking;
 
+use super::host::{Attempt, SessionHost};
 use crate::command::ValueKind;
-use crate::command::fleet::session::host::{Attempt, Holding};
+use crate::command::families;
 use crate::command::frame::attach::{key_of, no_place, since};
+use crate::command::frame::background::{self, Opened, Start};
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
-use crate::command::frame::run::{Run, Stopped};
-use crate::command::{Access, Need, Report};
+use crate::command::frame::run::{Run, RunError};
+use crate::command::{Access, ConnectMode};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
-use crate::output::view::View;
 use crate::settings::Robot;
 use crate::settings::target::Family;
 use crate::transport::session::client::status;
+use crate::transport::session::leave_terminal;
 use crate::transport::session::place::{Place, Spot};
-use crate::transport::session::{detach, leave_terminal, process, terminate};
 
 /// Arguments of `session open`.
 #[derive(Debug, Args)]
@@ -42,47 +39,19 @@ pub struct Open {
     detached: bool,
 }
 
-/// A session that holds a link.
-#[derive(Debug, Serialize, Deserialize, JsonSchema)]
-pub struct Opened {
-    robot: String,
-    family: String,
-    target: String,
-    /// The process that holds it.
-    pid: u32,
-    /// Whether it goes on behind the terminal.
-    background: bool,
-    /// Where it then writes what happens.
-    log: Option<String>,
-}
-
-/// What the process behind the terminal tells the one in front of it, in a line.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Start {
-    Opened(Opened),
-    Failed(Failure),
-}
-
-impl Report for Opened {
-    fn view(&self) -> View {
-        let log = self.log.as_ref().map(|log| format!("; what happens stands in {log}")).unwrap_or_default();
-        View::text(format!("{} ({}): held by process {}{log}", self.robot, self.target, self.pid))
-    }
-}
-
 impl Open {
     /// Whether it holds the terminal, too.
     pub fn stays(&self) -> bool {
         !self.background
     }
 
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         let robots = run.sources.robots(self.family)?;
         let [robot] = &robots[..] else {
             return Err(Failure::usage("a session is for one robot").hint("open one for each").into());
         };
-        if robot.read_only.value && robot.family == Family::Yrcx && !robot.target.value.is_simulated() {
+        if robot.read_only.value && families::of(robot.family).session_commands() && !robot.target.value.is_simulated()
+        {
             let message = format!("{} is read-only, and a session commands the controller", robot.label());
             return Err(Failure::new(Kind::RefusedHere, message)
                 .hint("`yrcx status` and `yrcx io get` read without a command connection")
@@ -93,7 +62,7 @@ impl Open {
                 .hint("leave --dry-run away")
                 .into());
         }
-        if run.trace.is_some() && robot.family != Family::Yrcx {
+        if run.trace.is_some() && !families::of(robot.family).session_records() {
             return Err(Failure::usage(format!("a session of {} records nothing", robot.family))
                 .hint("give --trace to the commands that go through it")
                 .into());
@@ -102,7 +71,7 @@ impl Open {
         if self.background {
             let words = std::env::args_os().skip(1);
             let words = words.map(|word| if word == "--background" { "--detached".into() } else { word });
-            return run.local("session.open", &in_background(robot, words).await?);
+            return run.local("session.open", &background::start(robot, words).await?);
         }
         if !self.detached {
             let (host, opened) = Self::open(run, robot, false).await?;
@@ -118,41 +87,34 @@ impl Open {
             }
             Err(failure) => {
                 run.screen.json(&Start::Failed(failure.clone()))?;
-                Err(Stopped { told: true, ..failure.into() })
+                Err(RunError { told: true, ..failure.into() })
             }
         }
     }
 
     /// Opens the link, and lets clients in.
-    async fn open(run: &Run, robot: &Robot, background: bool) -> Result<(Box<Holding>, Opened), Failure> {
+    async fn open(run: &Run, robot: &Robot, background: bool) -> Result<(Box<SessionHost>, Opened), Failure> {
         let place = Place::make().map_err(|error| no_place(&error))?;
         let spot = place.spot(&key_of(robot));
         let log = background.then(|| spot.log());
         let diary = Diary { screen: run.screen, label: robot.label(), file: log.clone() };
         let diary = Rc::new(RefCell::new(diary));
         let say = Rc::clone(&diary);
-        let access = Access { trace: run.trace.clone(), ..Access::reading(Need::Command) };
-        let opening = Holding::open(robot, &access, &run.screen, move |text| say.borrow_mut().say(text));
+        let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Control) };
+        let opening = SessionHost::open(robot, &access, &run.screen, move |text| say.borrow_mut().say(text));
         let holding = match interruptible(opening).await?? {
             Attempt::Held(holding) => holding,
             Attempt::Taken => return Err(taken(robot, &spot).await),
             Attempt::NoPlace(failure) => return Err(failure),
         };
         diary.borrow_mut().say("the link is open");
-        let opened = Opened {
-            robot: robot.name.clone(),
-            family: robot.family.name().to_owned(),
-            target: robot.target.value.url().to_owned(),
-            pid: process(),
-            background,
-            log: log.as_ref().map(|log| log.display().to_string()),
-        };
+        let opened = Opened::here(robot, background, log.as_deref());
         Ok((holding, opened))
     }
 }
 
 /// Serves until somebody wants it to end; that is no failure.
-async fn serve(run: &Run, mut holding: Box<Holding>) -> Result<(), Failure> {
+async fn serve(run: &Run, mut holding: Box<SessionHost>) -> Result<(), Failure> {
     let why = match interruptible(holding.serve()).await {
         Ok(()) => "the session was closed".to_owned(),
         Err(asked) => format!("the session has ended: {}", asked.message),
@@ -169,45 +131,6 @@ async fn taken(robot: &Robot, spot: &Spot) -> Failure {
     };
     Failure::new(Kind::NoAnswer, format!("{}: a session is open already: {who}", robot.label()))
         .hint(format!("commands go through it by themselves; `armctl session close {}` ends it", robot.name))
-}
-
-/// Opens a session in the background for a robot of the inventory whose entry wants one (`hold = true`).
-pub async fn open_for(robot: &Robot, inventory: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
-    let mut words: Vec<OsString> = Vec::new();
-    if let Some(path) = inventory {
-        words.extend(["--config".into(), path.into()]);
-    }
-    words.extend(["-r", &robot.name, "session", "open", "--detached"].map(OsString::from));
-    let opened = in_background(robot, words.into_iter()).await?;
-    screen.note(&format!(
-        "{}: a session was opened (process {}); `armctl session close {}` ends it",
-        robot.label(),
-        opened.pid,
-        robot.name
-    ));
-    Ok(())
-}
-
-/// Starts this program again behind the terminal with these words, and waits until its link is up.
-async fn in_background(robot: &Robot, words: impl Iterator<Item = OsString>) -> Result<Opened, Failure> {
-    let place = Place::make().map_err(|error| no_place(&error))?;
-    let log = place.spot(&key_of(robot)).log();
-    let mut child = detach(words, &log).map_err(|error| Failure::io("this program, in the background", &error))?;
-    let pid = child.pid();
-    let line = match interruptible(spawn_blocking(move || child.line())).await {
-        Ok(line) => line.map_err(|error| Failure::local(format!("the background: {error}")))?,
-        Err(interrupt) => {
-            terminate(pid);
-            return Err(interrupt);
-        }
-    };
-    let line = line.map_err(|error| Failure::io("the background", &error))?;
-    match serde_json::from_str(&line) {
-        Ok(Start::Opened(opened)) => Ok(opened),
-        Ok(Start::Failed(failure)) => Err(failure),
-        Err(_) => Err(Failure::local(format!("{}: the session broke down", robot.label()))
-            .hint(format!("{} may tell why", log.display()))),
-    }
 }
 
 /// Where it is told what happens: on the terminal, or in a file.

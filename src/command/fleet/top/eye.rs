@@ -6,11 +6,13 @@ use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, sleep_until};
 
+use crate::command::face::Watch;
 use crate::command::face::sample::{Depth, Sample};
-use crate::command::{Access, Need, toyo, yerc, yrcx};
+use crate::command::families;
+use crate::command::{Access, ConnectMode};
 use crate::failure::Failure;
 use crate::output::Screen;
-use crate::settings::{Robot, target};
+use crate::settings::Robot;
 
 /// What a look came to, and which robot it was.
 pub type News = (usize, Result<Sample, Failure>);
@@ -29,42 +31,6 @@ pub struct Pace {
 /// Least time before a robot that failed is asked again.
 const AGAIN: Duration = Duration::from_secs(1);
 
-/// A link to a robot of any family, through which only reads leave.
-#[derive(Debug)]
-enum Eye {
-    Yerc(Box<yerc::top::Eye>),
-    Yrcx(Box<yrcx::top::Eye>),
-    Toyo(Box<toyo::top::Eye>),
-}
-
-impl Eye {
-    async fn open(robot: &Robot, screen: &Screen) -> Result<Self, Failure> {
-        let access = Access::reading(Need::Sight);
-        Ok(match robot.family {
-            target::Family::Yerc => Self::Yerc(Box::new(yerc::top::Eye::open(robot, access, screen).await?)),
-            target::Family::Yrcx => Self::Yrcx(Box::new(yrcx::top::Eye::open(robot, access, screen).await?)),
-            target::Family::Toyo => Self::Toyo(Box::new(toyo::top::Eye::open(robot, access, screen).await?)),
-        })
-    }
-
-    async fn look(&mut self, depth: Depth) -> Result<Sample, Failure> {
-        match self {
-            Self::Yerc(eye) => eye.look(depth).await,
-            Self::Yrcx(eye) => eye.look(depth).await,
-            Self::Toyo(eye) => eye.look(depth).await,
-        }
-    }
-
-    async fn close(self, screen: &Screen) {
-        // Nothing was changed: how the end of it went is nobody's concern.
-        let _closed = match self {
-            Self::Yerc(eye) => eye.close(screen).await,
-            Self::Yrcx(eye) => eye.close(screen).await,
-            Self::Toyo(eye) => eye.close(screen).await,
-        };
-    }
-}
-
 /// Looks at robot number `index` until the pace says that it is over, and tells each time. What it begins with is
 /// `delay` later than for the first robot, so that not all are asked at the same moment.
 pub async fn follow(
@@ -82,14 +48,15 @@ pub async fn follow(
             () = over(pace.clone()) => return,
             opened = async {
                 sleep_until(start).await;
-                Box::pin(Eye::open(&robot, &screen)).await
+                families::of(robot.family).watch(&robot, Access::reading(ConnectMode::Monitor), &screen).await
             } => opened,
         };
         let failure = match opened {
             Err(failure) => Some(failure),
             Ok(mut eye) => {
-                let failure = look_on(index, &mut eye, &mut pace, &news).await;
-                eye.close(&screen).await;
+                let failure = look_on(index, &mut *eye, &mut pace, &news).await;
+                // Nothing was changed: how the end of it went is nobody's concern.
+                let _closed = eye.close(&screen).await;
                 failure
             }
         };
@@ -104,7 +71,7 @@ pub async fn follow(
 /// Looks until something fails, or it is over.
 async fn look_on(
     index: usize,
-    eye: &mut Eye,
+    eye: &mut dyn Watch,
     pace: &mut watch::Receiver<Pace>,
     news: &mpsc::Sender<News>,
 ) -> Option<Failure> {

@@ -29,7 +29,7 @@ use self::keys::{Order, order};
 use self::model::Model;
 use self::view::Palette;
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::failure::{Failure, Kind};
 use crate::output::Format;
 use crate::output::fullscreen::{Event, Fullscreen, Keys};
@@ -57,7 +57,7 @@ const NEWS: usize = 64;
 
 impl Top {
     /// Does it.
-    pub async fn run(&self, run: &Run) -> Result<(), Stopped> {
+    pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         let every = run.repeat.every.unwrap_or(EVERY);
         fits(run, every)?;
         let robots = run.sources.robots(None)?;

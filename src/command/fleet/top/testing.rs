@@ -1,7 +1,7 @@
 //! Robots and samples for tests.
 
+use crate::command::face::overview::{OverviewReport, PositionMm};
 use crate::command::face::sample::{Alarm, Axis, Bank, Eight, Lamp, Sample, Whole};
-use crate::command::fleet::status::{OverviewReport, PositionMm};
 use crate::failure::{Failure, Kind};
 use crate::output::view::Tone;
 use crate::settings::inventory::Inventory;

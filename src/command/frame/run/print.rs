@@ -4,7 +4,7 @@ use jiff::Timestamp;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::{Run, Stopped};
+use super::{Run, RunError};
 use crate::command::frame::{AnyReport, Outcome};
 use crate::failure::Failure;
 use crate::output::envelope::Envelope;
@@ -28,7 +28,7 @@ pub enum Place<'a> {
 impl Run {
     /// Writes the envelope of a line that has failed in its place among those of the others; `false` for people, who
     /// read of it elsewhere.
-    pub fn report_failure(&self, stopped: &Stopped) -> Result<bool, Failure> {
+    pub fn report_failure(&self, stopped: &RunError) -> Result<bool, Failure> {
         if self.is_for_people() {
             return Ok(false);
         }
@@ -38,7 +38,7 @@ impl Run {
     }
 
     /// Reports what a command without a robot has to say.
-    pub fn local(&self, id: &str, report: &dyn AnyReport) -> Result<(), Stopped> {
+    pub fn local(&self, id: &str, report: &dyn AnyReport) -> Result<(), RunError> {
         let failure = report.failure();
         if self.is_for_people() {
             self.show(&report.view(), Place::Alone)?;
@@ -47,7 +47,7 @@ impl Run {
             let envelope = Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope };
             self.emit(self.of_stream(envelope))?;
         }
-        failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: !self.is_for_people() }))
+        failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: !self.is_for_people() }))
     }
 
     /// Writes what several robots reported, and says it as envelopes.

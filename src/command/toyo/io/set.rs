@@ -6,11 +6,11 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::super::Family;
 use super::super::link::wrong;
 use super::super::numbers::number;
 use super::{listed, name, numbers};
 use crate::command::frame::orders::Done;
+use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Mask, Value};
@@ -115,7 +115,7 @@ impl Set {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Outputs;
     const ID: &'static str = "toyo.io.set";
 
@@ -123,7 +123,7 @@ impl Command for Set {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Outputs, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Outputs, Failure> {
         let station = self.station;
         let orders = self.orders()?;
         for (done, Assignment { port, mask }) in orders.iter().enumerate() {
@@ -154,7 +154,7 @@ fn account(failure: Failure, orders: &[Assignment], done: usize) -> Failure {
 }
 
 impl Command for Direct {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.io.direct";
 
@@ -162,7 +162,7 @@ impl Command for Direct {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let values = vec![Value::Number(self.number.into())];
         let request = Request::in_form(table::Command::Dout, 1, values).map_err(|error| wrong(&error))?;
         context.link.order(&request).await?;

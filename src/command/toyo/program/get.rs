@@ -9,8 +9,9 @@ use serde::Serialize;
 use super::steps;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::local::Target;
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::link::{Link, misuse};
-use crate::command::toyo::{Family, tasks};
+use crate::command::toyo::tasks;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::layout::Record;
@@ -54,7 +55,7 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Got;
     const ID: &'static str = "toyo.program.get";
 
@@ -62,7 +63,7 @@ impl Command for Get {
         if self.task.is_some() { Risk::Write } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Got, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Got, Failure> {
         let Context { link, screen, several, .. } = context;
         if let Some(to) = self.to.filter(|to| *to < self.from) {
             return Err(Failure::usage(format!("--to {to} is before --from {}", self.from))

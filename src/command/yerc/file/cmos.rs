@@ -13,8 +13,8 @@ use serde::Serialize;
 
 use super::transfer;
 use crate::command::frame::local::{Target, folder_of, make_folder, own_folder};
-use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yerc::files;
@@ -45,7 +45,7 @@ pub struct Cmos {
 }
 
 impl Command for Cmos {
-    type Family = Family;
+    type Family = Yerc;
     type Report = BatchBackup;
     const ID: &'static str = "yerc.file.cmos";
 
@@ -53,7 +53,7 @@ impl Command for Cmos {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<BatchBackup, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<BatchBackup, Failure> {
         let Context { link, screen, robot, several, .. } = context;
         let Some(file) = self.file.as_deref().filter(|_| !self.start_only) else {
             return self.start(link, screen).await;

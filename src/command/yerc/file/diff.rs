@@ -14,7 +14,7 @@ use crate::command::ValueKind;
 use crate::command::backup::text_diff;
 use crate::command::backup::text_diff::{Change, Ending, Line, MOST_TEXT, TextDifference};
 use crate::command::frame::local::{local_name, own_folder};
-use crate::command::yerc::Family;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
@@ -34,11 +34,11 @@ pub struct Diff {
 }
 
 impl Command for Diff {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Difference;
     const ID: &'static str = "yerc.file.diff";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Difference, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Difference, Failure> {
         let Context { link, screen, robot, several, .. } = context;
         let file = name::typed(link.encoding, &self.name)?;
         let local = self.local.clone().unwrap_or_else(|| {

@@ -12,8 +12,8 @@ use crate::command::backup::{Item, Items, Only, Restored, Restoring};
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::interrupt::interruptible;
 use crate::command::frame::local::own_folder;
-use crate::command::yrcx::Family;
 use crate::command::yrcx::link::Link;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::refusal::refused;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -61,7 +61,7 @@ impl Restore {
 }
 
 impl Command for Restore {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Restored;
     const ID: &'static str = "yrcx.restore";
 
@@ -77,7 +77,7 @@ impl Command for Restore {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Restored, Failure> {
         let Context { link, screen, robot, several, authority } = context;
         link.no_unit("a backup is of the whole controller")?;
         let folder = own_folder(&self.folder, &robot.name, several);

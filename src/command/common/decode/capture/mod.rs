@@ -18,7 +18,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::failure::{Failure, Kind};
 use crate::files;
 use crate::output::Format;
@@ -193,7 +193,7 @@ pub trait Field: Serialize + JsonSchema + Sized {
 }
 
 /// Reads a file and reports it.
-pub fn tell<L: Listener>(run: &Run, id: &str, path: &Path, selection: &Selection, listener: L) -> Result<(), Stopped> {
+pub fn tell<L: Listener>(run: &Run, id: &str, path: &Path, selection: &Selection, listener: L) -> Result<(), RunError> {
     let name = path.display().to_string();
     let source = Source { name: &name, open: || files::open(path), selection };
     let (is_streamed, in_short) = (run.filter.is_none() && run.line.is_none(), run.is_for_people());
@@ -208,7 +208,7 @@ pub fn tell<L: Listener>(run: &Run, id: &str, path: &Path, selection: &Selection
         let failure = capture.failure();
         let whole = Whole::new(run, id, &capture, failure.as_ref());
         run.screen.json(&whole)?;
-        return failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: true }));
+        return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: true }));
     }
     run.local(id, &capture)
 }

@@ -8,7 +8,7 @@ use serde::ser::{Serialize, SerializeSeq as _, Serializer};
 
 use super::{Capture, Field, Heard, Link, Links, Listener, Problems, Row, Source, Whole};
 use crate::command::Report as _;
-use crate::command::frame::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::output::Format;
 use crate::output::busy::busy;
@@ -25,7 +25,7 @@ pub fn tell<R: Read, O: Fn() -> io::Result<R>, L: Listener>(
     id: &str,
     source: &Source<'_, O>,
     mut listener: L,
-) -> Result<(), Stopped> {
+) -> Result<(), RunError> {
     let mut links = Links::default();
     let mut problems = Problems::default();
     let mut layout = Layout::new(&Row::<L::Field>::COLUMNS);
@@ -50,7 +50,7 @@ pub fn tell<R: Read, O: Fn() -> io::Result<R>, L: Listener>(
         let (packets, other_packets) = (*packets, *other_packets);
         let data = Written { file, packets, other_packets, links, messages, notes, damage };
         run.screen.json_as_it_comes(&Whole::new(run, id, data, failure.as_ref()))?;
-        return failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: true }));
+        return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: true }));
     }
     again.rows_for_people(run, &about, layout, listener.again())?;
     failure.map_or(Ok(()), |failure| Err(failure.into()))

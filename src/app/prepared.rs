@@ -2,29 +2,31 @@
 
 use std::path::Path;
 
+use clap::CommandFactory as _;
+
 use super::{flags, screen};
-use crate::cli::{Globals, OfToyo, OfYerc, OfYrcx, Top, Verb};
-use crate::command::commands::Common;
+use crate::cli::{Cli, FamilyWord, Globals, Top};
+use crate::command::AnyCommand;
+use crate::command::common::Common;
+use crate::command::face::words::{Typed, Wish};
 use crate::command::fleet::robots::Robots;
 use crate::command::fleet::robots::check::Check;
-use crate::command::fleet::status::Fleet;
 use crate::command::frame::batch::Batch;
-use crate::command::frame::run::{Repeat, Run, Stopped};
+use crate::command::frame::run::{Repeat, Run, RunError};
 use crate::command::frame::script_line::Line;
-use crate::command::{self, AnyCommand, Noun as _, toyo, yerc, yrcx};
 use crate::failure::Failure;
 use crate::gate::Gate;
 use crate::output::jq::Filter;
 use crate::output::redraw::Redraw;
 use crate::settings::duration;
 use crate::settings::inventory::{Inventory, Location, Options};
-use crate::settings::target::{Family, Target};
+use crate::settings::target::Target;
 use crate::settings::{Selection, Sessions, Sources};
 
-/// What a command line wants.
-pub enum Wanted {
+/// What a command line asks for.
+pub enum Invocation {
     /// Something done.
-    Work(Work),
+    Task(Task),
     /// The commands of a file.
     Batch(Batch),
     /// A prompt; these words stand before each line.
@@ -34,33 +36,25 @@ pub enum Wanted {
 }
 
 /// What is to be done, and for whom.
-pub enum Work {
-    /// For robots of a family.
-    Yerc(Box<dyn AnyCommand<yerc::Family>>),
+pub enum Task {
     /// For robots of a family, and which robot of the controller.
-    Yrcx(u8, Box<dyn AnyCommand<yrcx::Family>>),
-    /// For robots of a family.
-    Toyo(Box<dyn AnyCommand<toyo::Family>>),
+    Family(u8, Box<dyn AnyCommand>),
     /// Whatever all families share.
     Common(Common),
 }
 
-impl From<Top> for Wanted {
+impl From<Top> for Invocation {
     fn from(command: Top) -> Self {
-        let after = |family: Family, more: Vec<String>, is_asked: bool| {
-            let prefix = std::iter::once(family.name().to_owned()).chain(more).collect();
-            if is_asked { Self::Prompt(prefix) } else { Self::Bare(prefix) }
-        };
         match command {
-            Top::Yerc(OfYerc::Yerc { verb: Some(Verb::Command(verb)) }) => Self::Work(Work::Yerc(verb.command())),
-            Top::Yerc(OfYerc::Yerc { verb }) => after(Family::Yerc, Vec::new(), verb.is_some()),
-            Top::Yrcx(OfYrcx::Yrcx { unit, verb: Some(Verb::Command(verb)) }) => {
-                Self::Work(Work::Yrcx(unit.number(), verb.command()))
+            Top::Family(FamilyWord { family, typed: Typed { unit, prefix, wish } }) => {
+                let prefix = std::iter::once(family.name().to_owned()).chain(prefix).collect();
+                match wish {
+                    Wish::Command(command) => Self::Task(Task::Family(unit, command)),
+                    Wish::Prompt => Self::Prompt(prefix),
+                    Wish::Nothing => Self::Bare(prefix),
+                }
             }
-            Top::Yrcx(OfYrcx::Yrcx { unit, verb }) => after(Family::Yrcx, unit.words(), verb.is_some()),
-            Top::Toyo(OfToyo::Toyo { verb: Some(Verb::Command(verb)) }) => Self::Work(Work::Toyo(verb.command())),
-            Top::Toyo(OfToyo::Toyo { verb }) => after(Family::Toyo, Vec::new(), verb.is_some()),
-            Top::Common(common) => Self::Work(Work::Common(common)),
+            Top::Common(common) => Self::Task(Task::Common(common)),
             Top::Batch(batch) => Self::Batch(batch),
             Top::Repl(_) => Self::Prompt(Vec::new()),
         }
@@ -68,79 +62,71 @@ impl From<Top> for Wanted {
 }
 
 /// A command line, ready to run.
-pub struct Ready {
+pub struct PreparedCommand {
     /// How.
     pub run: Run,
     /// What.
-    pub work: Work,
+    pub task: Task,
 }
 
-impl Ready {
+impl PreparedCommand {
     /// Reads flags, environment and inventory, once. `all` are the flags that were given to all lines, where it is one of
     /// several.
-    pub fn new(globals: Globals, all: Option<&Globals>, work: Work, line: Option<Line>) -> Result<Self, Failure> {
-        flags::check(&globals, &work)?;
+    pub fn new(globals: Globals, all: Option<&Globals>, task: Task, line: Option<Line>) -> Result<Self, Failure> {
+        flags::check(&globals, &task)?;
         let globals = match all {
             Some(all) => globals.within(all),
             None => globals,
         };
-        let need = work.need();
+        let need = task.need();
         let mut run = prepare(globals, need, line)?;
-        match &work {
-            Work::Yrcx(unit, _) => run.unit = *unit,
-            Work::Common(Common::Status(_) | Common::Top(_)) => run.sources.widen(),
-            Work::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
-            Work::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.family(),
-            Work::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.family(),
+        match &task {
+            Task::Family(unit, _) => run.unit = *unit,
+            Task::Common(Common::Status(_) | Common::Top(_)) => run.sources.widen(),
+            Task::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
+            Task::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.family(),
+            Task::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.family(),
             _ => {}
         }
-        Ok(Self { run, work })
+        Ok(Self { run, task })
     }
 
     /// Does it.
-    pub async fn go(self) -> Result<(), Stopped> {
-        self.work.go(&self.run).await
+    pub async fn go(self) -> Result<(), RunError> {
+        self.task.go(&self.run).await
     }
 
     /// Finds what would be refused without asking anybody: robots that are not there, a gate that is closed.
     pub fn check_gate(&self) -> Result<(), Failure> {
-        match &self.work {
-            Work::Yerc(command) => self.run.check_gate(&**command),
-            Work::Yrcx(_, command) => self.run.check_gate(&**command),
-            Work::Toyo(command) => self.run.check_gate(&**command),
-            Work::Common(Common::Status(overview)) => self.run.check_gate::<Fleet>(overview),
-            Work::Common(_) => Ok(()),
+        match &self.task {
+            Task::Family(_, command) => self.run.check_gate(&**command),
+            Task::Common(Common::Status(overview)) => self.run.check_gate(overview),
+            Task::Common(_) => Ok(()),
         }
     }
 
     /// Why this is nothing for a line of a file: it would never end, or writes something else than results.
     pub fn why_not_in_batch(&self) -> Option<&'static str> {
-        match &self.work {
-            Work::Common(common) => common.why_not_in_batch(),
+        match &self.task {
+            Task::Common(common) => common.why_not_in_batch(),
             _ => None,
         }
     }
 }
 
-impl Work {
+impl Task {
     /// Does it.
-    pub async fn go(self, run: &Run) -> Result<(), Stopped> {
+    pub async fn go(self, run: &Run) -> Result<(), RunError> {
         match self {
-            Self::Yerc(command) => run.robots(&*command).await,
-            Self::Yrcx(_, command) => run.robots(&*command).await,
-            Self::Toyo(command) => run.robots(&*command).await,
-            Self::Common(common) => common.run(run).await,
+            Self::Family(_, command) => run.robots(&*command).await,
+            Self::Common(common) => common.run(run, Cli::command).await,
         }
     }
 
     fn need(&self) -> Need {
-        fn of<F: command::Family>(command: &dyn AnyCommand<F>) -> Need {
-            if command.takes_robot() { Need::Inventory } else { Need::Nothing }
-        }
         match self {
-            Self::Yerc(command) => of(&**command),
-            Self::Yrcx(_, command) => of(&**command),
-            Self::Toyo(command) => of(&**command),
+            Self::Family(_, command) if !command.takes_robot() => Need::Nothing,
+            Self::Family(..) => Need::Inventory,
             Self::Common(Common::Robots(Robots::Discover(_))) => Need::Nothing,
             Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
             Self::Common(Common::Session(session)) if !session.opens() => Need::Names,
