@@ -15,11 +15,11 @@ use simulator::Simulator;
 use terminal::Terminal;
 
 /// A user with a home of his own.
-struct OfflineCommand {
+struct Desk {
     folder: TempDir,
 }
 
-impl OfflineCommand {
+impl Desk {
     fn new() -> Self {
         Self { folder: tempfile::tempdir().expect("a folder") }
     }
@@ -48,7 +48,7 @@ impl OfflineCommand {
 
 #[test]
 fn the_prompt_tells_how_the_robot_is_and_lines_change_it() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let mut repl = desk.repl("yerc --sim");
     repl.says("sim [simulated, servo on] yerc>");
     repl.press("servo off\r");
@@ -65,7 +65,7 @@ fn the_prompt_tells_how_the_robot_is_and_lines_change_it() {
 
 #[test]
 fn words_and_names_that_the_robot_holds_are_completed() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let mut repl = desk.repl("toyo repl --sim");
     repl.press("param get soft-limit-p\t\r");
     repl.says("P01  soft-limit-plus");
@@ -78,7 +78,7 @@ fn words_and_names_that_the_robot_holds_are_completed() {
 
 #[test]
 fn ctrl_c_stops_the_motion_and_not_the_prompt() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let mut repl = desk.repl("yerc repl --sim");
     repl.press("move relative --z 400 --speed 1mm/s\r");
     repl.says("R1 x=");
@@ -103,7 +103,7 @@ fn ctrl_c_stops_the_motion_and_not_the_prompt() {
 
 #[test]
 fn ctrl_c_twice_at_the_prompt_leaves() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let mut repl = desk.repl("yerc repl --sim");
     repl.says("yerc> ");
     repl.press("\x03");
@@ -117,7 +117,7 @@ fn ctrl_c_twice_at_the_prompt_leaves() {
 #[test]
 fn asked_to_end_it_leaves_the_terminal_as_it_was() {
     for signal in ["TERM", "HUP", "QUIT"] {
-        let desk = OfflineCommand::new();
+        let desk = Desk::new();
         let mut repl = desk.repl("yrcx repl --sim");
         repl.press("half a line");
         repl.says("half a line");
@@ -130,7 +130,7 @@ fn asked_to_end_it_leaves_the_terminal_as_it_was() {
 
 #[test]
 fn a_real_robot_is_moved_when_the_question_is_answered_over_a_link_that_others_share() {
-    let (desk, simulator) = (OfflineCommand::new(), Simulator::start("toyo"));
+    let (desk, simulator) = (Desk::new(), Simulator::start("toyo"));
     let mut repl = desk.repl(&format!("-t {} repl", simulator.url));
     repl.press("home\r");
     repl.says("Continue? [y/N]");
@@ -146,7 +146,7 @@ fn a_real_robot_is_moved_when_the_question_is_answered_over_a_link_that_others_s
 
 #[test]
 fn lines_are_remembered_until_the_next_time() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     for (typed, shown) in [("explain yerc 2060\r", "0x2060"), ("\x1b[A\r", "0x2060")] {
         let mut repl = desk.repl("repl");
         repl.press(typed);

@@ -11,11 +11,11 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// A user with an inventory and a runtime folder of his own.
-struct OfflineCommand {
+struct Desk {
     folder: TempDir,
 }
 
-impl OfflineCommand {
+impl Desk {
     /// With robots by name, family and target.
     fn new(robots: &[(&str, &str, &str)]) -> Self {
         let desk = Self { folder: tempfile::tempdir().unwrap() };
@@ -74,7 +74,7 @@ impl OfflineCommand {
     }
 }
 
-impl Drop for OfflineCommand {
+impl Drop for Desk {
     fn drop(&mut self) {
         // What runs in the background must not outlive the test.
         self.run("session close --all --force");
@@ -101,7 +101,7 @@ impl Running {
     }
 
     /// A session in the foreground.
-    fn session(desk: &OfflineCommand, robot: &str) -> Self {
+    fn session(desk: &Desk, robot: &str) -> Self {
         let session = Self::start(desk.command(&format!("-r {robot} session open")), true);
         assert!(session.first.contains("held by process"), "{}", session.first);
         session
@@ -138,7 +138,7 @@ impl Drop for Running {
 }
 
 /// A simulator on this address, or on one of its own; its target is the first thing that it says.
-fn simulator(desk: &OfflineCommand, family: &str, address: &str) -> Running {
+fn simulator(desk: &Desk, family: &str, address: &str) -> Running {
     let words = format!("sim {family} --bind {address} --jq .data.target");
     let mut simulator = Running::start(desk.command(&words), true);
     if !simulator.first.contains("://") {
@@ -150,9 +150,9 @@ fn simulator(desk: &OfflineCommand, family: &str, address: &str) -> Running {
 }
 
 /// A simulated YRCX, and a user who knows it as `cell`. A busy machine is late: nobody shall think that the other is gone.
-fn cell() -> (Running, OfflineCommand) {
-    let simulator = simulator(&OfflineCommand::new(&[]), "yrcx", "127.0.0.1:0");
-    let desk = OfflineCommand::new(&[("cell", "yrcx", &format!("{}?rpi=5ms&multiplier=512", simulator.first))]);
+fn cell() -> (Running, Desk) {
+    let simulator = simulator(&Desk::new(&[]), "yrcx", "127.0.0.1:0");
+    let desk = Desk::new(&[("cell", "yrcx", &format!("{}?rpi=5ms&multiplier=512", simulator.first))]);
     (simulator, desk)
 }
 
@@ -160,7 +160,7 @@ fn cell() -> (Running, OfflineCommand) {
 const SLOW: &str = "-r cell yrcx move --to 900,0,0,0 --speed-of-max 0.1 --yes";
 
 /// Such a motion, once the controller carries it out.
-fn moving(desk: &OfflineCommand) -> Running {
+fn moving(desk: &Desk) -> Running {
     let mut moving = Running::start(desk.command(&format!("{SLOW} -vv")), false);
     moving.says("<- WO 0100");
     moving
@@ -182,8 +182,8 @@ fn mode(path: &Path) -> u32 {
 
 #[test]
 fn a_tab_asks_a_controller_through_its_session_alone() {
-    let simulator = simulator(&OfflineCommand::new(&[]), "yerc", "127.0.0.1:0");
-    let desk = OfflineCommand::new(&[("cell", "yerc", &simulator.first)]);
+    let simulator = simulator(&Desk::new(&[]), "yerc", "127.0.0.1:0");
+    let desk = Desk::new(&[("cell", "yerc", &simulator.first)]);
     let tab = |words: &str| {
         let output = desk.command(&format!("-- {words}")).env("ARMCTL_COMPLETE", "zsh").output().unwrap();
         assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""), "{words}");
@@ -370,7 +370,7 @@ fn a_session_in_the_background_is_up_when_it_says_so() {
     // It is gone, with its connection, so that another one can take its place.
     desk.data("-r cell session open --background");
 
-    let nobody = OfflineCommand::new(&[("cell", "yrcx", "eip://127.0.0.1:1"), ("yas", "yerc", "udp://127.0.0.1:1")]);
+    let nobody = Desk::new(&[("cell", "yrcx", "eip://127.0.0.1:1"), ("yas", "yerc", "udp://127.0.0.1:1")]);
     for robot in ["cell", "yas"] {
         fails(&nobody.run(&format!("-r {robot} session open --background --retries 0")), 4, "127.0.0.1:1");
     }
@@ -379,8 +379,8 @@ fn a_session_in_the_background_is_up_when_it_says_so() {
 
 #[test]
 fn datagrams_go_through_a_session() {
-    let simulator = simulator(&OfflineCommand::new(&[]), "yerc", "127.0.0.1:0");
-    let desk = OfflineCommand::new(&[("cell", "yerc", &simulator.first)]);
+    let simulator = simulator(&Desk::new(&[]), "yerc", "127.0.0.1:0");
+    let desk = Desk::new(&[("cell", "yerc", &simulator.first)]);
     let session = Running::session(&desk, "cell");
     let through = desk.run("-r cell yerc status -v");
     assert!(stderr(&through).contains("through the session of process"), "{}", stderr(&through));
@@ -409,8 +409,8 @@ fn datagrams_go_through_a_session() {
 
 #[test]
 fn a_line_goes_from_client_to_client() {
-    let simulator = simulator(&OfflineCommand::new(&[]), "toyo", "127.0.0.1:0");
-    let desk = OfflineCommand::new(&[("cell", "toyo", &simulator.first)]);
+    let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
+    let desk = Desk::new(&[("cell", "toyo", &simulator.first)]);
     let mut session = Running::session(&desk, "cell");
     let homing = Running::start(desk.command("-r cell toyo home --yes -vv"), false);
     let pid = desk.until(|session| session["motion"] != Value::Null)["motion"]["pid"].clone();
@@ -432,7 +432,7 @@ fn a_line_goes_from_client_to_client() {
 
 #[test]
 fn a_simulator_in_a_session_keeps_its_state() {
-    let desk = OfflineCommand::new(&[("x", "yrcx", "sim:"), ("y", "yerc", "sim:"), ("t", "toyo", "sim:")]);
+    let desk = Desk::new(&[("x", "yrcx", "sim:"), ("y", "yerc", "sim:"), ("t", "toyo", "sim:")]);
     for robot in ["x", "y", "t"] {
         assert!(desk.run(&format!("-r {robot} session open --background")).status.success());
     }
@@ -450,7 +450,7 @@ fn a_simulator_in_a_session_keeps_its_state() {
 
 #[test]
 fn a_folder_of_others_is_not_trusted() {
-    let desk = OfflineCommand::new(&[("x", "yrcx", "sim:")]);
+    let desk = Desk::new(&[("x", "yrcx", "sim:")]);
     let folder = desk.folder.path().join("run/armctl");
     std::fs::create_dir(&folder).unwrap();
     std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(0o755)).unwrap();

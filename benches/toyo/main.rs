@@ -13,8 +13,7 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 use anyhow::{Context as _, ensure};
-use armctl::command::toyo::Family as Toyo;
-use armctl::command::toyo::link::Link;
+use armctl::command::toyo::link::{Link, Toyo};
 use armctl::command::toyo::simulated::Simulated;
 use armctl::command::{Access, ConnectMode, Family as _};
 use armctl::controller::toyo::program;

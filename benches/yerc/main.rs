@@ -16,8 +16,7 @@ mod peers;
 mod process;
 
 use anyhow::{Context as _, ensure};
-use armctl::command::yerc::Family as Yerc;
-use armctl::command::yerc::link::Link;
+use armctl::command::yerc::link::{Link, Yerc};
 use armctl::command::{Access, ConnectMode, Family as _};
 use armctl::controller::Risk;
 use armctl::controller::yerc::files::FileName;

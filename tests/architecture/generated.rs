@@ -22,7 +22,7 @@ fn completions_are_for_all_names_of_the_program() {
 
 #[test]
 fn man_pages_are_current() {
-    let pages = armctl::command::about::man::pages().expect("the man pages render");
+    let pages = armctl::command::about::man::pages(armctl::cli::Cli::command()).expect("the man pages render");
     is_current("man", &pages.into_iter().collect());
 }
 

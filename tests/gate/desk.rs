@@ -6,7 +6,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// A home of a test's own, where the inventory, sessions and files are.
-pub struct OfflineCommand {
+pub struct Desk {
     pub folder: TempDir,
 }
 
@@ -18,7 +18,7 @@ pub struct Came {
     pub stderr: String,
 }
 
-impl OfflineCommand {
+impl Desk {
     /// With this text in `robots.toml`.
     pub fn new(inventory: &str) -> Self {
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,6 +1,6 @@
 //! What holds for every family.
 
-use crate::desk::OfflineCommand;
+use crate::desk::Desk;
 use crate::simulator::Simulator;
 
 fn entry(name: &str, target: &str, more: &str) -> String {
@@ -11,7 +11,7 @@ fn entry(name: &str, target: &str, more: &str) -> String {
 fn read_only_binds_the_address_whatever_names_it() {
     let controller = Simulator::start("yerc");
     let (address, settings) = controller.place();
-    let desk = OfflineCommand::new(&entry("line3", &controller.url, "read_only = true"));
+    let desk = Desk::new(&entry("line3", &controller.url, "read_only = true"));
     let spellings = [
         "-r line3".to_owned(),
         format!("-t udp://{address}?{settings}"),
@@ -33,7 +33,7 @@ fn read_only_binds_the_address_whatever_names_it() {
 #[test]
 fn a_session_of_a_read_only_robot_passes_reads_and_stops_whoever_asks() {
     let controller = Simulator::start("yerc");
-    let desk = OfflineCommand::new(&entry("line3", &controller.url, "read_only = true"));
+    let desk = Desk::new(&entry("line3", &controller.url, "read_only = true"));
     assert_eq!(desk.run("-r line3 session open --background").exit, Some(0));
     // A client that knows nothing of the entry: the same address in an inventory of its own.
     std::fs::write(desk.folder.path().join("other.toml"), "").unwrap();
@@ -50,7 +50,7 @@ fn a_session_of_a_read_only_robot_passes_reads_and_stops_whoever_asks() {
 fn the_command_connection_of_a_yrcx_is_a_motion_outside_a_session() {
     let controller = Simulator::start("yrcx");
     let inventory = [entry("free", &controller.url, ""), entry("kept", "eip://127.0.0.1:1", "read_only = true")];
-    let desk = OfflineCommand::new(&inventory.concat());
+    let desk = Desk::new(&inventory.concat());
     desk.fails("-r free yrcx info version", 7, "stops the robot");
     desk.fails("-r kept yrcx info version --yes", 7, "is read-only");
     desk.fails("-r kept session open", 7, "a session commands the controller");
@@ -64,7 +64,7 @@ fn the_command_connection_of_a_yrcx_is_a_motion_outside_a_session() {
 #[test]
 fn a_robot_that_wants_it_has_its_session_opened() {
     let controller = Simulator::start("yrcx");
-    let desk = OfflineCommand::new(&entry("cell", &controller.url, "hold = true"));
+    let desk = Desk::new(&entry("cell", &controller.url, "hold = true"));
     let first = desk.run("-r cell yrcx info version");
     assert!(first.exit == Some(0) && first.stderr.contains("a session was opened"), "{first:?}");
     let second = desk.run("-r cell yrcx info version");
@@ -81,7 +81,7 @@ fn fleets_want_each_robot_named() {
         .enumerate()
         .map(|(number, controller)| entry(&format!("c{number}"), &controller.url, "tags = [\"weld\"]"))
         .collect();
-    let desk = OfflineCommand::new(&inventory);
+    let desk = Desk::new(&inventory);
     for choice in ["--tag weld", "--all", "-r c*"] {
         for order in ["file delete TEST.JBI --yes", "servo on --yes"] {
             desk.fails(&format!("{choice} yerc {order}"), 7, "on 2 of 2 robots");
@@ -93,7 +93,7 @@ fn fleets_want_each_robot_named() {
 
 #[test]
 fn a_flag_that_means_nothing_is_a_mistake() {
-    let desk = OfflineCommand::new("");
+    let desk = Desk::new("");
     for (line, part) in [
         ("robots add foo udp://127.0.0.1 --tag line1", "--tag means nothing"),
         ("robots list -r foo", "--robot means nothing"),
@@ -112,7 +112,7 @@ fn a_flag_that_means_nothing_is_a_mistake() {
 
 #[test]
 fn an_endless_motion_wants_an_end_where_nobody_can_give_one() {
-    let desk = OfflineCommand::new("");
+    let desk = Desk::new("");
     desk.fails("--sim yrcx jog pulse 1 + --yes", 2, "no terminal for Ctrl-C");
     assert_eq!(desk.run("--sim yrcx jog pulse 1 + --for 50ms --yes").exit, Some(0));
 }

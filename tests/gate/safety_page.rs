@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::desk::OfflineCommand;
+use crate::desk::Desk;
 use crate::simulator::Simulator;
 use crate::terminal::Terminal;
 
@@ -78,7 +78,7 @@ fn every_sentence_of_the_page_has_a_test() {
 #[test]
 fn each_risk_needs_what_the_page_says() {
     let controller = Simulator::start("yerc");
-    let desk = OfflineCommand::new("");
+    let desk = Desk::new("");
     let run = |words: &str| desk.run(&format!("-t {} yerc {words}", controller.url)).exit;
     let jobs = || desk.data(&format!("-t {} yerc file list", controller.url)).to_string();
     for (words, needs_yes) in [
@@ -101,7 +101,7 @@ fn each_risk_needs_what_the_page_says() {
 }
 
 /// A command line at a terminal.
-fn at_terminal(desk: &OfflineCommand, line: &str) -> Terminal {
+fn at_terminal(desk: &Desk, line: &str) -> Terminal {
     let mut command = desk.command(line);
     command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
     Terminal::start(command, 200, 30).expect("it starts")
@@ -110,7 +110,7 @@ fn at_terminal(desk: &OfflineCommand, line: &str) -> Terminal {
 #[test]
 fn the_question_says_where_and_what_and_a_no_sends_nothing() {
     let controller = Simulator::start("yerc");
-    let desk = OfflineCommand::new(&format!("[[robot]]\nname = \"cell3\"\ntarget = \"{}\"\n", controller.url));
+    let desk = Desk::new(&format!("[[robot]]\nname = \"cell3\"\ntarget = \"{}\"\n", controller.url));
     let position = || desk.data("-r cell3 yerc position")["base"].clone();
     let before = position();
     for (answer, exit) in [("n\r", 7), ("yo\r", 7), ("\r", 7), ("\x04", 7), ("y\r", 0)] {
@@ -129,7 +129,7 @@ fn the_question_says_where_and_what_and_a_no_sends_nothing() {
 #[test]
 fn what_clears_memories_wants_its_word() {
     let controllers = [Simulator::start("toyo"), Simulator::start("yrcx")];
-    let desk = OfflineCommand::new("");
+    let desk = Desk::new("");
     let [toyo, yrcx] = [0, 1].map(|index| controllers[index].url.as_str());
     for line in [
         format!("-t {toyo} toyo init points"),
@@ -148,7 +148,7 @@ fn what_clears_memories_wants_its_word() {
 #[test]
 fn the_simulator_in_the_command_never_asks() {
     let served = Simulator::start("yerc");
-    let desk = OfflineCommand::new("[[robot]]\nname = \"desk\"\ntarget = \"sim:\"\nfamily = \"yerc\"\n");
+    let desk = Desk::new("[[robot]]\nname = \"desk\"\ntarget = \"sim:\"\nfamily = \"yerc\"\n");
     for order in ["servo on", "file delete COUNT.JBI"] {
         for sim in ["--sim", "-t sim:", "-r desk"] {
             assert_eq!(desk.run(&format!("{sim} yerc {order}")).exit, Some(0), "{sim} {order}");
@@ -163,10 +163,7 @@ fn a_stop_is_always_allowed() {
         [("yerc", "hold on", "servo on"), ("toyo", "stop", "home"), ("yrcx", "stop", "servo on")]
     {
         let controller = Simulator::start(family);
-        let desk = OfflineCommand::new(&format!(
-            "[[robot]]\nname = \"r\"\ntarget = \"{}\"\nread_only = true\n",
-            controller.url
-        ));
+        let desk = Desk::new(&format!("[[robot]]\nname = \"r\"\ntarget = \"{}\"\nread_only = true\n", controller.url));
         assert_eq!(desk.run(&format!("-r r {family} {stop}")).exit, Some(0), "{family}");
         desk.fails(&format!("-r r {family} {other} --yes"), 7, "is read-only");
     }
@@ -174,7 +171,7 @@ fn a_stop_is_always_allowed() {
 
 #[test]
 fn a_dry_run_shows_the_frame_of_the_order() {
-    let desk = OfflineCommand::new("[[robot]]\nname = \"r\"\ntarget = \"udp://127.0.0.1:1\"\nread_only = true\n");
+    let desk = Desk::new("[[robot]]\nname = \"r\"\ntarget = \"udp://127.0.0.1:1\"\nread_only = true\n");
     let plan = desk.data("-r r yerc servo on --dry-run");
     // Command 0x83, instance 2, attribute 1, service 0x10, the value 1: the end of the frame.
     let frames = plan["frames"].as_array().unwrap();

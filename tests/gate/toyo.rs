@@ -1,14 +1,14 @@
 //! Toyo: what is replaced is asked, dry runs go to their end, a stop is always allowed.
 
-use crate::desk::OfflineCommand;
+use crate::desk::Desk;
 use crate::simulator::Simulator;
 
-fn desk(controller: &Simulator, more: &str) -> OfflineCommand {
-    OfflineCommand::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n{more}\n", controller.url))
+fn desk(controller: &Simulator, more: &str) -> Desk {
+    Desk::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n{more}\n", controller.url))
 }
 
 /// The blocks of a dry run.
-fn blocks(desk: &OfflineCommand, line: &str) -> Vec<String> {
+fn blocks(desk: &Desk, line: &str) -> Vec<String> {
     let data = desk.data(&format!("-r cell toyo {line} --dry-run"));
     let frames = data["frames"].as_array().expect("frames").iter();
     frames.map(|frame| frame["text"].as_str().expect("a line").to_owned()).collect()
@@ -93,6 +93,6 @@ fn a_stop_is_allowed_on_a_read_only_robot() {
 
 #[test]
 fn a_jog_is_refused_before_anything_is_sent_where_nobody_can_be_asked() {
-    let desk = OfflineCommand::new("[[robot]]\nname = \"cell\"\ntarget = \"tcp://127.0.0.1:1\"\n");
+    let desk = Desk::new("[[robot]]\nname = \"cell\"\ntarget = \"tcp://127.0.0.1:1\"\n");
     desk.fails("-r cell toyo jog 2 + inch", 7, "move axis 2 by a small step in plus direction");
 }

@@ -2,21 +2,21 @@
 
 use serde_json::Value;
 
-use crate::desk::OfflineCommand;
+use crate::desk::Desk;
 use crate::simulator::Simulator;
 use crate::terminal::Terminal;
 
 const JOB: &str = "/JOB\r\n//NAME NEW\r\n//POS\r\n///NPOS 0,0,0,0,0,0\r\n//INST\r\nNOP\r\nEND\r\n";
 
-fn desk(controller: &Simulator) -> OfflineCommand {
-    let desk = OfflineCommand::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n", controller.url));
+fn desk(controller: &Simulator) -> Desk {
+    let desk = Desk::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n", controller.url));
     std::fs::write(desk.folder.path().join("NEW.JBI"), JOB).expect("it is written");
     std::fs::write(desk.folder.path().join("HOME.JBI"), JOB.replace("NEW", "HOME")).expect("it is written");
     desk
 }
 
 /// The names of the jobs on the controller.
-fn jobs(desk: &OfflineCommand) -> Vec<String> {
+fn jobs(desk: &Desk) -> Vec<String> {
     let data = desk.data("-r cell yerc file list");
     data["files"]
         .as_array()
@@ -27,7 +27,7 @@ fn jobs(desk: &OfflineCommand) -> Vec<String> {
 }
 
 /// The frames of a dry run: command, instance and service each, and whether something decides about it.
-fn frames(desk: &OfflineCommand, line: &str) -> Vec<(String, bool)> {
+fn frames(desk: &Desk, line: &str) -> Vec<(String, bool)> {
     let data = desk.data(&format!("-r cell yerc {line} --dry-run"));
     assert_eq!(data["complete"], true, "{line}");
     let head = |frame: &Value| {

@@ -1,6 +1,6 @@
 //! What holds for a YRCX controller.
 
-use crate::desk::OfflineCommand;
+use crate::desk::Desk;
 use crate::simulator::Simulator;
 
 fn entry(url: &str, more: &str) -> String {
@@ -8,8 +8,8 @@ fn entry(url: &str, more: &str) -> String {
 }
 
 /// A desk with a controller whose connection a session holds.
-fn held(controller: &Simulator) -> OfflineCommand {
-    let desk = OfflineCommand::new(&entry(&controller.url, ""));
+fn held(controller: &Simulator) -> Desk {
+    let desk = Desk::new(&entry(&controller.url, ""));
     assert_eq!(desk.run("-r cell session open --background").exit, Some(0));
     desk
 }
@@ -49,7 +49,7 @@ fn taught_points_are_not_overwritten_unasked() {
 
 #[test]
 fn what_wants_a_word_wants_it_with_its_connection_too() {
-    let desk = OfflineCommand::new(&entry("eip://127.0.0.1:1", ""));
+    let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
     let refused = desk.run("-r cell yrcx abs-reset --axis 2");
     assert_eq!(refused.exit, Some(7));
     for part in ["make the place where axis 2 of robot 1 stands its reset position", "and take the command connection"]
@@ -80,7 +80,7 @@ fn a_restore_asks_once_with_old_and_new() {
 #[test]
 fn a_reset_ends_in_no_circle() {
     let controller = Simulator::start("yrcx");
-    let desk = OfflineCommand::new(&entry(&controller.url, ""));
+    let desk = Desk::new(&entry(&controller.url, ""));
     // Said before the connection is taken.
     desk.fails("-r cell yrcx alarm reset", 7, "alarm 12.551 (`armctl session open` keeps a connection open)");
     assert_eq!(desk.run("-r cell yrcx alarm reset --yes").exit, Some(0));
@@ -98,7 +98,7 @@ fn a_reset_ends_in_no_circle() {
 #[test]
 fn a_read_only_controller_is_stopped_and_looked_at() {
     let controller = Simulator::start("yrcx");
-    let desk = OfflineCommand::new(&entry(&controller.url, "read_only = true"));
+    let desk = Desk::new(&entry(&controller.url, "read_only = true"));
     for order in ["info version", "alarm reset", "var set SGI1 1", "teach --point 1 --in mm", "run", "status --full"] {
         desk.fails(&format!("-r cell yrcx {order} --yes"), 7, "is read-only");
     }
@@ -112,13 +112,13 @@ fn a_read_only_controller_is_stopped_and_looked_at() {
 
 #[test]
 fn what_would_end_with_the_connection_is_refused_before_anybody_is_asked() {
-    let desk = OfflineCommand::new(&entry("eip://127.0.0.1:1", ""));
+    let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
     desk.fails("-r cell yrcx move --point 1 --no-wait", 2, "the connection would end now");
 }
 
 #[test]
 fn dry_runs_go_to_their_end() {
-    let desk = OfflineCommand::new(&entry("eip://127.0.0.1:1", ""));
+    let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
     let set = desk.data("-r cell yrcx point set 7 --mm 1,2,3,4 --dry-run");
     let codes: Vec<&str> =
         set["frames"].as_array().unwrap().iter().map(|frame| frame["wi"][0].as_str().unwrap()).collect();

@@ -17,11 +17,11 @@ use simulator::Simulator;
 use terminal::Terminal;
 
 /// A user with an inventory of these targets, robot1 and so on.
-struct OfflineCommand {
+struct Desk {
     folder: TempDir,
 }
 
-impl OfflineCommand {
+impl Desk {
     fn new(targets: &[String]) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let robots = (1..).zip(targets).map(|(number, target)| {
@@ -46,8 +46,8 @@ impl OfflineCommand {
 }
 
 /// A simulator of each family in the process itself.
-fn simulated() -> OfflineCommand {
-    OfflineCommand::new(&["yerc sim:", "toyo sim:", "yrcx sim:"].map(str::to_owned))
+fn simulated() -> Desk {
+    Desk::new(&["yerc sim:", "toyo sim:", "yrcx sim:"].map(str::to_owned))
 }
 
 #[test]
@@ -157,7 +157,7 @@ fn only_reads_leave_whatever_is_pressed() {
         format!("toyo tcp://{toyo_at}"),
         format!("yrcx eip://{yrcx_at}"),
     ];
-    let desk = OfflineCommand::new(&targets);
+    let desk = Desk::new(&targets);
     let mut top = desk.top(&["--watch", "50ms"]);
     top.shows("3 robots · 3 answer");
     for robot in ["robot1", "robot2", "robot3"] {

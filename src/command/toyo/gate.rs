@@ -110,7 +110,7 @@ fn every_command_is_here() {
         LINES.iter().map(|(line, _)| id(line)).collect()
     };
     let desk = ["toyo.ports", "toyo.program.check", "toyo.sim.run"];
-    let missing: Vec<&str> = super::Toyo::schemas().iter().map(|entry| entry.id).collect();
+    let missing: Vec<&str> = super::commands::Commands::schemas().iter().map(|entry| entry.id).collect();
     let missing: Vec<&str> = missing.into_iter().filter(|id| !here.contains(id) && !desk.contains(id)).collect();
     assert!(missing.is_empty(), "{missing:?}");
 }

@@ -6,13 +6,13 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-use super::Yrcx;
+use super::commands::Commands;
 use super::link::Link;
 use super::link::Yrcx;
 use super::simulated::in_process;
 use super::testing::{planned_line, resolved};
 use crate::command::frame::authority::Authority;
-use crate::command::frame::testing::QUIET;
+use crate::command::frame::testing::{self, QUIET};
 use crate::command::{Access, AnyCommand, CommandSet as _, ConnectMode, Context};
 use crate::controller::Risk;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
@@ -140,9 +140,9 @@ const SHOWN: [&str; 2] = ["io watch", "status-reset"];
 const WORD: &str = "abs-reset --axis 2";
 
 /// Folders that lines name, made by a backup.
-struct OfflineCommand(tempfile::TempDir);
+struct Desk(tempfile::TempDir);
 
-impl OfflineCommand {
+impl Desk {
     fn new() -> Self {
         let desk = Self(tempfile::tempdir().unwrap());
         let mut bench = Bench::new();
@@ -167,7 +167,7 @@ fn lines() -> impl Iterator<Item = (&'static str, Risk)> {
 const AT_DESK: [&str; 1] = ["yrcx.io.map"];
 
 /// A controller that nothing is sent to, and the command of a line.
-fn real(line: &str) -> (Robot, Box<dyn AnyCommand<Yrcx>>) {
+fn real(line: &str) -> (Robot, Box<dyn AnyCommand>) {
     let line: Vec<&str> = line.split(' ').collect();
     resolved("eip://127.0.0.1", &line).unwrap_or_else(|failure| panic!("{line:?}: {failure}"))
 }
@@ -180,7 +180,7 @@ fn every_leaf_has_the_risk_that_it_shall_have() {
         assert_eq!(command.intent(None).risk, risk, "{line}");
         seen.insert(command.id());
     }
-    let all: BTreeSet<&str> = Yrcx::schemas().iter().map(|entry| entry.id).collect();
+    let all: BTreeSet<&str> = Commands::schemas().iter().map(|entry| entry.id).collect();
     assert_eq!(all.difference(&seen).collect::<Vec<_>>(), Vec::<&&str>::new(), "these have no line");
 }
 
@@ -201,7 +201,7 @@ fn a_read_only_robot_is_read_and_stopped() {
 
 #[test]
 fn what_overwrites_is_not_done_where_nobody_says_yes() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     for (before, line) in DESTROYS {
         let mut bench = Bench::new();
         bench.run(before, true).unwrap();
@@ -227,7 +227,7 @@ fn what_overwrites_is_not_done_where_nobody_says_yes() {
 
 #[test]
 fn what_is_new_wants_no_yes() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     for line in [
         "teach --point 7 --in pulse",
         "point set 7 --mm 1,2,3,4",
@@ -245,7 +245,7 @@ fn what_is_new_wants_no_yes() {
 
 #[test]
 fn a_dry_run_shows_a_frame_of_its_own_risk() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     for (line, risk) in lines() {
         let plan =
             planned_line("eip://127.0.0.1", &desk.line(line)).unwrap_or_else(|failure| panic!("{line}: {failure}"));
@@ -264,7 +264,7 @@ fn a_dry_run_shows_a_frame_of_its_own_risk() {
 
 #[test]
 fn a_dry_run_shows_what_is_sent() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let befores = DESTROYS.iter().map(|(before, line)| (Some(*before), *line));
     let others = lines().filter(|(_, risk)| *risk != Risk::Destroy).map(|(line, _)| (None, line));
     for (before, line) in befores.chain(others).filter(|(_, line)| !line.starts_with("eip ") && !SHOWN.contains(line)) {
@@ -397,7 +397,7 @@ impl Bench {
         link.set_grant(grant.clone());
         let authority = Authority::new(gate, &QUIET, robot, intent.risk, grant);
         let context = Context { robot, link, screen: &QUIET, several: false, authority };
-        let report = runtime.block_on(command.run(context))?;
+        let report = runtime.block_on(testing::run::<Yrcx>(&*command, context))?;
         report.failure().map_or_else(|| report.data(), Err)
     }
 

@@ -9,7 +9,8 @@ use serde_json::Value;
 
 use super::link::Link;
 use super::link::Yrcx;
-use crate::cli::{Cli, OfYrcx, Top, Verb};
+use crate::cli::{Cli, FamilyWord, Top};
+use crate::command::face::words::{Typed, Wish};
 use crate::command::frame::testing;
 use crate::command::frame::testing::{context, planned};
 use crate::command::{Access, AnyCommand, CommandSet as _, ConnectMode, Family as _};
@@ -131,14 +132,14 @@ pub(super) fn written(line: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
 /// All that `armctl yrcx WORDS…` would send.
 pub(super) fn frames(words: &[&str]) -> Result<Vec<Value>, Failure> {
     let (robot, command) = resolved(DRY, words)?;
-    Ok(testing::frames(&planned(&robot, &*command, |link| link.set_unit(unit(words)))?))
+    Ok(testing::frames(&planned::<Yrcx>(&robot, &*command, |link| link.set_unit(unit(words)))?))
 }
 
 /// The report of a dry run of a line.
 pub(super) fn planned_line(target: &str, line: &str) -> Result<Value, Failure> {
     let words: Vec<&str> = line.split(' ').collect();
     let (robot, command) = resolved(target, &words)?;
-    planned(&robot, &*command, |link| link.set_unit(unit(&words)))
+    planned::<Yrcx>(&robot, &*command, |link| link.set_unit(unit(&words)))
 }
 
 /// A real controller that nothing is sent to.
@@ -215,7 +216,7 @@ impl Bench {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link, .. } = self;
         link.set_unit(unit(words));
-        let report = runtime.block_on(command.run(context(robot, link)))?;
+        let report = runtime.block_on(testing::run::<Yrcx>(&*command, context(robot, link)))?;
         Ok((report.data()?, report.failure()))
     }
 
@@ -230,7 +231,7 @@ impl Bench {
         let Self { runtime, robot, link, .. } = self;
         link.set_unit(unit(words));
         runtime.block_on(async {
-            let run = command.run(context(robot, link));
+            let run = testing::run::<Yrcx>(&*command, context(robot, link));
             tokio::time::timeout(after, run).await.is_err()
         })
     }
@@ -390,20 +391,20 @@ fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
 }
 
 /// Robot and command of a line.
-pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Yrcx>>), Failure> {
+pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Yrcx))?.remove(0);
-    let Top::Yrcx(OfYrcx::Yrcx { verb: Some(Verb::Command(verb)), .. }) = cli.command else {
-        unreachable!("the words follow yrcx")
-    };
-    Ok((robot, verb.command()))
+    match cli.command {
+        Top::Family(FamilyWord { typed: Typed { wish: Wish::Command(command), .. }, .. }) => Ok((robot, command)),
+        _ => unreachable!("the words follow yrcx"),
+    }
 }
 
 /// The robot of `--unit`.
 fn unit(words: &[&str]) -> u8 {
     match parsed(DRY, words).map(|cli| cli.command) {
-        Ok(Top::Yrcx(OfYrcx::Yrcx { unit, .. })) => unit.number(),
+        Ok(Top::Family(FamilyWord { typed, .. })) => typed.unit,
         _ => 0,
     }
 }

@@ -28,11 +28,11 @@ static SAVED: LazyLock<BTreeMap<String, String>> = LazyLock::new(|| {
 });
 
 /// A folder for backups.
-struct OfflineCommand {
+struct Desk {
     folder: TempDir,
 }
 
-impl OfflineCommand {
+impl Desk {
     fn new() -> Self {
         Self { folder: tempfile::tempdir().unwrap() }
     }
@@ -100,7 +100,7 @@ fn a_backup_holds_all_that_is_stored() {
 
 #[test]
 fn what_is_restored_is_what_was_saved() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let first = desk.saved();
     let mut bench = controller(EMPTY);
     let restored = bench.data(&["restore", &first]);
@@ -124,7 +124,7 @@ fn what_is_restored_is_what_was_saved() {
 
 #[test]
 fn what_is_there_is_not_written_again() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let folder = desk.saved();
     let restored = controller(FULL).data(&["restore", &folder]);
     for part in restored["parts"].as_array().unwrap() {
@@ -134,7 +134,7 @@ fn what_is_there_is_not_written_again() {
 
 #[test]
 fn a_backup_that_was_cut_off_goes_on() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let folder = desk.path("saved");
     let folder = folder.to_str().unwrap();
     let silent = |block: &str, _| if block == "@RPLT 05 SNO=07" { Fate::Lost } else { Fate::Pass };
@@ -157,7 +157,7 @@ fn a_backup_that_was_cut_off_goes_on() {
 
 #[test]
 fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let folder = desk.path("saved");
     let folder = folder.to_str().unwrap();
     let refuse = |block: &str, _| if block.starts_with("@RESY") { Fate::Answered("@NG") } else { Fate::Pass };
@@ -171,7 +171,7 @@ fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
 
 #[test]
 fn a_changed_file_is_not_sent() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let folder = desk.saved();
     std::fs::write(desk.path("saved/points-1.csv"), "point,x_mm,y_mm,z_mm,r_mm\n").unwrap();
     let (mut bench, heard) = Bench::spoilt(FULL, |_, _| Fate::Pass);
@@ -182,7 +182,7 @@ fn a_changed_file_is_not_sent() {
 
 #[test]
 fn another_robot_is_refused() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let folder = desk.saved();
     let mut other = controller(&format!("robot_types = [7]\n{EMPTY}"));
     let failed = failure(&mut other, &["restore", &folder]);
@@ -193,7 +193,7 @@ fn another_robot_is_refused() {
 
 #[test]
 fn a_program_must_have_room_before_anything_is_written() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let folder = desk.saved();
     let (mut bench, heard) = Bench::spoilt("axes = 2", |_, _| Fate::Pass);
     let failed = failure(&mut bench, &["restore", &folder]);
@@ -206,7 +206,7 @@ fn a_program_must_have_room_before_anything_is_written() {
 
 #[test]
 fn machine_parameters_come_first_and_alone() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let folder = desk.saved();
     let (mut bench, heard) = Bench::spoilt("axes = 2", |_, _| Fate::Pass);
     let (data, failed) = bench.run(&["restore", &folder, "--machine"]).unwrap();
@@ -221,7 +221,7 @@ fn machine_parameters_come_first_and_alone() {
 
 #[test]
 fn a_restore_that_fails_says_how_far_it_got() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let folder = desk.saved();
     let lost = |block: &str, _| if block.starts_with("@WPLT 03") { Fate::Unanswered } else { Fate::Pass };
     let (mut bench, _) = Bench::spoilt(EMPTY, lost);
@@ -245,7 +245,7 @@ fn a_restore_that_fails_says_how_far_it_got() {
 
 #[test]
 fn a_dry_run_shows_what_would_be_written() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let folder = desk.saved();
     let blocks = blocks(&["restore", &folder, "--force", "--only", "program-2,easy"]).unwrap();
     assert!(blocks.contains(&"@WSTX 0001 OUT STN=0 PN01=.......1".to_owned()));
@@ -255,7 +255,7 @@ fn a_dry_run_shows_what_would_be_written() {
 
 #[test]
 fn a_folder_with_other_files_is_left_alone() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     std::fs::write(desk.path("letter.txt"), "x").unwrap();
     let folder = desk.folder.path().to_str().unwrap();
     for words in [["backup", folder], ["restore", folder]] {
@@ -266,7 +266,7 @@ fn a_folder_with_other_files_is_left_alone() {
 
 #[test]
 fn one_word_that_the_manual_does_not_list_spoils_no_backup() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let folder = desk.path("odd");
     let folder = folder.to_str().unwrap();
     let odd = |block: &str, _| match block {
@@ -306,7 +306,7 @@ fn one_word_that_the_manual_does_not_list_spoils_no_backup() {
 
 #[test]
 fn axes_of_another_machine_are_refused_before_anything_is_written() {
-    let desk = OfflineCommand::new();
+    let desk = Desk::new();
     let folder = desk.saved();
     for (other, told) in [
         ("write = [\"WPAR E19 1100\"]\n", "E19 (task-axes) is 2000 in the backup and 1100 here"),

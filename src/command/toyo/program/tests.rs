@@ -10,12 +10,12 @@ use crate::failure::{Failure, Kind};
 const SAMPLE: &str = "SPD V=5\nMOVP a PT=1 CN=0 S V=0 POST\nOUT STN=0 PN1=.......1\nEND\n";
 
 /// A controller, and a folder for its programs.
-struct OfflineCommand {
+struct Desk {
     bench: Bench,
     folder: TempDir,
 }
 
-impl OfflineCommand {
+impl Desk {
     fn new() -> Self {
         Self::with("")
     }
@@ -50,7 +50,7 @@ impl OfflineCommand {
 
 #[test]
 fn a_program_is_stored_and_read_back() {
-    let mut desk = OfflineCommand::new();
+    let mut desk = Desk::new();
     let stored = desk.put(SAMPLE, &[]).unwrap();
     assert_eq!((&stored["cells_written"], &stored["cells_unchanged"]), (&4.into(), &1996.into()));
     assert_eq!(
@@ -65,7 +65,7 @@ fn a_program_is_stored_and_read_back() {
 
 #[test]
 fn the_sample_session_of_the_manual_ends_at_its_place_with_its_output_on() {
-    let mut desk = OfflineCommand::with("points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0] } }");
+    let mut desk = Desk::with("points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0] } }");
     desk.put(SAMPLE, &[]).unwrap();
     desk.bench.data(&["home"]);
     let ran = desk.bench.data(&["run", "sequential", "1"]);
@@ -77,7 +77,7 @@ fn the_sample_session_of_the_manual_ends_at_its_place_with_its_output_on() {
 
 #[test]
 fn what_is_left_of_a_longer_program_goes() {
-    let mut desk = OfflineCommand::new();
+    let mut desk = Desk::new();
     desk.put("a: NOP\nJMP TAG=a\nTAG TAG=9\nEND\n", &[]).unwrap();
     let stored = desk.put("SPD V=1\nEND\n", &[]).unwrap();
     assert_eq!((&stored["cells_written"], &stored["cleared_steps"]), (&5.into(), &3.into()));
@@ -89,7 +89,7 @@ fn what_is_left_of_a_longer_program_goes() {
 
 #[test]
 fn a_part_takes_tags_that_are_free() {
-    let mut desk = OfflineCommand::new();
+    let mut desk = Desk::new();
     desk.put("TAG TAG=1\nNOP\nNOP\nNOP\nTAG TAG=2\nEND\n", &[]).unwrap();
     let stored = desk.put("x: CNT+ CN1=1\nJMPC TAG=x CN1<5\n", &["--at", "2"]).unwrap();
     assert_eq!(stored["labels"][0], serde_json::json!({ "name": "x", "tag": 3, "step": 2, "line": 1 }));
@@ -108,7 +108,7 @@ fn a_part_takes_tags_that_are_free() {
 
 #[test]
 fn a_program_must_fit_its_task() {
-    let mut desk = OfflineCommand::new();
+    let mut desk = Desk::new();
     let failure = desk.put(SAMPLE, &["--task", "2"]).unwrap_err();
     assert_eq!(
         (failure.kind, failure.message.as_str()),
@@ -120,7 +120,7 @@ fn a_program_must_fit_its_task() {
 
 #[test]
 fn another_task_is_the_current_one_only_for_a_while() {
-    let mut desk = OfflineCommand::with("steps = { 2 = [\"NOP\", \"NOP\", \"NOP\", \"NOP\", \"NOP\"] }");
+    let mut desk = Desk::with("steps = { 2 = [\"NOP\", \"NOP\", \"NOP\", \"NOP\", \"NOP\"] }");
     desk.put(SAMPLE, &["--task", "2"]).unwrap();
     assert!(desk.text(&["--task", "2"]).starts_with("SPD V=05\n"));
     assert!(desk.text(&[]).starts_with("NOP\n"), "task 1 is the current one again");
@@ -134,7 +134,7 @@ fn another_task_is_the_current_one_only_for_a_while() {
 
 #[test]
 fn steps_are_inserted_and_deleted() {
-    let mut desk = OfflineCommand::new();
+    let mut desk = Desk::new();
     desk.put(SAMPLE, &[]).unwrap();
     let inserted = desk.bench.data(&["program", "insert", "2", "acc", "a=1"]);
     assert_eq!(inserted["inserted"], serde_json::json!({ "step": 2, "instruction": "ACC A=01", "in_manual": true }));
@@ -147,7 +147,7 @@ fn steps_are_inserted_and_deleted() {
 
 #[test]
 fn nothing_falls_out_at_the_end() {
-    let mut desk = OfflineCommand::with("steps = { 2 = [\"NOP\", \"END\"] }");
+    let mut desk = Desk::with("steps = { 2 = [\"NOP\", \"END\"] }");
     let failure = desk.failure(&["insert", "1", "--task", "2"]);
     assert_eq!(failure.kind, Kind::RefusedHere);
     assert_eq!(failure.message, "step 2, the last of task 2, would fall out: END");
@@ -156,7 +156,7 @@ fn nothing_falls_out_at_the_end() {
 
 #[test]
 fn steps_are_copied_and_tags_found() {
-    let mut desk = OfflineCommand::with("steps = { 2 = [\"NOP\", \"NOP\", \"NOP\", \"NOP\", \"NOP\"] }");
+    let mut desk = Desk::with("steps = { 2 = [\"NOP\", \"NOP\", \"NOP\", \"NOP\", \"NOP\"] }");
     desk.put("NOP\nTAG TAG=7\nHOME\nEND\n", &[]).unwrap();
     let copied = desk.bench.data(&["program", "copy", "2", "4", "--at", "3", "--to-task", "2"]);
     assert_eq!(copied["was_there"], false);
@@ -172,7 +172,7 @@ fn steps_are_copied_and_tags_found() {
 
 #[test]
 fn while_a_program_runs_nothing_is_written() {
-    let mut desk = OfflineCommand::with(
+    let mut desk = Desk::with(
         "origin = true\nsteps = { 1 = [\"TAG TAG=001\", \"JMP TAG=001\"] }\nevent = [{ at_ms = 0, do = \"start\" }]",
     );
     let failure = desk.put(SAMPLE, &[]).unwrap_err();
@@ -184,7 +184,7 @@ fn while_a_program_runs_nothing_is_written() {
 #[test]
 fn what_was_written_before_a_failure_is_told() {
     // The fourth write of a cell is not kept: three programs are, the fourth fails at its first step.
-    let mut desk = OfflineCommand::with("eeprom_limit = 1");
+    let mut desk = Desk::with("eeprom_limit = 1");
     desk.put("SPD V=1\nEND\n", &[]).unwrap();
     let failure = desk.put("SPD V=1\nNOP\nHOME\nEND\n", &[]).unwrap_err();
     assert_eq!(failure.kind, Kind::Malformed);
@@ -198,7 +198,7 @@ fn what_was_written_before_a_failure_is_told() {
 
 #[test]
 fn names_of_table_rows_are_explained() {
-    let mut desk = OfflineCommand::with("points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0] } }");
+    let mut desk = Desk::with("points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0] } }");
     desk.put(SAMPLE, &[]).unwrap();
     let text = desk.text(&["--explain", "--until-end"]);
     assert!(text.contains("# point 1: x 100.00 mm, y 20.00 mm"), "{text}");
@@ -206,7 +206,7 @@ fn names_of_table_rows_are_explained() {
 
 #[test]
 fn a_file_that_was_read_writes_nothing_when_put_back() {
-    let mut desk = OfflineCommand::new();
+    let mut desk = Desk::new();
     desk.put("start: SPD V=1\nJMPC TAG=start CN1<=3\nEND\n", &[]).unwrap();
     let path = desk.folder.path().join("read.txt");
     let path = path.to_str().unwrap();

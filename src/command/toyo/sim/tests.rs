@@ -9,11 +9,11 @@ const SAMPLE: &str = "SPD V=5\nMOVP a PT=1 CN=0 S V=0 POST\nOUT STN=0 PN1=......
 const POINTS: &str = "point,x_mm,y_mm,z_mm,r_mm\n1,100,20,0,0\n";
 
 /// A folder with files, in which programs are run.
-struct OfflineCommand {
+struct Desk {
     folder: TempDir,
 }
 
-impl OfflineCommand {
+impl Desk {
     fn new(files: &[(&str, &str)]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         for (name, text) in files {
@@ -54,7 +54,7 @@ fn words(data: &Value) -> Vec<&str> {
 
 #[test]
 fn the_sample_of_the_manual_ends_at_its_place_with_its_output_on() {
-    let desk = OfflineCommand::new(&[("a.txt", SAMPLE), ("points.csv", POINTS)]);
+    let desk = Desk::new(&[("a.txt", SAMPLE), ("points.csv", POINTS)]);
     let data = desk.data(&["./a.txt", "--points", "./points.csv"]);
     assert_eq!(data["end"], "ended");
     assert_eq!(data["position"], json!({ "x_mm": 100.0, "y_mm": 20.0, "z_mm": 0.0, "r_mm": 0.0 }));
@@ -74,7 +74,7 @@ fn the_sample_of_the_manual_ends_at_its_place_with_its_output_on() {
 
 #[test]
 fn steps_are_told_with_line_and_label() {
-    let desk = OfflineCommand::new(&[("a.txt", "# A comment.\n\nnext: CNT+ CN1=1\nJMPC TAG=next CN1<2\nEND\n")]);
+    let desk = Desk::new(&[("a.txt", "# A comment.\n\nnext: CNT+ CN1=1\nJMPC TAG=next CN1<2\nEND\n")]);
     let data = desk.data(&["./a.txt"]);
     assert_eq!(words(&data)[..3], ["next: TAG TAG=001", "CNT+ CN01=0001", "JMPC TAG=001 CN01< 0002 (next)"]);
     let at = &data["trace"][2]["at"];
@@ -83,7 +83,7 @@ fn steps_are_told_with_line_and_label() {
 
 #[test]
 fn inputs_come_when_they_should() {
-    let desk = OfflineCommand::new(&[("a.txt", "IN STN=0 PN1=.....1.. AND\nEND\n")]);
+    let desk = Desk::new(&[("a.txt", "IN STN=0 PN1=.....1.. AND\nEND\n")]);
     let data = desk.data(&["./a.txt", "--input", "at 2s 0/01/3 on"]);
     assert_eq!(words(&data), ["IN STN=0 PN01=.....1.. AND", "input 0/01/3 on", "END", "task 1 has ended"]);
     assert_eq!((&data["trace"][1]["time_s"], &data["trace"][2]["time_s"]), (&2.0.into(), &2.0.into()));
@@ -94,7 +94,7 @@ fn inputs_come_when_they_should() {
 
 #[test]
 fn what_waits_for_good_is_told_with_its_place() {
-    let desk = OfflineCommand::new(&[("a.txt", "NOP\nIN STN=0 PN1=.....1.. AND\nEND\n")]);
+    let desk = Desk::new(&[("a.txt", "NOP\nIN STN=0 PN1=.....1.. AND\nEND\n")]);
     let failure = desk.failure(&["./a.txt"]);
     assert_eq!(failure.kind, Kind::ConditionNotMet);
     let (message, hint) = (failure.message, failure.hint.unwrap());
@@ -105,7 +105,7 @@ fn what_waits_for_good_is_told_with_its_place() {
 
 #[test]
 fn an_error_is_told_with_its_code_and_place() {
-    let desk = OfflineCommand::new(&[("a.txt", "NOP\nMOV a X=8000 Y=0 Z=0 R=0 S V=1 POST\nEND\n")]);
+    let desk = Desk::new(&[("a.txt", "NOP\nMOV a X=8000 Y=0 Z=0 R=0 S V=1 POST\nEND\n")]);
     let (data, failure) = desk.run(&["./a.txt"]).unwrap();
     let failure = failure.unwrap();
     assert_eq!((data["error"]["code"].as_str(), failure.code.as_deref()), (Some("C0"), Some("C0")));
@@ -115,7 +115,7 @@ fn an_error_is_told_with_its_code_and_place() {
 
 #[test]
 fn time_is_up_some_day() {
-    let desk = OfflineCommand::new(&[("a.txt", "a: JMP TAG=a\n")]);
+    let desk = Desk::new(&[("a.txt", "a: JMP TAG=a\n")]);
     let (data, failure) = desk.run(&["./a.txt", "--for", "2s", "--rows", "3"]).unwrap();
     assert_eq!(
         (&data["end"], &data["elapsed_s"], &data["rows_left_out"]),
@@ -126,7 +126,7 @@ fn time_is_up_some_day() {
 
 #[test]
 fn positions_are_sampled() {
-    let desk = OfflineCommand::new(&[("a.txt", SAMPLE), ("points.csv", POINTS)]);
+    let desk = Desk::new(&[("a.txt", SAMPLE), ("points.csv", POINTS)]);
     let data = desk.data(&["./a.txt", "--points", "./points.csv", "--trace-every", "200ms"]);
     let rows = data["trace"].as_array().unwrap();
     let places: Vec<f64> =
@@ -137,7 +137,7 @@ fn positions_are_sampled() {
 
 #[test]
 fn parameters_and_other_tasks_come_from_files() {
-    let desk = OfflineCommand::new(&[
+    let desk = Desk::new(&[
         ("a.txt", "TSTR TASK=2\nIN STN=0 PN1=.......1 AND\nMOVP a PT=1 CN=0 S V=5 POST\nEND\n"),
         ("b.txt", "OUT STN=0 PN2=1.......\nEND\n"),
         ("points.csv", POINTS),
@@ -153,7 +153,7 @@ fn parameters_and_other_tasks_come_from_files() {
 
 #[test]
 fn faulty_files_are_wrong_arguments() {
-    let desk = OfflineCommand::new(&[
+    let desk = Desk::new(&[
         ("a.txt", "EMD\n"),
         ("good.txt", "END\n"),
         ("points.csv", "point,x_mm\n1,0\n"),

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use crate::command::Family as _;
-use crate::command::frame::testing::{context, everything};
+use crate::command::frame::testing::{self, context, everything};
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::testing::{frames, quiet, resolved, risk, words};
@@ -15,14 +15,14 @@ use crate::failure::{Failure, Kind};
 use crate::settings::Robot;
 
 /// A simulated controller that lasts for several command lines, in virtual time, and a folder for backups.
-struct OfflineCommand {
+struct Desk {
     folder: TempDir,
     runtime: tokio::runtime::Runtime,
     robot: Robot,
     link: Link,
 }
 
-impl OfflineCommand {
+impl Desk {
     /// A controller in the built-in start state, or in this one.
     fn new(state: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
@@ -49,7 +49,7 @@ impl OfflineCommand {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>())?;
         let Self { runtime, robot, link, .. } = self;
-        let report = runtime.block_on(command.run(context(robot, link)))?;
+        let report = runtime.block_on(testing::run::<Yrcx>(&*command, context(robot, link)))?;
         Ok((report.data()?, report.failure()))
     }
 
@@ -73,7 +73,7 @@ impl OfflineCommand {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>()).unwrap();
         let Self { runtime, robot, link, .. } = self;
-        let run = command.run(context(robot, link));
+        let run = testing::run::<Yrcx>(&*command, context(robot, link));
         runtime.block_on(async { tokio::time::timeout(after, run).await.map(|_| ()).unwrap_err() });
         runtime.block_on(Yrcx::halt(link)).unwrap();
     }
@@ -114,7 +114,7 @@ const CHANGES: [&str; 9] = [
 
 #[test]
 fn what_is_restored_is_what_was_saved() {
-    let mut desk = OfflineCommand::new("");
+    let mut desk = Desk::new("");
     let data = desk.data("backup @/first");
     assert_eq!((&data["complete"], &data["done"]), (&json!(true), &json!(9)));
     let first = files(&desk.path("first"));
@@ -125,8 +125,8 @@ fn what_is_restored_is_what_was_saved() {
     for line in CHANGES {
         let line = if line.ends_with("--unit 2") { line.to_owned() } else { format!("{line} --unit 0") };
         let (robot, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>()).unwrap();
-        let OfflineCommand { runtime, link, .. } = &mut desk;
-        runtime.block_on(command.run(context(&robot, link))).unwrap();
+        let Desk { runtime, link, .. } = &mut desk;
+        runtime.block_on(testing::run::<Yrcx>(&*command, context(&robot, link))).unwrap();
     }
     desk.link.set_unit(0);
     desk.data("backup @/changed");
@@ -162,7 +162,7 @@ fn what_is_restored_is_what_was_saved() {
 
 #[test]
 fn a_backup_that_was_cut_off_goes_on() {
-    let mut desk = OfflineCommand::new("");
+    let mut desk = Desk::new("");
     desk.cut("backup @/cut", Duration::from_secs(4));
     let list = manifest(&desk.path("cut"));
     let saved = list["files"].as_array().unwrap().len();
@@ -185,7 +185,7 @@ fn a_backup_that_was_cut_off_goes_on() {
 fn points_end_at_a_gap_unless_they_are_named_and_those_of_pallets_come_anyway() {
     let state = "stock = false\n[[robot]]\n[points]\n7 = { pulse = [1, 2, 3, 4] }\n300 = { pulse = [1, 2, 3, 4] }\n\
                  1100 = { pulse = [1, 2, 3, 4] }\n[pallets]\n3 = { counts = [2, 2, 1], first = 1099 }\n";
-    let mut desk = OfflineCommand::new(state);
+    let mut desk = Desk::new(state);
     let data = desk.data("backup @/usual");
     assert_eq!(item(&data, "points-00000")["notes"], json!(["1 defined in 0..107"]));
     assert_eq!(item(&data, "points-01000")["notes"], json!(["1 defined in 1099..1103"]));
@@ -203,7 +203,7 @@ fn points_end_at_a_gap_unless_they_are_named_and_those_of_pallets_come_anyway() 
 
 #[test]
 fn a_folder_that_was_tampered_with_is_not_written_back() {
-    let mut desk = OfflineCommand::new("");
+    let mut desk = Desk::new("");
     desk.data("backup @/saved");
     let points = desk.path("saved/points-00000.csv");
     let text = std::fs::read_to_string(&points).unwrap();
@@ -220,10 +220,9 @@ fn a_folder_that_was_tampered_with_is_not_written_back() {
 
 #[test]
 fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
-    let mut desk = OfflineCommand::new("");
+    let mut desk = Desk::new("");
     desk.data("backup @/saved");
-    let mut other =
-        OfflineCommand::new("stock = false\n[[robot]]\nkind = \"scara\"\nmax_payload_g = 10\npayload_g = 0\n");
+    let mut other = Desk::new("stock = false\n[[robot]]\nkind = \"scara\"\nmax_payload_g = 10\npayload_g = 0\n");
     let saved = desk.path("saved");
     let other_robot = other.failure(&format!("restore {}", saved.display()));
     assert_eq!(other_robot.kind, Kind::RefusedHere, "{other_robot}");
@@ -238,7 +237,7 @@ fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
 
 #[test]
 fn nothing_is_written_while_the_program_runs() {
-    let mut desk = OfflineCommand::new("");
+    let mut desk = Desk::new("");
     desk.data("backup @/saved --only variables");
     desk.data("run");
     let failure = desk.failure("restore @/saved");
@@ -248,7 +247,7 @@ fn nothing_is_written_while_the_program_runs() {
 
 #[test]
 fn dry_runs_show_what_would_be_read_and_written() {
-    let mut desk = OfflineCommand::new("");
+    let mut desk = Desk::new("");
     let sent = words(&["backup", desk.path("new").to_str().unwrap()]).unwrap();
     assert_eq!((sent[0][0].as_str(), sent.last().unwrap()[0].as_str()), ("0x0501", "0x0101"));
     assert!(!desk.path("new").exists());
