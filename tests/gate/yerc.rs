@@ -2,9 +2,9 @@
 
 use serde_json::Value;
 
-use crate::desk::Desk;
-use crate::simulator::Simulator;
-use crate::terminal::Terminal;
+use super::desk::Desk;
+use crate::support::simulator::Simulator;
+use crate::support::terminal::Terminal;
 
 const JOB: &str = "/JOB\r\n//NAME NEW\r\n//POS\r\n///NPOS 0,0,0,0,0,0\r\n//INST\r\nNOP\r\nEND\r\n";
 
