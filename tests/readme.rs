@@ -243,7 +243,7 @@ fn the_set_up_takes_exactly_the_two_commands() {
     let (_, after) = readme.split_once("## Try it").expect("a section that says how to start");
     let block = after.split("```").nth(1).expect("the section has a block");
     let commands: Vec<&str> = block.lines().skip(1).filter(|line| !line.trim().is_empty()).collect();
-    assert_eq!(commands, ["cargo run --release -- --sim yerc status", "cargo test"]);
+    assert_eq!(commands, ["cargo run -- --sim yerc status", "cargo test"]);
 }
 
 fn root() -> PathBuf {
