@@ -36,7 +36,7 @@ impl Lists {
         }
         if link.is_dry() {
             for kind in types {
-                link.plan_download(&files::list(kind), Reason::about("which files are there"))?;
+                link.plan_download(&files::list(kind), Reason::about(transfer::LISTS))?;
             }
             return Ok(None);
         }

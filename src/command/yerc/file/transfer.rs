@@ -166,9 +166,12 @@ pub fn plan_send(link: &mut Link, file: &FileName, content: &mut Content, reason
 }
 
 /// Notes in a dry run what would be sent, one transfer from the controller after the other.
-pub fn plan_all(link: &mut Link, requests: impl IntoIterator<Item = Request>) -> Result<(), Failure> {
-    requests.into_iter().try_for_each(|request| link.plan_download(&request, Reason::default()))
+pub fn plan_all(link: &mut Link, about: &str, requests: impl IntoIterator<Item = Request>) -> Result<(), Failure> {
+    requests.into_iter().try_for_each(|request| link.plan_download(&request, Reason::about(about)))
 }
+
+/// What lists are for, in dry runs.
+pub const LISTS: &str = "which files are there";
 
 /// Whether a controller refused a file because it has a job of that name.
 pub fn is_job_exists(failure: &Failure) -> bool {
