@@ -151,7 +151,8 @@ fn digits(frame: &Value) -> String {
     frame["hex"].as_str().expect("frames are hexadecimal").to_owned()
 }
 
-fn without_header(frame: &Value) -> String {
+/// The digits of a frame behind its header.
+pub(super) fn without_header(frame: &Value) -> String {
     let frame = digits(frame);
     assert_eq!(&frame[..12], hex(b"YERC\x20\0"));
     frame[48..].to_owned()

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::Family;
 use super::link::Link;
 use super::several::ask_each;
-use crate::command::items::{ItemError, verdict};
+use crate::command::items::{self, ItemError};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Order;
@@ -57,7 +57,9 @@ impl Command for Get {
         {
             date = link.run(&orders[0]).await.and_then(|done| date_of(&done.values));
         }
-        Ok(Reading::of(date, time, Zoned::now().datetime()))
+        let reading = Reading::of(date, time, Zoned::now().datetime());
+        items::nothing(PARTS, &reading.errors)?;
+        Ok(reading)
     }
 }
 
@@ -129,7 +131,7 @@ impl Report for Reading {
     }
 
     fn failure(&self) -> Option<Failure> {
-        verdict(PARTS, &self.errors)
+        items::verdict(PARTS, &self.errors)
     }
 }
 
@@ -257,7 +259,7 @@ impl Report for WasSet {
     }
 
     fn failure(&self) -> Option<Failure> {
-        verdict(PARTS, &self.errors)
+        items::verdict(PARTS, &self.errors)
     }
 }
 
@@ -336,8 +338,8 @@ mod tests {
             assert_eq!(failure.kind.exit(), 9);
             assert!(failure.message.starts_with(&format!("1 of 2 failed: {asked}: ")), "{failure}");
         }
-        let (_, failure, _) = report_on(Scripted::new([no(), no()]), &["clock", "get"]);
-        let failure = failure.unwrap();
+        let (refused, _) = run_on(Scripted::new([no(), no()]), &["clock", "get"]);
+        let failure = refused.unwrap_err();
         assert_eq!(failure.message, "all 2 failed: date: the controller refused date-get: alarm 5.1, program syntax");
         assert_eq!(failure.kind.exit(), 3);
     }
