@@ -153,8 +153,8 @@ fn a_dry_run_goes_to_its_end() {
         ("io set 27010=on", "7800 8d0a 0e, 7800 8d0a 10?"),
         ("var set P1.tool=2", "7f00 0100 01, 7f00 0100 02?"),
         ("register set 1=1", "7900 0100 10"),
-        ("file put NEW.JBI", "0000 0000 32, 0000 0000 15, 0000 0000 15"),
-        ("file delete HOME.JBI", "0000 0000 32, 0000 0000 09?"),
+        ("file put NEW.JBI", "0000 0000 32, 0000 0000 32?, 0000 0000 15, 0000 0000 15, 0000 0000 32?, 0000 0000 32?"),
+        ("file delete HOME.JBI", "0000 0000 32, 0000 0000 32?, 0000 0000 09?"),
     ];
     for (line, expected) in heads {
         assert_eq!(shown(line), expected, "{line}");
