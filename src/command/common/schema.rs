@@ -55,12 +55,12 @@ pub fn all() -> Vec<SchemaEntry> {
     all.extend(<super::backup::Diff as Noun<Fleet>>::schemas());
     all.extend([
         SchemaEntry::of::<super::backup::Checked>("backup.check"),
-        SchemaEntry::of::<super::decode::toyo::Lines>("decode.toyo"),
-        SchemaEntry::of::<super::decode::capture::Capture<super::decode::toyo::FieldRow>>("decode.toyo.capture"),
-        SchemaEntry::of::<super::decode::yerc::Frames>("decode.yerc"),
-        SchemaEntry::of::<super::decode::capture::Capture<super::decode::yerc::FieldRow>>("decode.yerc.capture"),
-        SchemaEntry::of::<super::decode::yrcx::Explained>("decode.yrcx"),
-        SchemaEntry::of::<super::decode::capture::Capture<super::decode::yrcx::FieldRow>>("decode.yrcx.capture"),
+        SchemaEntry::of::<toyo::decode::Lines>("decode.toyo"),
+        SchemaEntry::of::<super::decode::capture::Capture<toyo::decode::FieldRow>>("decode.toyo.capture"),
+        SchemaEntry::of::<yerc::decode::Frames>("decode.yerc"),
+        SchemaEntry::of::<super::decode::capture::Capture<yerc::decode::FieldRow>>("decode.yerc.capture"),
+        SchemaEntry::of::<yrcx::decode::Explained>("decode.yrcx"),
+        SchemaEntry::of::<super::decode::capture::Capture<yrcx::decode::FieldRow>>("decode.yrcx.capture"),
         SchemaEntry::of::<DryRun>("dry-run"),
         SchemaEntry::of::<Envelope>("envelope"),
         SchemaEntry::of::<super::explain::ToyoCode>("explain.toyo"),
@@ -76,9 +76,9 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<super::session::Closed>("session.close"),
         SchemaEntry::of::<super::session::Sessions>("session.list"),
         SchemaEntry::of::<super::session::Opened>("session.open"),
-        SchemaEntry::of::<super::sim::toyo::Serving>("sim.toyo"),
-        SchemaEntry::of::<super::sim::yerc::Serving>("sim.yerc"),
-        SchemaEntry::of::<super::sim::yrcx::Serving>("sim.yrcx"),
+        SchemaEntry::of::<toyo::serve::Serving>("sim.toyo"),
+        SchemaEntry::of::<yerc::serve::Serving>("sim.yerc"),
+        SchemaEntry::of::<yrcx::serve::Serving>("sim.yrcx"),
     ]);
     all
 }

@@ -11,6 +11,7 @@ mod counter;
 #[cfg(test)]
 mod coverage;
 mod debts;
+pub mod decode;
 mod easy;
 mod error;
 mod files;
@@ -43,6 +44,7 @@ mod refusal;
 mod robot_type;
 mod rows;
 mod run;
+pub mod serve;
 mod sim;
 pub mod simulated;
 mod status;

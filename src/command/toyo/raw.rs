@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use crate::command::common::decode::toyo::{FieldRow, field_table};
+use crate::command::toyo::decode::{FieldRow, field_table};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::describe::{Sender, describe};

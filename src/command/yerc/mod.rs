@@ -4,6 +4,7 @@ mod alarm;
 mod axes;
 mod check;
 mod chosen;
+pub mod decode;
 mod each;
 pub mod file;
 mod fitted;
@@ -25,6 +26,7 @@ mod raw;
 mod reach;
 mod refusal;
 mod register;
+pub mod serve;
 pub mod simulated;
 mod status;
 #[cfg(test)]

@@ -11,7 +11,7 @@ use super::Family;
 use super::file::download_failed;
 use super::link::{self, Link, Refusal};
 use super::register::unsigned;
-use crate::command::common::decode::yerc::{FieldRow, field_table, parse_hex};
+use crate::command::yerc::decode::{FieldRow, field_table, parse_hex};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::hex;

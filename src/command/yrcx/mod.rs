@@ -21,6 +21,7 @@ mod clock;
 #[cfg(test)]
 mod coverage;
 mod data;
+pub mod decode;
 pub mod eip;
 #[cfg(test)]
 mod gate;
@@ -42,6 +43,7 @@ mod raw;
 mod reach;
 mod refusal;
 mod select;
+pub mod serve;
 mod servo;
 mod several;
 pub mod simulated;

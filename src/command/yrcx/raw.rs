@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::refusal::refused;
 use super::{Family, link, overwrite};
-use crate::command::common::decode::yrcx::{FieldRow, field_table};
+use crate::command::yrcx::decode::{FieldRow, field_table};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::answer::Answer;

@@ -1,16 +1,13 @@
 //! `armctl decode FAMILY …`: what goes over the line, in words.
 
 pub mod capture;
-pub mod toyo;
-pub mod yerc;
-pub mod yrcx;
 
 use clap::Subcommand;
 
-use self::toyo::Toyo;
-use self::yerc::Yerc;
-use self::yrcx::Yrcx;
 use crate::command::run::{Run, Stopped};
+use crate::command::toyo::decode::Toyo;
+use crate::command::yerc::decode::Yerc;
+use crate::command::yrcx::decode::Yrcx;
 use crate::failure::Failure;
 use crate::files;
 
@@ -39,7 +36,7 @@ impl Decode {
 const MOST: u64 = 16 << 20;
 
 /// What stands on stdin; bytes that are no text are replaced, and then told as such.
-fn stdin() -> Result<String, Failure> {
+pub fn stdin() -> Result<String, Failure> {
     let bytes = files::stdin(MOST).map_err(|error| Failure::io("stdin", &error))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

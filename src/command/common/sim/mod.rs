@@ -1,20 +1,16 @@
 //! `armctl sim`: the simulators as servers on real sockets and ports.
 
-pub mod toyo;
-pub mod yerc;
-pub mod yrcx;
-
 use std::io;
 use std::net::{IpAddr, SocketAddr};
 
 use clap::{Args, Subcommand};
 use tokio::io::{AsyncBufReadExt as _, BufReader, Lines, Stdin};
 
-use self::toyo::SimToyo;
-use self::yerc::SimYerc;
-use self::yrcx::SimYrcx;
 use crate::command::interrupt::interruptible;
 use crate::command::run::{Run, Stopped};
+use crate::command::toyo::serve::SimToyo;
+use crate::command::yerc::serve::SimYerc;
+use crate::command::yrcx::serve::SimYrcx;
 use crate::failure::{Failure, Kind, plain};
 
 /// Which simulator to serve.
@@ -47,7 +43,7 @@ impl Sim {
 }
 
 /// A simulator behind what clients connect to.
-trait Served {
+pub trait Served {
     /// Serves until something arrives or is due, and all that follows from it. The future may be dropped.
     async fn turn(&mut self) -> io::Result<()>;
     /// Does what a line of the console says, and tells what was done, or why not.
@@ -55,7 +51,7 @@ trait Served {
 }
 
 /// Serves until Ctrl-C; `address` is where others may come from.
-async fn serve(
+pub async fn serve(
     run: &Run,
     served: &mut impl Served,
     address: Option<SocketAddr>,
@@ -98,12 +94,12 @@ async fn next_line(console: &mut Option<Lines<BufReader<Stdin>>>) -> Option<Stri
 }
 
 /// An address with a port, or without one.
-fn address(text: &str, usual_port: u16) -> Result<SocketAddr, String> {
+pub fn address(text: &str, usual_port: u16) -> Result<SocketAddr, String> {
     let address = text.parse().or_else(|_| text.parse::<IpAddr>().map(|ip| SocketAddr::new(ip, usual_port)));
     address.map_err(|_| format!("'{text}' is no address such as 127.0.0.1:{usual_port}"))
 }
 
-fn cannot_listen(on: &str, error: &io::Error) -> Failure {
+pub fn cannot_listen(on: &str, error: &io::Error) -> Failure {
     let hint = match error.kind() {
         io::ErrorKind::AddrInUse => "another simulator may run; choose a port with --bind 127.0.0.1:0",
         io::ErrorKind::PermissionDenied => "ports below 1024 need rights; choose a higher one",

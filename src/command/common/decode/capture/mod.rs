@@ -1,10 +1,6 @@
 //! `armctl decode FAMILY FILE.pcapng`: what a capture file holds of a family, in the words of a trace.
 
-mod cip;
 mod stream;
-pub mod toyo;
-pub mod yerc;
-pub mod yrcx;
 
 use std::collections::HashMap;
 use std::io::{self, Read};
@@ -580,7 +576,7 @@ impl<F: Field> Report for Capture<F> {
 const FULL: &str = "it has more messages than there is room for; the first ones are told";
 
 /// Says what else there is to say, as far as anybody reads it.
-fn note(notes: &mut Vec<String>, text: String) {
+pub fn note(notes: &mut Vec<String>, text: String) {
     const MOST: usize = 1000;
 
     match notes.len() {
@@ -595,7 +591,7 @@ fn counted(count: u64, what: &str) -> String {
 }
 
 /// Problem of a message that was not recorded whole.
-fn cut() -> String {
+pub fn cut() -> String {
     "the capture has only a part of it; record whole packets, as `tcpdump -s 0` does".to_owned()
 }
 
@@ -623,9 +619,9 @@ mod tests {
             Some((capture.messages.len(), capture.other_packets))
         }
         [
-            count(whole(file, selection, yerc::Frames::default())),
-            count(whole(file, selection, toyo::Lines::default())),
-            count(whole(file, selection, yrcx::Images::new(true))),
+            count(whole(file, selection, crate::command::yerc::decode::capture::Frames::default())),
+            count(whole(file, selection, crate::command::toyo::decode::capture::Lines::default())),
+            count(whole(file, selection, crate::command::yrcx::decode::capture::Images::new(true))),
         ]
     }
 

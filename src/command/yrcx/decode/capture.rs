@@ -3,9 +3,9 @@
 use std::collections::{HashMap, HashSet};
 use std::net::{IpAddr, SocketAddr};
 
-use super::super::yrcx::{FieldRow, field_table};
 use super::cip::{explain, may_be_message};
-use super::{Field, Heard, Listener, Told, cut, note};
+use super::{FieldRow, field_table};
+use crate::command::common::decode::capture::{Field, Heard, Listener, Told, cut, note};
 use crate::controller::text::hex;
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::changes::{Change, changes};

@@ -8,8 +8,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Served, address, cannot_listen, serve};
 use crate::command::Report;
+use crate::command::common::sim::{Served, address, cannot_listen, serve};
 use crate::command::interrupt::catch_interrupts;
 use crate::command::run::{Run, Stopped};
 use crate::command::toyo::simulated::{self, Simulated};
@@ -22,7 +22,7 @@ use crate::transport::stream_server::StreamServer;
 /// Arguments of `sim toyo`.
 #[derive(Debug, Args)]
 #[command(after_help = "A line has one host: while a client is connected, others on the TCP port are let go at once.")]
-pub(super) struct SimToyo {
+pub struct SimToyo {
     /// Address to listen on, with the TCP port; port 0 lets the system choose
     #[arg(
         long,
@@ -61,7 +61,7 @@ const PORT: u16 = 4001;
 const BITS: u32 = 11;
 
 impl SimToyo {
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub async fn run(self, run: &Run) -> Result<(), Stopped> {
         let start = simulated::start(self.state.as_deref(), self.axes, self.fault.as_ref())?;
         let speed = self.baud.map(|baud| Pace::new(baud, BITS));
         let settings = self.baud.map(|baud| format!("?baud={baud}")).unwrap_or_default();

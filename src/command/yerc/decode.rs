@@ -1,12 +1,14 @@
 //! `armctl decode yerc`: frames in words.
 
+pub mod capture;
+
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::capture::{self, Selection};
-use super::stdin;
 use crate::command::Report;
+use crate::command::common::decode::capture::{Selection, named, tell, without_file};
+use crate::command::common::decode::stdin;
 use crate::command::run::{Run, Stopped};
 use crate::controller::yerc::describe::{Description, FieldNote, Sender, describe};
 use crate::controller::yerc::request::Request;
@@ -51,12 +53,12 @@ fn number(text: &str) -> Result<u16, String> {
 }
 
 impl Yerc {
-    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
-        if let Some(path) = capture::named(&self.hex) {
-            return capture::tell(run, "decode.yerc.capture", &path, &self.selection, capture::yerc::Frames::default());
+    pub fn run(self, run: &Run) -> Result<(), Stopped> {
+        if let Some(path) = named(&self.hex) {
+            return tell(run, "decode.yerc.capture", &path, &self.selection, capture::Frames::default());
         }
         if self.selection.is_given() {
-            return Err(capture::without_file().into());
+            return Err(without_file().into());
         }
         let frames = self.frames()?;
         run.local("decode.yerc", &self.explained(&frames))

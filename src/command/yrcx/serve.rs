@@ -8,8 +8,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Served, address, cannot_listen, serve};
 use crate::command::Report;
+use crate::command::common::sim::{Served, address, cannot_listen, serve};
 use crate::command::run::{Run, Stopped};
 use crate::command::yrcx::simulated::{self, Controller, faults, mischief};
 use crate::output::view::View;
@@ -24,7 +24,7 @@ use crate::transport::fault::FaultSpec;
     after_help = "One connection owns the outputs; others may only listen (role=input_only with out=238, listen_only with \
     out=237). The console takes `mischief stall` and `mischief off`, too."
 )]
-pub(super) struct SimYrcx {
+pub struct SimYrcx {
     /// Address to listen on, with the TCP port of sessions; port 0 lets the system choose
     #[arg(long, value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:44818", value_parser = listen)]
     bind: SocketAddrV4,
@@ -54,7 +54,7 @@ fn listen(text: &str) -> Result<SocketAddrV4, String> {
 }
 
 impl SimYrcx {
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub async fn run(self, run: &Run) -> Result<(), Stopped> {
         let start = simulated::start(self.state.as_deref())?;
         let io_port = self.io_port.unwrap_or(if self.bind.port() == 0 { 0 } else { IO_PORT });
         let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port };

@@ -1,13 +1,16 @@
 //! `armctl decode yrcx`: words of a remote command and its answer, in words.
 
+pub mod capture;
+mod cip;
+
 use std::path::PathBuf;
 
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::capture::{self, Selection};
 use crate::command::Report;
+use crate::command::common::decode::capture::{Selection, tell, without_file};
 use crate::command::run::{Run, Stopped};
 use crate::command::yrcx::words;
 use crate::controller::yrcx::describe::{Description, FieldNote, answer, command};
@@ -41,13 +44,13 @@ pub struct Yrcx {
 }
 
 impl Yrcx {
-    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub fn run(self, run: &Run) -> Result<(), Stopped> {
         if let Some(path) = &self.file {
-            let images = capture::yrcx::Images::new(self.every_image);
-            return capture::tell(run, "decode.yrcx.capture", path, &self.selection, images);
+            let images = capture::Images::new(self.every_image);
+            return tell(run, "decode.yrcx.capture", path, &self.selection, images);
         }
         if self.every_image || self.selection.is_given() {
-            return Err(capture::without_file().into());
+            return Err(without_file().into());
         }
         run.local("decode.yrcx", &self.explained())
     }

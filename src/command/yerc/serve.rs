@@ -8,8 +8,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Served, address, cannot_listen, serve};
 use crate::command::Report;
+use crate::command::common::sim::{Served, address, cannot_listen, serve};
 use crate::command::run::{Run, Stopped};
 use crate::command::yerc::simulated::{self, Simulated};
 use crate::controller::yerc::Model;
@@ -21,7 +21,7 @@ use crate::transport::server::Server;
 
 /// Arguments of `sim yerc`.
 #[derive(Debug, Args)]
-pub(super) struct SimYerc {
+pub struct SimYerc {
     /// Address to listen on, with the port of the robot server; port 0 lets the system choose
     #[arg(
         long,
@@ -58,7 +58,7 @@ impl Default for SimYerc {
 }
 
 impl SimYerc {
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+    pub async fn run(self, run: &Run) -> Result<(), Stopped> {
         let model = self.model.unwrap_or(Model::Dx200);
         let start = simulated::start(self.state.as_deref(), model, self.fault.as_ref())?;
         if let Some(model) = self.model.filter(|model| *model != start.model()) {

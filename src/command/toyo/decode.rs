@@ -1,12 +1,14 @@
 //! `armctl decode toyo`: lines of a conversation in words.
 
+pub mod capture;
+
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::capture::{self, Selection};
-use super::stdin;
 use crate::command::Report;
+use crate::command::common::decode::capture::{Selection, named, tell, without_file};
+use crate::command::common::decode::stdin;
 use crate::command::run::{Run, Stopped};
 use crate::controller::toyo::describe::{Description, FieldNote, Sender, describe};
 use crate::controller::toyo::request::Request;
@@ -35,12 +37,12 @@ const MARKS: [(&str, Sender); 2] = [("->", Sender::Host), ("<-", Sender::Control
 const REMARK: &str = "  # ";
 
 impl Toyo {
-    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
-        if let Some(path) = capture::named(&self.lines) {
-            return capture::tell(run, "decode.toyo.capture", &path, &self.selection, capture::toyo::Lines::default());
+    pub fn run(self, run: &Run) -> Result<(), Stopped> {
+        if let Some(path) = named(&self.lines) {
+            return tell(run, "decode.toyo.capture", &path, &self.selection, capture::Lines::default());
         }
         if self.selection.is_given() {
-            return Err(capture::without_file().into());
+            return Err(without_file().into());
         }
         let lines = self.lines()?;
         run.local("decode.toyo", &explained(&lines))

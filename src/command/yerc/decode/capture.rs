@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 use std::net::SocketAddr;
 
-use super::super::yerc::{FieldRow, ID_AT, IDENTIFIER, field_table};
-use super::{Field, Heard, Listener, Told, cut};
+use super::{FieldRow, ID_AT, IDENTIFIER, field_table};
+use crate::command::common::decode::capture::{Field, Heard, Listener, Told, cut};
 use crate::controller::text::hex;
 use crate::controller::yerc::describe::{Sender, describe, summary};
 use crate::controller::yerc::request::Request;

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::time::Duration;
 
-use super::super::toyo::{FieldRow, field_table};
-use super::{Field, Heard, Listener, Told, cut, note};
+use super::{FieldRow, field_table};
+use crate::command::common::decode::capture::{Field, Heard, Listener, Told, cut, note};
 use crate::controller::toyo::describe::{Sender, describe, summary};
 use crate::controller::toyo::request::Request;
 use crate::output::view::Table;
