@@ -86,7 +86,7 @@ const BORDERS: [(&str, &[&str]); 6] = [
 
 /// Commands that touch a transport: the link of a family with its trace, what reads captures, sessions, the simulators'
 /// servers, the list of ports, and the peer of tests.
-const LINKS: [&str; 38] = [
+const LINKS: [&str; 39] = [
     "command/attach.rs",
     "command/holding.rs",
     "command/trace.rs",
@@ -112,8 +112,9 @@ const LINKS: [&str; 38] = [
     "command/yrcx/testing.rs",
     "command/yrcx/trace.rs",
     "command/yrcx/decode/cip.rs",
-    "command/common/decode/capture/mod.rs",
-    "command/common/decode/capture/stream.rs",
+    "command/decode/capture/mod.rs",
+    "command/decode/capture/report.rs",
+    "command/decode/capture/stream.rs",
     "command/toyo/decode/capture.rs",
     "command/yerc/decode/capture.rs",
     "command/yrcx/decode/capture.rs",

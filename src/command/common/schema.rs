@@ -53,19 +53,11 @@ pub fn all() -> Vec<SchemaEntry> {
     all.extend(<super::backup::Backup as Noun<Fleet>>::schemas());
     all.extend(<super::backup::Restore as Noun<Fleet>>::schemas());
     all.extend(<super::backup::Diff as Noun<Fleet>>::schemas());
+    all.push(SchemaEntry::of::<super::backup::Checked>("backup.check"));
+    all.extend(super::decode::Decode::schemas());
+    all.extend([SchemaEntry::of::<DryRun>("dry-run"), SchemaEntry::of::<Envelope>("envelope")]);
+    all.extend(super::explain::Explain::schemas());
     all.extend([
-        SchemaEntry::of::<super::backup::Checked>("backup.check"),
-        SchemaEntry::of::<toyo::decode::Lines>("decode.toyo"),
-        SchemaEntry::of::<super::decode::capture::Capture<toyo::decode::FieldRow>>("decode.toyo.capture"),
-        SchemaEntry::of::<yerc::decode::Frames>("decode.yerc"),
-        SchemaEntry::of::<super::decode::capture::Capture<yerc::decode::FieldRow>>("decode.yerc.capture"),
-        SchemaEntry::of::<yrcx::decode::Explained>("decode.yrcx"),
-        SchemaEntry::of::<super::decode::capture::Capture<yrcx::decode::FieldRow>>("decode.yrcx.capture"),
-        SchemaEntry::of::<DryRun>("dry-run"),
-        SchemaEntry::of::<Envelope>("envelope"),
-        SchemaEntry::of::<super::explain::ToyoCode>("explain.toyo"),
-        SchemaEntry::of::<super::explain::Codes>("explain.yerc"),
-        SchemaEntry::of::<super::explain::YrcxAlarm>("explain.yrcx"),
         SchemaEntry::of::<ErrorBody>("failure"),
         SchemaEntry::of::<super::robots::Changed>("robots.add"),
         SchemaEntry::of::<super::robots::check::CheckReport>("robots.check"),
@@ -76,9 +68,7 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<super::session::Closed>("session.close"),
         SchemaEntry::of::<super::session::Sessions>("session.list"),
         SchemaEntry::of::<super::session::Opened>("session.open"),
-        SchemaEntry::of::<toyo::serve::Serving>("sim.toyo"),
-        SchemaEntry::of::<yerc::serve::Serving>("sim.yerc"),
-        SchemaEntry::of::<yrcx::serve::Serving>("sim.yrcx"),
     ]);
+    all.extend(super::sim::Sim::schemas());
     all
 }

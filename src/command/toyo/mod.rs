@@ -14,6 +14,7 @@ mod debts;
 pub mod decode;
 mod easy;
 mod error;
+pub mod explain;
 mod files;
 #[cfg(test)]
 mod gate;

@@ -6,6 +6,7 @@ mod check;
 mod chosen;
 pub mod decode;
 mod each;
+pub mod explain;
 pub mod file;
 mod fitted;
 #[cfg(test)]

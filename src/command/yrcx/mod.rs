@@ -23,6 +23,7 @@ mod coverage;
 mod data;
 pub mod decode;
 pub mod eip;
+pub mod explain;
 #[cfg(test)]
 mod gate;
 mod hold;
