@@ -25,7 +25,7 @@ use crate::files;
 use crate::output::Format;
 use crate::output::busy::busy;
 use crate::output::envelope::ErrorBody;
-use crate::transport::capture::{Carrier, Message, Summary, Unknown, read};
+use crate::transport::capture::{Carrier, Message, OpenError, Summary, read};
 use crate::transport::tap::Direction;
 
 /// What of a capture file is shown.
@@ -337,9 +337,9 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         let file = (self.open)().map_err(|error| Failure::io(self.name, &error))?;
         read(file, each).map_err(|error| {
             let hint = match error {
-                Unknown::Compressed => "unpack it first: gunzip, or unzstd",
-                Unknown::Unreadable => "check the disk that it is on",
-                Unknown::Other => "tcpdump, Wireshark and --trace write such files",
+                OpenError::Compressed => "unpack it first: gunzip, or unzstd",
+                OpenError::Unreadable => "check the disk that it is on",
+                OpenError::Other => "tcpdump, Wireshark and --trace write such files",
             };
             Failure::local(format!("{}: {error}", self.name)).hint(hint)
         })
