@@ -4,7 +4,6 @@ use std::fmt;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, Command, FromArgMatches, Parser, Subcommand};
 
 use crate::command::face::words::Typed;
@@ -92,9 +91,7 @@ impl FromArgMatches for FamilyWord {
     }
 
     fn from_arg_matches_mut(matches: &mut ArgMatches) -> Result<Self, clap::Error> {
-        let missing = || clap::Error::new(ErrorKind::MissingSubcommand);
-        let (name, mut matches) = matches.remove_subcommand().ok_or_else(missing)?;
-        let family = name.parse().map_err(|_| clap::Error::new(ErrorKind::InvalidSubcommand))?;
+        let (family, mut matches) = families::named(matches)?;
         Ok(Self { family, typed: families::of(family).read(&mut matches)? })
     }
 

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`frame`] | what runs every command: the traits, the one loop, dry run, questions, Ctrl-C, printing |
 //! | [`face`] | what the rest of the house may ask of a family |
-//! | [`backup`] | what backups of every family have in common |
+//! | [`backup`], [`decode`], [`serve`] | what backups, decoding and simulators have in common in every family |
 //! | [`yerc`], [`yrcx`], [`toyo`] | the commands of a family, its link, and its [`face`] |
 //! | [`families`] | the list of families |
 //! | [`fleet`] | commands for robots of any family: status, top, backup, robots, session |
@@ -13,10 +13,12 @@
 pub mod about;
 pub mod backup;
 pub mod common;
+pub mod decode;
 pub mod face;
 pub mod families;
 pub mod fleet;
 pub mod frame;
+pub mod serve;
 pub mod toyo;
 pub mod yerc;
 pub mod yrcx;

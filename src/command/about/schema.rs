@@ -6,9 +6,11 @@ use serde_json::json;
 use crate::command::ValueKind;
 use crate::command::families::FAMILIES;
 use crate::command::fleet::status::Overview;
+use crate::command::fleet::{backup, robots, session, tools};
+use crate::command::frame::background::Opened;
 use crate::command::frame::dry_run::DryRun;
 use crate::command::frame::run::Run;
-use crate::command::{CommandSet, SchemaEntry};
+use crate::command::{CommandSet as _, SchemaEntry};
 use crate::controller::nearest::nearest;
 use crate::failure::Failure;
 use crate::output::envelope::{Envelope, ErrorBody};
@@ -46,42 +48,27 @@ impl SchemaOf {
 /// The schemas of all reports, of the envelope and of what it holds when there is none.
 pub fn all() -> Vec<SchemaEntry> {
     let mut all: Vec<SchemaEntry> = FAMILIES.iter().flat_map(|face| face.schemas()).collect();
-    all.extend(<Overview as CommandSet>::schemas());
-    all.extend(<crate::command::fleet::backup::Backup as CommandSet>::schemas());
-    all.extend(<crate::command::fleet::backup::Restore as CommandSet>::schemas());
-    all.extend(<crate::command::fleet::backup::Diff as CommandSet>::schemas());
-    all.extend([
-        SchemaEntry::of::<crate::command::fleet::backup::Checked>("backup.check"),
-        SchemaEntry::of::<crate::command::common::decode::toyo::Lines>("decode.toyo"),
-        SchemaEntry::of::<
-            crate::command::common::decode::capture::Capture<crate::command::common::decode::toyo::FieldRow>,
-        >("decode.toyo.capture"),
-        SchemaEntry::of::<crate::command::common::decode::yerc::Frames>("decode.yerc"),
-        SchemaEntry::of::<
-            crate::command::common::decode::capture::Capture<crate::command::common::decode::yerc::FieldRow>,
-        >("decode.yerc.capture"),
-        SchemaEntry::of::<crate::command::common::decode::yrcx::Explained>("decode.yrcx"),
-        SchemaEntry::of::<
-            crate::command::common::decode::capture::Capture<crate::command::common::decode::yrcx::FieldRow>,
-        >("decode.yrcx.capture"),
+    all.extend(Overview::schemas());
+    all.extend(backup::Backup::schemas());
+    all.extend(backup::Restore::schemas());
+    all.extend(backup::Diff::schemas());
+    let mut others = tools::schemas();
+    others.extend([
+        SchemaEntry::of::<backup::Checked>("backup.check"),
         SchemaEntry::of::<DryRun>("dry-run"),
         SchemaEntry::of::<Envelope>("envelope"),
-        SchemaEntry::of::<crate::command::common::explain::ToyoCode>("explain.toyo"),
-        SchemaEntry::of::<crate::command::common::explain::Codes>("explain.yerc"),
-        SchemaEntry::of::<crate::command::common::explain::YrcxAlarm>("explain.yrcx"),
         SchemaEntry::of::<ErrorBody>("failure"),
-        SchemaEntry::of::<crate::command::fleet::robots::Changed>("robots.add"),
-        SchemaEntry::of::<crate::command::fleet::robots::check::CheckReport>("robots.check"),
-        SchemaEntry::of::<crate::command::fleet::robots::discover::Discovered>("robots.discover"),
-        SchemaEntry::of::<crate::command::fleet::robots::List>("robots.list"),
-        SchemaEntry::of::<crate::command::fleet::robots::Changed>("robots.remove"),
-        SchemaEntry::of::<crate::command::fleet::robots::Shown>("robots.show"),
-        SchemaEntry::of::<crate::command::fleet::session::Closed>("session.close"),
-        SchemaEntry::of::<crate::command::fleet::session::Sessions>("session.list"),
-        SchemaEntry::of::<crate::command::frame::background::Opened>("session.open"),
-        SchemaEntry::of::<crate::command::common::sim::toyo::Serving>("sim.toyo"),
-        SchemaEntry::of::<crate::command::common::sim::yerc::Serving>("sim.yerc"),
-        SchemaEntry::of::<crate::command::common::sim::yrcx::Serving>("sim.yrcx"),
+        SchemaEntry::of::<robots::Changed>("robots.add"),
+        SchemaEntry::of::<robots::check::CheckReport>("robots.check"),
+        SchemaEntry::of::<robots::discover::Discovered>("robots.discover"),
+        SchemaEntry::of::<robots::List>("robots.list"),
+        SchemaEntry::of::<robots::Changed>("robots.remove"),
+        SchemaEntry::of::<robots::Shown>("robots.show"),
+        SchemaEntry::of::<session::Closed>("session.close"),
+        SchemaEntry::of::<session::Sessions>("session.list"),
+        SchemaEntry::of::<Opened>("session.open"),
     ]);
+    others.sort_unstable_by_key(|entry| entry.id);
+    all.extend(others);
     all
 }

@@ -3,6 +3,7 @@
 pub mod layers;
 pub mod overview;
 pub mod sample;
+pub mod tool;
 pub mod words;
 
 use clap::ArgMatches;
@@ -11,6 +12,7 @@ use futures_util::future::LocalBoxFuture;
 use self::layers::Layer;
 use self::overview::OverviewReport;
 use self::sample::{Depth, Sample};
+use self::tool::{Tool, ToolKind};
 use self::words::Typed;
 use super::backup::{BackedUp, Making, Restored, Restoring};
 use super::frame::{Access, AnyContext, ConnectMode, Connection, Entry, SchemaEntry};
@@ -46,6 +48,9 @@ pub trait Face: Sync {
     fn read(&self, matches: &mut ArgMatches) -> Result<Typed, clap::Error>;
     /// The schemas of all its reports.
     fn schemas(&self) -> Vec<SchemaEntry>;
+
+    /// What it does behind a common word.
+    fn tool(&self, kind: ToolKind) -> Tool;
 
     /// Connects to a robot.
     fn connect<'a>(

@@ -4,4 +4,5 @@ pub mod backup;
 pub mod robots;
 pub mod session;
 pub mod status;
+pub mod tools;
 pub mod top;

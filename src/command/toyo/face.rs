@@ -7,12 +7,16 @@ use futures_util::future::LocalBoxFuture;
 
 use super::backup::{Backup, Restore};
 use super::commands::Commands;
+use super::decode::Decode;
+use super::explain::Explain;
+use super::serve::Serve;
 use super::top::Eye;
 use super::{check, link, overview, reach};
 use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
 use crate::command::face::sample::{Depth, Sample};
+use crate::command::face::tool::{Tool, ToolKind};
 use crate::command::face::words::{self, Typed};
 use crate::command::face::{Face, HeldLink, Watch};
 use crate::command::frame::connection;
@@ -80,6 +84,14 @@ impl Face for Toyo {
 
     fn schemas(&self) -> Vec<SchemaEntry> {
         Commands::schemas()
+    }
+
+    fn tool(&self, kind: ToolKind) -> Tool {
+        match kind {
+            ToolKind::Decode => Tool::decode::<Decode>(),
+            ToolKind::Explain => Tool::explain::<Explain>(),
+            ToolKind::Simulate => Tool::simulate::<Serve>(),
+        }
     }
 
     fn connect<'a>(

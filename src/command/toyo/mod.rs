@@ -12,8 +12,10 @@ mod counter;
 #[cfg(test)]
 mod coverage;
 mod debts;
+mod decode;
 mod easy;
 mod error;
+mod explain;
 pub mod face;
 mod files;
 #[cfg(test)]
@@ -45,6 +47,7 @@ mod refusal;
 mod robot_type;
 mod rows;
 mod run;
+mod serve;
 mod sim;
 pub mod simulated;
 mod status;

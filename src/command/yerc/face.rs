@@ -6,13 +6,17 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::commands::Commands;
+use super::decode::Decode;
+use super::explain::Explain;
 use super::file::{Backup, Restore};
+use super::serve::Serve;
 use super::top::Eye;
 use super::{check, link, overview, reach};
 use crate::command::backup::{BackedUp, Items, Making, Restored, Restoring};
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
 use crate::command::face::sample::{Depth, Sample};
+use crate::command::face::tool::{Tool, ToolKind};
 use crate::command::face::words::{self, Typed};
 use crate::command::face::{Face, HeldLink, Watch};
 use crate::command::frame::connection;
@@ -76,6 +80,14 @@ impl Face for Yerc {
 
     fn schemas(&self) -> Vec<SchemaEntry> {
         Commands::schemas()
+    }
+
+    fn tool(&self, kind: ToolKind) -> Tool {
+        match kind {
+            ToolKind::Decode => Tool::decode::<Decode>(),
+            ToolKind::Explain => Tool::explain::<Explain>(),
+            ToolKind::Simulate => Tool::simulate::<Serve>(),
+        }
     }
 
     fn connect<'a>(

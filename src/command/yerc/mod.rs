@@ -5,7 +5,9 @@ mod axes;
 mod check;
 mod chosen;
 pub mod commands;
+mod decode;
 mod each;
+mod explain;
 pub mod face;
 pub mod file;
 mod fitted;
@@ -27,6 +29,7 @@ mod raw;
 mod reach;
 mod refusal;
 mod register;
+mod serve;
 pub mod simulated;
 mod status;
 #[cfg(test)]

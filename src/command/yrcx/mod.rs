@@ -22,7 +22,9 @@ pub mod commands;
 #[cfg(test)]
 mod coverage;
 mod data;
+mod decode;
 pub mod eip;
+mod explain;
 pub mod face;
 #[cfg(test)]
 mod gate;
@@ -40,10 +42,11 @@ mod port;
 mod position;
 mod procedures;
 mod program;
-pub mod raw;
+mod raw;
 mod reach;
 mod refusal;
 mod select;
+mod serve;
 mod servo;
 mod several;
 pub mod simulated;

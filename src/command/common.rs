@@ -1,14 +1,10 @@
 //! Commands that are about no single controller.
 
-pub mod decode;
-pub mod explain;
-pub mod sim;
-
 use clap::Subcommand;
 
 use super::about::{completions, help, man, schema};
 use super::fleet::status::Overview;
-use super::fleet::{backup, robots, session, top};
+use super::fleet::{backup, robots, session, tools, top};
 use super::frame::run::{Run, RunError};
 
 /// Commands that every family shares.
@@ -31,13 +27,13 @@ pub enum Common {
     /// Compare a backup with another one, or with a controller
     Diff(backup::Diff),
     /// Serve the simulators on real sockets
-    Sim(sim::Sim),
+    Sim(tools::Sim),
     /// Explain bytes of the line
     #[command(subcommand)]
-    Decode(decode::Decode),
+    Decode(tools::Decode),
     /// What an error or alarm code means and what to do
     #[command(subcommand)]
-    Explain(explain::Explain),
+    Explain(tools::Explain),
     /// Print the completion script of a shell
     Completions(completions::Completions),
     /// Write the man pages
@@ -88,8 +84,8 @@ impl Common {
             Self::Sim(sim) => sim.run(run).await,
             Self::Session(session) => Box::pin(session.run(run)).await,
             Self::Robots(robots) => robots.run(run).await,
-            Self::Decode(decode) => decode.run(run),
-            Self::Explain(explain) => explain.run(run),
+            Self::Decode(decode) => decode.run(run).await,
+            Self::Explain(explain) => explain.run(run).await,
             Self::Completions(completions) => Ok(completions.run(run)?),
             Self::Man(man) => Ok(man.run(run, root)?),
             Self::Schema(schema) => Ok(schema.run(run)?),

@@ -5,26 +5,22 @@ use std::net::SocketAddrV4;
 use std::path::PathBuf;
 
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use super::{Served, address, cannot_listen, serve};
-use crate::command::Report;
-use crate::command::frame::run::{Run, RunError};
+use crate::command::serve::{self, Serving, Started, address, cannot_listen};
 use crate::command::yrcx::simulated::{self, Controller, faults, mischief};
-use crate::output::view::View;
+use crate::failure::Failure;
 use crate::transport::eip::adapter::Mischief;
 use crate::transport::eip::adapter::server::{Listen, Server};
 use crate::transport::eip::{IO_PORT, PORT};
 use crate::transport::fault::FaultSpec;
 
-/// Arguments of `sim yrcx`.
+/// A YRCX as an adapter of EtherNet/IP
 #[derive(Debug, Args)]
 #[command(
     after_help = "One connection owns the outputs; others may only listen (role=input_only with out=238, listen_only with \
     out=237). The console takes `mischief stall` and `mischief off`, too."
 )]
-pub(super) struct SimYrcx {
+pub struct Serve {
     /// Address to listen on, with the TCP port of sessions; port 0 lets the system choose
     #[arg(long, value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:44818", value_parser = listen)]
     bind: SocketAddrV4,
@@ -53,8 +49,12 @@ fn listen(text: &str) -> Result<SocketAddrV4, String> {
     }
 }
 
-impl SimYrcx {
-    pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
+impl serve::Serve for Serve {
+    const ID: &'static str = "sim.yrcx";
+    type Report = Serving;
+    type Server = Yrcx;
+
+    async fn start(self) -> Result<Started<Self>, Failure> {
         let start = simulated::start(self.state.as_deref())?;
         let io_port = self.io_port.unwrap_or(if self.bind.port() == 0 { 0 } else { IO_PORT });
         let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port };
@@ -64,15 +64,20 @@ impl SimYrcx {
         })?;
         server.with(|adapter, _| adapter.misbehave(self.mischief));
         let address = server.address();
-        run.local("sim.yrcx", &Serving { family: "yrcx", target: format!("eip://{address}") })?;
-        serve(run, &mut Yrcx(server), Some(address.into()), self.console).await
+        Ok(Started {
+            report: Serving { family: "yrcx", target: format!("eip://{address}") },
+            server: Yrcx(server),
+            address: Some(address.into()),
+            with_console: self.console,
+        })
     }
 }
 
 /// A simulated controller on its sockets, which have threads of their own.
-struct Yrcx(Server<Controller>);
+#[derive(Debug)]
+pub struct Yrcx(Server<Controller>);
 
-impl Served for Yrcx {
+impl serve::Server for Yrcx {
     async fn turn(&mut self) -> io::Result<()> {
         std::future::pending().await
     }
@@ -89,19 +94,5 @@ impl Served for Yrcx {
                 Ok(format!("mischief: {name}"))
             }
         })
-    }
-}
-
-/// A simulator that listens.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Serving {
-    family: &'static str,
-    /// The URL to reach it by.
-    target: String,
-}
-
-impl Report for Serving {
-    fn view(&self) -> View {
-        View::text(format!("{} at {}", self.family, self.target))
     }
 }
