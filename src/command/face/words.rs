@@ -35,9 +35,9 @@ enum Verb<C: Subcommand> {
     Repl(Repl),
 }
 
-/// The word of a family with all its commands.
-pub fn augment<C: Subcommand>(command: Command) -> Command {
-    Verb::<C>::augment_subcommands(command)
+/// The word of a family with all its commands, and what the help says of it.
+pub fn augment<C: Subcommand>(command: Command, about: &'static str) -> Command {
+    Verb::<C>::augment_subcommands(command).about(about).long_about(None)
 }
 
 /// Whether a word is a command of a family.

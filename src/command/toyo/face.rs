@@ -64,10 +64,9 @@ impl Face for Toyo {
     }
 
     fn augment(&self, command: clap::Command) -> clap::Command {
-        let command = command.about("Toyo over RS-232C host communication").after_help(
+        words::augment::<Commands>(command, "Toyo over RS-232C host communication").after_help(
             "Cable, settings and first contact: `armctl help toyo-setup`; the ports there are: `armctl toyo ports`.",
-        );
-        words::augment::<Commands>(command)
+        )
     }
 
     fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command {

@@ -62,8 +62,7 @@ impl Face for Yerc {
     }
 
     fn augment(&self, command: clap::Command) -> clap::Command {
-        let command = command.about("Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)");
-        words::augment::<Commands>(command)
+        words::augment::<Commands>(command, "Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)")
     }
 
     fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command {

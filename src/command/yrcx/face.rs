@@ -63,10 +63,8 @@ impl Face for Yrcx {
     }
 
     fn augment(&self, command: clap::Command) -> clap::Command {
-        let command = Unit::augment_args(command)
-            .about("OMRON / Yamaha YRCX over EtherNet/IP")
-            .after_help("Settings and first contact: `armctl help yrcx-setup`.");
-        words::augment::<Commands>(command)
+        words::augment::<Commands>(Unit::augment_args(command), "OMRON / Yamaha YRCX over EtherNet/IP")
+            .after_help("Settings and first contact: `armctl help yrcx-setup`.")
     }
 
     fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command {
