@@ -369,12 +369,16 @@ impl Link {
 
     /// Sends a block that is in no table, and returns what came back.
     pub async fn raw(&mut self, block: &str) -> Result<String, Failure> {
+        self.granted.check(Risk::Motion, block)?;
+        self.fence().await?;
         if let Transport::Notes(plan) = &mut self.transport {
             plan.note(json!({ "text": block }), Reason::default());
             return Err(unknown());
         }
         self.take_turn(Risk::Motion).await?;
+        self.is_fenced = false;
         self.moving = Some(Moving::Program);
+        self.debts.moving(self.moving);
         self.line.begin_raw(block);
         match self.drive(Risk::Motion).await? {
             Ended::Answered(answer) => Ok(answer),
