@@ -342,7 +342,7 @@ mod tests {
         assert_eq!((&output["ok"], &output["read"]), (&false.into(), &"10000000".into()), "{set}");
         let failure = failure.unwrap();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert_eq!(failure.message, "the controller accepted DOUT STN=0 PN01=.....1.., but PN01 reads 10000000");
+        assert_eq!(failure.message, "the controller accepted @DOUT STN=0 PN01=.....1.., but PN01 reads 10000000");
         let (set, failure) = Bench::spoilt("", odd).0.run(&["io", "set", "1.3=on", "2.1=on"]).unwrap();
         assert_eq!((&set["outputs"][1]["ok"], failure.unwrap().kind), (&true.into(), Kind::Mixed));
         let silent = |block: &str, _| if block.starts_with("@MOUT") { Fate::Lost } else { Fate::Pass };
