@@ -386,6 +386,9 @@ fn what_somebody_else_has_left_is_told_where_the_state_is_read() {
     said("host off");
     assert_eq!(said("status"), "");
     // What is wanted here is no news, until it is over.
+    said("raw @HSON");
+    assert_eq!(said("status"), "");
+    said("host off");
     said("host on");
     assert_eq!(said("status"), "");
     another_client(&url, "@HSOF");

@@ -5,11 +5,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
+use super::link::Link;
+use super::numbers::small;
 use crate::command::common::decode::toyo::{FieldRow, field_table};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::describe::{Sender, describe};
-use crate::controller::toyo::request::{BlockError, Request};
+use crate::controller::toyo::request::{Answer, BlockError, Request};
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
@@ -84,11 +86,25 @@ impl Command for Raw {
                     link.fence().await?;
                 }
                 link.dry_run(std::slice::from_ref(request))?;
-                link.exchange(request).await?.text()
+                let answer = link.exchange(request).await?;
+                if answer == Answer::Done {
+                    chosen(link, request);
+                }
+                answer.text()
             }
             Block::Unknown(text) => link.raw(text).await?,
         };
         Ok(Exchange::of(&self.block, answer))
+    }
+}
+
+/// What was done so was wanted, and is nothing that somebody else has left.
+fn chosen(link: &mut Link, request: &Request) {
+    match request.command() {
+        table::Command::Hson => link.choose_host(true),
+        table::Command::Hsof => link.choose_host(false),
+        table::Command::Ctsk => link.choose_task(small(request.record(), "task")),
+        _ => {}
     }
 }
 

@@ -78,7 +78,7 @@ impl Reader<'_> {
             self.step_number(&mut cursor);
         }
         if cursor.rest().starts_with(NOT_READ) {
-            let hint = "read the program again, or put the instruction there that the step has";
+            let hint = "read the program again: without this step it is another one";
             self.findings.error(cursor.place(), "this step was not read from the controller", Some(hint.to_owned()));
             return self.read.steps.push(Draft::empty(cursor.place()));
         }
