@@ -75,7 +75,7 @@ pub fn listing_with(steps: &[Record], unread: &Unread, style: Style, rows: &Rows
         if let Some(why) = unread.get(&index) {
             // Those that follow each other for one reason are told together.
             if index.checked_sub(1).and_then(|before| unread.get(&before)) != Some(why) {
-                let last = (index..).take_while(|index| unread.get(index) == Some(why)).last().unwrap_or(index);
+                let last = (index..end).take_while(|index| unread.get(index) == Some(why)).last().unwrap_or(index);
                 let _ = match (index + first, last + first) {
                     (one, last) if one == last => writeln!(text, "{NOT_READ}  # step {one} was not read: {why}"),
                     (one, last) => writeln!(text, "{NOT_READ}  # steps {one} to {last} were not read: {why}"),
