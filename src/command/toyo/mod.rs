@@ -5,6 +5,7 @@ mod bus;
 mod card;
 mod cells;
 mod check;
+mod chosen;
 pub mod commands;
 mod coordinate;
 mod copies;
@@ -12,7 +13,7 @@ mod counter;
 #[cfg(test)]
 mod coverage;
 mod debts;
-mod decode;
+pub mod decode;
 mod easy;
 mod error;
 mod explain;

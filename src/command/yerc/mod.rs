@@ -5,7 +5,7 @@ mod axes;
 mod check;
 mod chosen;
 pub mod commands;
-mod decode;
+pub mod decode;
 mod each;
 mod explain;
 pub mod face;

@@ -22,7 +22,7 @@ pub mod commands;
 #[cfg(test)]
 mod coverage;
 mod data;
-mod decode;
+pub mod decode;
 pub mod eip;
 mod explain;
 pub mod face;
