@@ -29,7 +29,7 @@ impl Sim {
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         let simulator = match self.family {
             Some(simulator) => simulator,
-            None => OfFamily::first().map_err(|error| Failure::usage(error.to_string()))?,
+            None => OfFamily::first().map_err(|error| Failure::local(format!("internal error: {error}")))?,
         };
         simulator.run(run).await
     }
