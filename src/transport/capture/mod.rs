@@ -1,8 +1,9 @@
 //! Reads capture files: pcap and pcapng, as `tap`(super::tap), tcpdump and Wireshark write them.
 //!
-//! A reader of our own, because the formats are small, damage has to be told by its offset with all that came before
-//! it, and what is inside the packets (addresses, streams) would have to be written anyway. `file` finds packets,
-//! `layers` what they carry, `stream` puts TCP together. No bytes make any of it panic.
+//! `file` finds packets, `layers` what they carry (by `etherparse`), `stream` puts TCP together. No bytes make any of it
+//! panic. The packets are found by a reader of our own: `pcap-file` stops at a packet with a comment that is not UTF-8 or
+//! an original length of 0, where nothing that is needed is damaged, and takes a length that no block has for the end of
+//! the file.
 
 mod file;
 mod layers;
