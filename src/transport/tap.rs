@@ -226,7 +226,7 @@ mod tests {
     fn checks_out(bytes: &[u8]) -> bool {
         let words = bytes.chunks(2).map(|pair| u32::from(pair[0]) << 8 | pair.get(1).map_or(0, |low| u32::from(*low)));
         let sum: u32 = words.sum();
-        sum > 0 && sum % 0xFFFF == 0
+        sum > 0 && sum.is_multiple_of(0xFFFF)
     }
 
     #[test]

@@ -15,7 +15,7 @@ use std::time::Duration;
 
 use self::file::Packets;
 use self::layers::{PacketContent, Payload, content_of};
-use self::stream::{StreamBytes, Streams};
+use self::stream::{Piece, Streams};
 use super::tap::Direction;
 
 pub use self::file::{Damage, OpenError};
@@ -134,8 +134,8 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
     Ok(summary)
 }
 
-fn pass_on(arrived: &StreamBytes<'_>, each: &mut impl FnMut(&Message<'_>)) {
-    let StreamBytes { key: (_, from, to), origin: (number, time, is_cut), begins, lost, bytes } = *arrived;
+fn pass_on(arrived: &Piece<'_>, each: &mut impl FnMut(&Message<'_>)) {
+    let Piece { key: (_, from, to), origin: (number, time, is_cut), begins, lost, bytes } = *arrived;
     let carrier = Carrier::Stream { from, to, begins, lost };
     each(&Message { number, time, carrier, bytes, is_cut });
 }
