@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use self::capture::ImageDecoder;
-use super::words;
+use super::raw::words;
 use crate::command::Report;
 use crate::command::decode::capture::Selection;
 use crate::command::decode::{self, field_table, in_parentheses, problem_lines};

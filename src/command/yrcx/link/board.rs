@@ -3,7 +3,7 @@
 use serde_json::Value as Json;
 
 use super::{Board, Link, Transport};
-use crate::command::dry_run::{Reason, unknown};
+use crate::command::frame::dry_run::{Reason, unknown};
 use crate::failure::Failure;
 use crate::transport::tap::Direction;
 
