@@ -6,8 +6,8 @@
 
 use std::time::Duration;
 
-mod entries;
 pub mod nearest;
+mod simulator;
 pub mod text;
 pub mod toyo;
 pub mod units;

@@ -4,6 +4,7 @@ use super::action::axis;
 use super::io::{Port, PortBit, Ports};
 use super::memory::TASKS;
 use super::world::{Kind, Mode, World};
+use crate::simulator::console::{self, expected, number, on_off, unknown};
 use crate::toyo::field::Mask;
 use crate::toyo::layout::Record;
 
@@ -76,7 +77,7 @@ impl Line {
             ["why"] => Self::Why,
             ["input", place, value] => input(place, value)?,
             ["start"] => Self::Press(Button::Start),
-            ["start", step] => Self::StartAt(number(step, 1, 5000)?),
+            ["start", step] => Self::StartAt(number(step, 1..=5000)?),
             ["stop"] => Self::Press(Button::Stop),
             ["reset"] => Self::Press(Button::Reset),
             ["home"] => Self::Press(Button::Home),
@@ -96,7 +97,7 @@ impl Line {
             ["slave", state] => Self::Slave(on_off(state)?),
             ["battery", "low"] => Self::BatteryLow(true),
             ["battery", "ok"] => Self::BatteryLow(false),
-            _ => return Err(format!("no such line: '{}'", line.trim())),
+            _ => return Err(unknown(line)),
         })
     }
 
@@ -132,11 +133,16 @@ impl Line {
     }
 }
 
+/// Reads a line and carries it out.
+pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
+    Line::parse(line)?.carry_out(world)
+}
+
 /// `0/01/3 on`, `0/01 00000100`; `0/SY/2 on` is a bit of the system port.
 fn input(place: &str, value: &str) -> Result<Line, String> {
     let parts: Vec<&str> = place.split('/').collect();
     let existing = |station: &str, port: &str| {
-        let port = Port { station: number(station, 0, 4)?, port: number(port, 1, 99)? };
+        let port = Port { station: number(station, 0..=4)?, port: number(port, 1..=99)? };
         let known = Ports::default().input(port).is_some();
         if known { Ok(port) } else { Err(format!("there is no input port {}/{:02}", port.station, port.port)) }
     };
@@ -210,7 +216,7 @@ fn set_system(world: &mut World, mask: u8, on: bool) {
 
 /// One line about everything that decides what is refused.
 fn summary(world: &World) -> String {
-    let mut parts = vec![
+    let always = [
         match world.kind() {
             Kind::Sequential => "sequential",
             Kind::Palletizing => "palletizing",
@@ -236,8 +242,7 @@ fn summary(world: &World) -> String {
         (world.card.is_busy(), "card busy"),
         (world.errors.current().is_some(), "error"),
     ];
-    parts.extend(optional.into_iter().filter_map(|(on, text)| on.then_some(text)));
-    parts.join(", ")
+    console::summary(&always, optional)
 }
 
 /// The summary, then error, place, tasks and outputs.
@@ -267,23 +272,6 @@ fn state(world: &World) -> String {
 
 /// The bit with a number, from 1.
 fn mask(bit: &str) -> Result<u8, String> {
-    let bit = u8::try_from(number(bit, 1, 8)?).unwrap_or(1);
+    let bit = u8::try_from(number(bit, 1..=8)?).unwrap_or(1);
     Ok(PortBit { port: Port { station: 0, port: 1 }, bit }.mask())
-}
-
-fn on_off(word: &str) -> Result<bool, String> {
-    match word {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err(expected(word, "on or off")),
-    }
-}
-
-fn number(word: &str, least: usize, most: usize) -> Result<usize, String> {
-    let number = word.parse().ok().filter(|number| (least..=most).contains(number));
-    number.ok_or_else(|| expected(word, &format!("a number from {least} to {most}")))
-}
-
-fn expected(word: &str, what: &str) -> String {
-    format!("'{word}' is not {what}")
 }

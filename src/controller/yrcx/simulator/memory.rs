@@ -102,6 +102,14 @@ pub(super) enum Operation {
     Divide,
 }
 
+/// A port, or a signal of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct PortRef {
+    pub(super) kind: usize,
+    pub(super) port: usize,
+    pub(super) bit: Option<u8>,
+}
+
 /// All of it.
 #[derive(Debug, Clone)]
 pub(super) struct Memory {
@@ -246,6 +254,14 @@ impl Memory {
         let mask = 1_u8.checked_shl(bit.into()).unwrap_or_default();
         let old = self.port(kind, number);
         self.set_port(kind, number, if on { old | mask } else { old & !mask });
+    }
+
+    /// Sets what a program or a line names: a port or one of its signals.
+    pub(super) fn set_output(&mut self, port: PortRef, value: u8) {
+        match port.bit {
+            Some(bit) => self.set_bit(port.kind, port.port, bit, value == 1),
+            None => self.set_port(port.kind, port.port, value),
+        }
     }
 }
 

@@ -3,19 +3,11 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use super::memory::{Number, Operation, POINTS, is_port, port_kind};
+use super::memory::{Number, Operation, POINTS, PortRef, is_port, port_kind};
 use super::request::ROBOTS;
 
 /// Lines of a program at most; the line of COMMON is told from 10000 on (4.6.4).
 const MAX_LINES: usize = 9999;
-
-/// A port, or a signal of it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct PortRef {
-    pub(super) kind: usize,
-    pub(super) port: usize,
-    pub(super) bit: Option<u8>,
-}
 
 /// A number in a program.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,10 +2,11 @@
 
 use super::alarms::{CALLS, Fault, NO_TASK, Place, RUNNING};
 use super::geometry::Four;
+use super::memory::PortRef;
 use super::memory::calculate;
 use super::motion::{End, Owner};
 use super::moves::Speed;
-use super::program::{Line, Operand, PortRef};
+use super::program::{Line, Operand};
 use super::world::World;
 use crate::Now;
 
@@ -296,7 +297,7 @@ impl World {
             Line::Move { robot, linear, relative, point } => {
                 return self.program_move(at, robot, linear, relative, point);
             }
-            Line::Output(port, value) => self.output(port, value),
+            Line::Output(port, value) => self.memory.set_output(port, value),
             Line::Wait(port, value) => {
                 if self.signal(port) != value {
                     self.set_doing(at, Doing::Waiting);
@@ -378,13 +379,6 @@ impl World {
         };
         let missing = || Fault::new(CALLS, Place::Controller, format!("there is no label *{label}"));
         own.or_else(common).ok_or_else(missing)
-    }
-
-    fn output(&mut self, port: PortRef, value: u8) {
-        match port.bit {
-            Some(bit) => self.memory.set_bit(port.kind, port.port, bit, value == 1),
-            None => self.memory.set_port(port.kind, port.port, value),
-        }
     }
 
     fn signal(&self, port: PortRef) -> u8 {

@@ -1,6 +1,6 @@
 //! The controller as a machine: switches, power, alarms, what may be done when, and the passing of time.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use jiff::SignedDuration;
@@ -17,6 +17,7 @@ use super::program::Program;
 use super::robot::{ALL, Robot, Servo};
 use super::task::Task;
 use crate::Now;
+use crate::simulator::timeline::Timeline;
 use crate::yrcx::alarm::Alarm;
 use crate::yrcx::image::Image;
 use crate::yrcx::signal::input;
@@ -102,8 +103,7 @@ pub(super) struct World {
     /// Modules by controller and slot (4.7.15).
     pub(super) slots: BTreeMap<u8, [u16; 4]>,
     pub(super) delayed: Vec<(Now, Action)>,
-    /// Console lines to carry out at their time, in order.
-    pub(super) events: VecDeque<(Now, String)>,
+    pub(super) events: Timeline,
     /// What was wrong with the last thing that was refused or broken off.
     pub(super) why: Option<Fault>,
     /// Something changed that others may wait for: there is another scan.
@@ -117,9 +117,8 @@ impl World {
         let motions = self.robots.iter().filter_map(|robot| robot.motion.as_ref()).map(Motion::due);
         let tasks = self.tasks.iter().filter_map(|task| task.due(self.now));
         let delayed = self.delayed.iter().map(|(at, _)| *at);
-        let events = self.events.front().map(|(at, _)| *at);
         let restless = self.restless.then_some(self.now);
-        motions.chain(tasks).chain(delayed).chain(events).chain(link).chain(restless).min()
+        motions.chain(tasks).chain(delayed).chain(self.events.due()).chain(link).chain(restless).min()
     }
 
     /// Lets what moves reach `now`.
@@ -145,11 +144,9 @@ impl World {
             self.inputs = Image::default();
             self.raise(&Fault::new(LINK_TOO_LATE, Place::Slot, "no master came in time"), false);
         }
-        while self.events.front().is_some_and(|(at, _)| *at <= now) {
-            if let Some((_, line)) = self.events.pop_front() {
-                // Lines were tried when the start state was read; one that is refused by now has no effect.
-                let _refused = console::execute(self, &line);
-            }
+        while let Some(line) = self.events.take(now) {
+            // Lines were tried when the start state was read; one that is refused by now has no effect.
+            let _refused = console::execute(self, &line);
         }
         for at in (0..self.delayed.len()).rev() {
             if self.delayed.get(at).is_some_and(|(due, _)| *due <= now) {
