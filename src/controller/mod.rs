@@ -8,6 +8,8 @@ use std::time::Duration;
 
 pub mod nearest;
 mod simulator;
+#[cfg(test)]
+mod testing;
 pub mod text;
 pub mod toyo;
 pub mod units;

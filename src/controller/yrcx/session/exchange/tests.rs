@@ -1,9 +1,9 @@
 //! Exchanges with a small scripted controller, in virtual time: the master sends every 20 ms, the controller scans every
 //! 5 ms and shows its image every 20 ms.
 
-use std::time::Duration;
 
 use super::*;
+use crate::testing::ms;
 use crate::yrcx::alarm::{Alarm, STOP_INPUT};
 use crate::yrcx::signal::{Side, Signal, resting};
 use crate::yrcx::table::Command;
@@ -11,10 +11,6 @@ use crate::yrcx::value::{Key, Values};
 
 const STEP: u64 = 5;
 const RPI: u64 = 20;
-
-fn ms(ms: u64) -> Duration {
-    Duration::from_millis(ms)
-}
 
 /// What the controller does with the next command.
 #[derive(Debug, Clone)]

@@ -2,6 +2,7 @@
 //! image every 20 ms.
 
 use super::*;
+use crate::testing::ms;
 use crate::yrcx::image::Output;
 use crate::yrcx::order::Order;
 use crate::yrcx::procedure::Procedure;
@@ -18,10 +19,6 @@ struct Line {
     /// When the link goes.
     cut: Option<u64>,
     linked: bool,
-}
-
-fn ms(ms: u64) -> Duration {
-    Duration::from_millis(ms)
 }
 
 impl Line {
