@@ -4,11 +4,14 @@
 //! Requests are checked, frames explained and simulated by these rows; there is no second list. Ranges and sizes that the
 //! manuals misprint are given corrected; the golden frames hold the evidence.
 
+mod bits;
 mod fields;
 mod rows;
 mod spans;
 
-pub use fields::{ALARM_KINDS, Bit, Field, Kind};
+pub use bits::Bit;
+pub(super) use bits::{DATA_1_BITS, DATA_2_BITS, EXTENDED_FORM_BITS, FORM_BITS};
+pub use fields::{ALARM_KINDS, Field, Kind};
 pub use rows::ROWS;
 pub use spans::{Instances, Span};
 

@@ -15,6 +15,15 @@ const HALVINGS: u32 = 40;
 /// An axis within this many mm is in the same place.
 const SAME: f64 = 1e-6;
 
+/// An axis that pushes against something.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Press {
+    /// When it is judged.
+    pub(super) due: Option<Now>,
+    /// Whether it was judged to be locked.
+    pub(super) locked: bool,
+}
+
 /// All axes.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Arm {

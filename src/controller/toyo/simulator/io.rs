@@ -29,6 +29,17 @@ pub(super) struct PortBit {
     pub(super) bit: u8,
 }
 
+/// An output that waits for an axis (OUTS).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct OutputAt {
+    pub(super) task: usize,
+    pub(super) axis: usize,
+    pub(super) at_least: bool,
+    pub(super) place: f64,
+    pub(super) port: Port,
+    pub(super) mask: Mask,
+}
+
 /// All ports.
 #[derive(Debug, Clone)]
 pub(super) struct Ports {

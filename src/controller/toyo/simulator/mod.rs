@@ -13,7 +13,7 @@
 //! | `motion`, `arm`, `moves`, `homing` | ramps and paths, axes, moves of programs, origin and JOG |
 //! | `action`, `task`, `run` | steps, tasks, the interpreter |
 //! | `matrix`, `routine` | places in rows; palletizing, easy programs, single points |
-//! | `commands`, `edit`, `monitor`, `operate` | the host's commands |
+//! | `commands`, `edit`, `monitor`, `operate`, `reply` | the host's commands |
 //! | `console`, `trace` | what somebody at the machine does, and sees |
 //!
 //! The manual tells what is sent, hardly what is done. Where it is silent, this was chosen:
@@ -64,6 +64,7 @@ mod monitor;
 mod motion;
 mod moves;
 mod operate;
+mod reply;
 mod routine;
 mod run;
 mod settings;

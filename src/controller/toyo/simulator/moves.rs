@@ -3,8 +3,7 @@
 use super::action::{Move, Target, Torque};
 use super::errors::code;
 use super::motion::{AXES, Arc, Drive, Path, Place, Segment, minus, plus};
-use super::run::Flow;
-use super::task::Wait;
+use super::task::{Flow, Wait};
 use super::watch::NEAR;
 use super::world::World;
 

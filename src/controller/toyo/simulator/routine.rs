@@ -8,7 +8,7 @@ use super::io::PortBit;
 use super::matrix::Matrix;
 use super::memory::{Easy, index as to_index};
 use super::motion::Place;
-use super::run::Flow;
+use super::task::Flow;
 use super::world::World;
 use crate::toyo::layout::Record;
 use crate::toyo::table::Pallet;

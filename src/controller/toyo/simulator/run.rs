@@ -2,11 +2,10 @@
 
 use super::action::{Action, Change, Choice, Target, TaskOrder, Test};
 use super::errors::code;
-use super::io::Port;
+use super::io::{OutputAt, Port};
 use super::memory::{Found, TASKS};
-use super::task::Wait;
+use super::task::{Flow, Wait};
 use super::trace::What;
-use super::watch::OutputAt;
 use super::world::World;
 use crate::toyo::field::Mask;
 
@@ -14,20 +13,6 @@ use crate::toyo::field::Mask;
 pub(super) const DEPTH: usize = 16;
 /// What a counter holds at most.
 const MOST_COUNT: i32 = 9999;
-
-/// How a task goes on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Flow {
-    /// With the next step.
-    Next,
-    /// With this step.
-    To(usize),
-    /// After a wait, with this step.
-    Wait(Wait, usize),
-    /// With the next step, once it is started again.
-    Stop,
-    End,
-}
 
 impl World {
     /// Does the steps that are due.

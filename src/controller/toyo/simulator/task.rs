@@ -23,6 +23,20 @@ pub(super) enum Wait {
     Host(Move),
 }
 
+/// How a task goes on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Flow {
+    /// With the next step.
+    Next,
+    /// With this step.
+    To(usize),
+    /// After a wait, with this step.
+    Wait(Wait, usize),
+    /// With the next step, once it is started again.
+    Stop,
+    End,
+}
+
 /// One of four.
 #[derive(Debug, Clone)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]

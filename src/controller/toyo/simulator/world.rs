@@ -2,17 +2,16 @@
 
 use std::time::Duration;
 
-use super::arm::{Arm, HOST};
+use super::arm::{Arm, HOST, Press};
 use super::card::Card;
 use super::console;
 use super::errors::{Errors, code};
-use super::io::{Port, Ports};
+use super::io::{OutputAt, Port, Ports};
 use super::memory::{Memory, TASKS};
 use super::motion::{AXES, Place};
 use super::settings::{Machine, Settings, Special, axes_of};
 use super::task::{Task, Wait};
 use super::trace::{Trace, What};
-use super::watch::{OutputAt, Press};
 use crate::Now;
 use crate::simulator::timeline::Timeline;
 use crate::toyo::field::Mask;

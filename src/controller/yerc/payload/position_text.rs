@@ -6,11 +6,11 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use super::position::{EXTENDED_FORM_BITS, FORM_BITS};
-use super::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, MAX_AXES, Position, PositionKind};
+use super::axes::{Axes, MAX_AXES};
+use super::position::{BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
 use crate::text::integer;
 use crate::units::{self, Unit, UnitError};
-use crate::yerc::table::Bit;
+use crate::yerc::table::{Bit, EXTENDED_FORM_BITS, FORM_BITS};
 
 const PULSE_AXES: [&str; MAX_AXES] = ["s", "l", "u", "r", "b", "t", "e", "8"];
 const CARTESIAN_AXES: [&str; MAX_AXES] = ["x", "y", "z", "rx", "ry", "rz", "re", "8"];

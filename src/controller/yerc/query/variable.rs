@@ -5,7 +5,8 @@ use crate::yerc::Model;
 use crate::yerc::payload::PayloadError;
 use crate::yerc::request::Request;
 use crate::yerc::table::service;
-use crate::yerc::variables::{Value, VariableKind};
+use crate::yerc::variables::reference::VariableKind;
+use crate::yerc::variables::value::Value;
 
 /// Reads one variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -6,7 +6,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::hash::Hash;
 
-use super::{Reference, Value, VariableKind};
+use super::reference::{Reference, VariableKind};
+use super::value::Value;
 use crate::yerc::Model;
 use crate::yerc::payload::PayloadError;
 use crate::yerc::query::{

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::VariableKind;
+use super::reference::VariableKind;
 use crate::text::integer;
 use crate::yerc::payload::{
     BasePosition, ExternalPosition, PayloadError, Position, PositionTextError, Reader, Text, TextError,

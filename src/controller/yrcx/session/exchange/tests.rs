@@ -1,7 +1,6 @@
 //! Exchanges with a small scripted controller, in virtual time: the master sends every 20 ms, the controller scans every
 //! 5 ms and shows its image every 20 ms.
 
-
 use super::*;
 use crate::testing::ms;
 use crate::yrcx::alarm::{Alarm, STOP_INPUT};
