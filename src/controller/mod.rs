@@ -12,6 +12,7 @@ mod simulator;
 mod testing;
 pub mod text;
 pub mod toyo;
+pub mod typed;
 pub mod units;
 pub mod yerc;
 pub mod yrcx;

@@ -7,7 +7,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-use super::text::integer;
+use super::typed::integer;
 
 /// A decimal unit: the symbol, and how many digits after the point one step of the wire is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

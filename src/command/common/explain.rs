@@ -8,6 +8,7 @@ use crate::command::Report;
 use crate::command::ValueKind;
 use crate::command::run::{Run, Stopped};
 use crate::controller::toyo::errors;
+use crate::controller::typed;
 use crate::controller::yerc::status;
 use crate::controller::yrcx::alarm::Alarm;
 use crate::failure::Failure;
@@ -55,10 +56,7 @@ impl Explain {
 
 /// Two hexadecimal digits.
 fn toyo_code(text: &str) -> Result<u8, String> {
-    let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
-    let is_hex = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
-    let code = if is_hex { u8::from_str_radix(digits, 16).ok() } else { None };
-    code.ok_or_else(|| "a code is two hexadecimal digits, as in 28; `toyo status` shows it".to_owned())
+    typed::code(text).ok_or_else(|| "a code is two hexadecimal digits, as in 28; `toyo status` shows it".to_owned())
 }
 
 /// Group and category.

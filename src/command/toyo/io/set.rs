@@ -16,6 +16,7 @@ use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Mask, Value};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
+use crate::controller::typed;
 use crate::failure::Failure;
 use crate::output::view::{Table, View};
 
@@ -62,7 +63,7 @@ impl FromStr for Assignment {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (place, value) = text.split_once('=').ok_or("a port, '=' and a value are expected, as in 1.3=on")?;
+        let (place, value) = typed::setting(text, "a port", "a value", "1.3=on")?;
         let (port, bit) = place.split_once('.').map_or((place, None), |(port, bit)| (port, Some(bit)));
         let digits = port.strip_prefix("PN").or_else(|| port.strip_prefix("pn")).unwrap_or(port);
         let port = u8::try_from(number(&fields()[1], digits)?).map_err(|error| error.to_string())?;
@@ -86,11 +87,7 @@ fn one_bit(bit: &str, value: &str) -> Result<Mask, String> {
     let number = bit.parse().ok().filter(|number| (1..=8).contains(number));
     let number: u8 = number.ok_or_else(|| format!("'{bit}' is no bit; a port has the bits 1 to 8"))?;
     let care = 1 << (number - 1);
-    match value {
-        "on" | "1" => Ok(Mask { care, bits: care }),
-        "off" | "0" => Ok(Mask { care, bits: 0 }),
-        _ => Err(format!("'{value}' is no state; there are on and off")),
-    }
+    Ok(Mask { care, bits: if typed::state(value)? { care } else { 0 } })
 }
 
 impl Set {
