@@ -23,9 +23,9 @@ use crate::command::attach::hindered;
 use crate::command::dry_run::{Plan, Reason, unknown};
 use crate::command::{Access, Family};
 use crate::controller::toyo::field::Value;
-use crate::controller::toyo::layout::{Misfit, Record};
+use crate::controller::toyo::layout::{LayoutProblem, Record};
 use crate::controller::toyo::request::{Answer, BlockError, Request};
-use crate::controller::toyo::session::{Counters, Ended, Line, Policy};
+use crate::controller::toyo::session::{Counters, Ended, LineSession, Policy};
 use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table::commands::{Command, Row};
 use crate::controller::{Risk, Session as _, Step};
@@ -49,7 +49,7 @@ pub struct Toyo;
 #[derive(Debug)]
 pub struct Link {
     transport: Transport,
-    line: Line,
+    line: LineSession,
     /// As flags and settings want it, and as it is now.
     usual: Policy,
     policy: Policy,
@@ -207,7 +207,7 @@ impl Link {
         let left = debts.left();
         Ok(Self {
             transport,
-            line: Line::new(policy),
+            line: LineSession::new(policy),
             usual: policy,
             policy,
             screen: *screen,
@@ -622,7 +622,7 @@ pub fn jog(word: &'static str, axis: Option<usize>) -> Request {
 }
 
 /// Values that cannot be sent, as a failure of the command line.
-pub fn wrong(error: &Misfit) -> Failure {
+pub fn wrong(error: &LayoutProblem) -> Failure {
     Failure::usage(error.to_string()).hint("`--help` tells what may be given")
 }
 

@@ -69,7 +69,7 @@ impl Signal {
 
 /// The class of a group of eight signals.
 pub fn io_class(model: Model, group: u16) -> Option<&'static Span> {
-    Row::of(0x78)?.instances.find(model, group)
+    Row::from_number(0x78)?.instances.find(model, group)
 }
 
 impl fmt::Display for Signal {

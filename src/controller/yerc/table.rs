@@ -155,7 +155,7 @@ pub struct Row {
 
 impl Row {
     /// The row of a robot command.
-    pub fn of(command: u16) -> Option<&'static Self> {
+    pub fn from_number(command: u16) -> Option<&'static Self> {
         ROWS.iter().find(|row| row.division == Division::Robot && row.number == command)
     }
 
@@ -274,7 +274,7 @@ mod tests {
     fn spans_of_a_model_do_not_overlap() {
         for row in ROWS {
             for model in Model::ALL {
-                let spans = row.instances.of(model);
+                let spans = row.instances.for_model(model);
                 assert!(spans.windows(2).all(|pair| pair[0].last < pair[1].first), "{} {model}", row.name);
             }
         }

@@ -43,7 +43,7 @@ pub fn writable(model: Model, group: u16) -> Result<&'static Span, Failure> {
 }
 
 fn listed(model: Model, wanted: impl Fn(&Span) -> bool) -> String {
-    let spans = Row::of(0x78).map_or(&[][..], |row| row.instances.of(model));
+    let spans = Row::from_number(0x78).map_or(&[][..], |row| row.instances.for_model(model));
     let range = |span: &Span| format!("{} to {} ({})", name(span.first, 0), name(span.last, 7), span.meaning);
     spans.iter().filter(|span| wanted(span)).map(range).collect::<Vec<_>>().join(", ")
 }

@@ -26,7 +26,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub use listing::{Listing, NOT_IN_MANUAL, Rows, Style, listing, tags, used, uses};
 
 pub use super::findings::{Finding, Severity};
-use super::findings::{Findings, Place};
+use super::findings::{Findings, SourceLocation};
 use super::layout::Record;
 use super::table::Instruction;
 
@@ -150,7 +150,7 @@ pub fn check_part(text: &[u8], room: usize, part: &Part) -> Checked {
 fn check_with(text: &[u8], room: usize, part: Option<&Part>) -> Checked {
     let mut findings = Findings::default();
     if let Some((what, hint)) = foreign(text) {
-        findings.error(Place { line: 1, column: 1 }, what, Some(hint.to_owned()));
+        findings.error(SourceLocation { line: 1, column: 1 }, what, Some(hint.to_owned()));
         return Checked { program: None, findings: findings.sorted() };
     }
     let read = reader::read(text, room, part, &mut findings);

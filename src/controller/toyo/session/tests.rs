@@ -9,8 +9,8 @@ fn request(text: &str) -> Request {
 }
 
 /// A line on which a request was just sent.
-fn sent(text: &str, is_repeatable: bool) -> Line {
-    let mut line = Line::new(POLICY);
+fn sent(text: &str, is_repeatable: bool) -> LineSession {
+    let mut line = LineSession::new(POLICY);
     line.begin(&request(text), is_repeatable);
     assert_eq!(line.poll(Now::ZERO), Step::Send(format!("{text}\r\n").into_bytes()));
     line
@@ -98,7 +98,7 @@ fn a_stop_does_not_wait_for_what_is_owed() {
 
 #[test]
 fn a_line_in_peace_needs_no_urgency() {
-    let mut line = Line::new(POLICY);
+    let mut line = LineSession::new(POLICY);
     assert_eq!(line.urgent(Now::ZERO, &request("@STOP")), None);
     let mut line = sent("@SPST 0001", false);
     line.handle(ms(9), b"@OK\r\n");
@@ -177,7 +177,7 @@ fn ten_thousand_characters_without_an_end_are_bounded() {
 
 #[test]
 fn whatever_answers_a_raw_block_is_its_answer() {
-    let mut line = Line::new(POLICY);
+    let mut line = LineSession::new(POLICY);
     line.begin_raw("@ABCD");
     assert_eq!(line.poll(Now::ZERO), Step::Send(b"@ABCD\r\n".to_vec()));
     line.handle(ms(9), b"@ABCD\r\n@ABCD X=1\r\n");
@@ -186,7 +186,7 @@ fn whatever_answers_a_raw_block_is_its_answer() {
 
 #[test]
 fn an_order_waits_for_a_quiet_line_but_not_for_ever_and_a_stop_not_at_all() {
-    let mut line = Line::new(POLICY);
+    let mut line = LineSession::new(POLICY);
     line.handle(ms(0), b"@OK\r\n");
     line.begin(&request("@SVON"), false);
     assert_eq!(line.poll(ms(10)), Step::Wait(ms(50)));
@@ -198,7 +198,7 @@ fn an_order_waits_for_a_quiet_line_but_not_for_ever_and_a_stop_not_at_all() {
     line.handle(ms(500), b"x");
     assert_eq!(line.poll(ms(510)), Step::Send(b"@SVON\r\n".to_vec()));
 
-    let mut line = Line::new(POLICY);
+    let mut line = LineSession::new(POLICY);
     line.handle(ms(0), b"@OK\r\n");
     line.begin(&request("@STOP"), true);
     assert_eq!(line.poll(ms(10)), Step::Send(b"@STOP\r\n".to_vec()));

@@ -32,7 +32,7 @@ why";
 
 /// A line of the console.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Line {
+pub(super) enum ConsoleLine {
     Help,
     State,
     /// The last refusal.
@@ -67,7 +67,7 @@ pub(super) enum Button {
 const BUTTONS: [(u8, Button); 4] =
     [(0b0001, Button::Home), (0b0010, Button::Start), (0b0100, Button::Stop), (0b1000, Button::Reset)];
 
-impl Line {
+impl ConsoleLine {
     /// Reads a line; the error says what is wrong with it.
     pub(super) fn parse(line: &str) -> Result<Self, String> {
         let words: Vec<&str> = line.split_whitespace().collect();
@@ -135,11 +135,11 @@ impl Line {
 
 /// Reads a line and carries it out.
 pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
-    Line::parse(line)?.carry_out(world)
+    ConsoleLine::parse(line)?.carry_out(world)
 }
 
 /// `0/01/3 on`, `0/01 00000100`; `0/SY/2 on` is a bit of the system port.
-fn input(place: &str, value: &str) -> Result<Line, String> {
+fn input(place: &str, value: &str) -> Result<ConsoleLine, String> {
     let parts: Vec<&str> = place.split('/').collect();
     let existing = |station: &str, port: &str| {
         let port = Port { station: number(station, 0..=4)?, port: number(port, 1..=99)? };
@@ -147,24 +147,24 @@ fn input(place: &str, value: &str) -> Result<Line, String> {
         if known { Ok(port) } else { Err(format!("there is no input port {}/{:02}", port.station, port.port)) }
     };
     match parts.as_slice() {
-        ["0", "SY", bit] => Ok(Line::System(mask(bit)?, on_off(value)?)),
+        ["0", "SY", bit] => Ok(ConsoleLine::System(mask(bit)?, on_off(value)?)),
         [station, port, bit] => {
             let (port, care) = (existing(station, port)?, mask(bit)?);
-            Ok(Line::Input(port, Mask { care, bits: if on_off(value)? { care } else { 0 } }))
+            Ok(ConsoleLine::Input(port, Mask { care, bits: if on_off(value)? { care } else { 0 } }))
         }
         [station, port] => {
             let bits = u8::from_str_radix(value, 2).ok().filter(|_| value.len() == 8);
             let bits = bits.ok_or_else(|| expected(value, "eight of 0 and 1"))?;
-            Ok(Line::Input(existing(station, port)?, Mask::all(bits)))
+            Ok(ConsoleLine::Input(existing(station, port)?, Mask::all(bits)))
         }
         _ => Err(expected(place, "a place like 0/01/3 or 0/01")),
     }
 }
 
-fn obstacle(letter: &str, place: &str) -> Result<Line, String> {
+fn obstacle(letter: &str, place: &str) -> Result<ConsoleLine, String> {
     let axis = axis(letter).ok_or_else(|| expected(letter, "X, Y, Z or R"))?;
     let coordinate = || place.parse().ok().filter(|at: &f64| at.abs() <= 8000.0);
-    Ok(Line::Obstacle(
+    Ok(ConsoleLine::Obstacle(
         axis,
         match place {
             "off" => None,

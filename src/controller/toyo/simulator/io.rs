@@ -59,7 +59,7 @@ impl Default for Ports {
 
 impl PortBit {
     /// Of a parameter, whose fields end in `suffix`; `None` if no bit is assigned.
-    pub(super) fn of(record: &Record, suffix: &str) -> Option<Self> {
+    pub(super) fn from_record(record: &Record, suffix: &str) -> Option<Self> {
         let field = |name: &str| record.number(&format!("{name}{suffix}")).map(index);
         let bit = u8::try_from(field("bit")?).ok().filter(|bit| *bit > 0)?;
         Some(Self { port: Port { station: field("station")?, port: field("port")? }, bit })

@@ -81,7 +81,7 @@ pub use memory::{Cell, Wear};
 pub use start::{EXAMPLE, Start};
 pub use trace::{Event, What};
 
-use self::console::Line;
+use self::console::ConsoleLine;
 use self::io::Port;
 use self::world::World;
 use super::layout::Record;
@@ -180,8 +180,8 @@ impl Simulator {
     /// Carries out one line of the console: `input 0/01/3 on`, `start`, `state`. What to print, or what is wrong.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
         self.advance(now);
-        let line = Line::parse(line)?;
-        if line == Line::PowerCycle {
+        let line = ConsoleLine::parse(line)?;
+        if line == ConsoleLine::PowerCycle {
             self.incoming = IncomingBlock::default();
             self.answers.clear();
         }

@@ -3,7 +3,7 @@
 use super::action::{Action, Change, Choice, Target, TaskOrder, Test};
 use super::errors::code;
 use super::io::{OutputAt, Port};
-use super::memory::{Found, TASKS};
+use super::memory::{TASKS, TagLookup};
 use super::task::{Flow, Wait};
 use super::trace::What;
 use super::world::World;
@@ -254,9 +254,9 @@ impl World {
             return Err(code::TAG_NUMBER);
         }
         match self.memory.tag(index, tag) {
-            Found::Step(step) => Ok(step),
-            Found::Nowhere => Err(code::TAG_UNDEFINED),
-            Found::Twice => Err(code::TAG_TWICE),
+            TagLookup::Step(step) => Ok(step),
+            TagLookup::Nowhere => Err(code::TAG_UNDEFINED),
+            TagLookup::Twice => Err(code::TAG_TWICE),
         }
     }
 
@@ -378,9 +378,9 @@ impl World {
     }
 
     /// What an offset or a place is taken from.
-    pub(super) fn target(&self, index: usize, target: Target) -> Result<super::motion::Place, u8> {
+    pub(super) fn target(&self, index: usize, target: Target) -> Result<super::motion::Coordinates, u8> {
         match target {
-            Target::Place(place) => Ok(place),
+            Target::Coordinates(place) => Ok(place),
             Target::Row { point, counter } => self.row(index, point, counter),
             Target::Back => Ok(self.tasks[index].from.unwrap_or_else(|| self.arm.goal())),
             Target::Group { group, approach } => self.place_of_group(index, group, approach),

@@ -11,7 +11,7 @@ use toml::Spanned;
 
 use super::arm::Arm;
 use super::card::Card;
-use super::console::Line;
+use super::console::ConsoleLine;
 use super::edit;
 use super::errors::{Entry, Errors};
 use super::io::{Port, Ports};
@@ -254,7 +254,7 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
         world.card.fill(&content);
     }
     world.settle();
-    world.events = source.timeline(&entries.events, Line::parse)?;
+    world.events = source.timeline(&entries.events, ConsoleLine::parse)?;
     let answer_delay = Duration::from_millis(entries.answer_delay_ms);
     Ok(Start { world, seed: entries.seed, answer_delay, busy })
 }
@@ -289,7 +289,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
     arm.sensors = if entries.origin { [0.0; AXES] } else { position.map(|place| -place) };
     arm.known = [entries.origin; AXES];
     let content = Content::new(axes, types[0]);
-    let (settings, machine) = (Settings::of(&content), Machine::of(&content));
+    let (settings, machine) = (Settings::from_content(&content), Machine::from_content(&content));
     let memory = Memory::new(content);
     Ok(World {
         now: Now::ZERO,

@@ -8,7 +8,7 @@ use super::console;
 use super::errors::{Errors, code};
 use super::io::{OutputAt, Port, Ports};
 use super::memory::{Memory, TASKS};
-use super::motion::{AXES, Place};
+use super::motion::{AXES, Coordinates};
 use super::settings::{Machine, Settings, Special, axes_of};
 use super::task::{Task, Wait};
 use super::trace::{Trace, What};
@@ -200,8 +200,8 @@ impl World {
 
     /// Goes by the parameters that are stored, those of the machine included.
     pub(super) fn load(&mut self) {
-        self.machine = Machine::of(&self.memory.content);
-        self.settings = Settings::of(&self.memory.content);
+        self.machine = Machine::from_content(&self.memory.content);
+        self.settings = Settings::from_content(&self.memory.content);
         for (task, axes) in self.machine.tasks.iter().enumerate() {
             axes.axes.iter().for_each(|axis| self.arm.owners[*axis] = task);
         }
@@ -378,7 +378,7 @@ impl World {
     }
 
     /// The offset that each axis goes by.
-    pub(super) fn offset(&self) -> Place {
+    pub(super) fn offset(&self) -> Coordinates {
         std::array::from_fn(|axis| self.tasks[self.arm.owners[axis]].offset[axis])
     }
 

@@ -76,7 +76,7 @@ fn alarm(world: &mut World, words: &[&str]) -> Result<String, String> {
     let [data, kind] = numbers;
     let name = name.join(" ");
     world.raise(code, data, kind, Some(name.as_str()).filter(|name| !name.is_empty()));
-    Ok(format!("alarm {code} raised ({:?})", Class::of(code)).to_lowercase())
+    Ok(format!("alarm {code} raised ({:?})", Class::from_code(code)).to_lowercase())
 }
 
 fn set_mode(world: &mut World, mode: Mode) -> Result<(), String> {

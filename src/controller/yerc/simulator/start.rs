@@ -547,7 +547,7 @@ fn alarms(world: &mut World, entries: &Entries) {
     if let Some(history) = &entries.history {
         world.alarms = AlarmLog::default();
         for entry in history {
-            world.alarms.record(entry.class.unwrap_or_else(|| Class::of(entry.code)), make(entry));
+            world.alarms.record(entry.class.unwrap_or_else(|| Class::from_code(entry.code)), make(entry));
         }
     }
     for entry in &entries.alarms {

@@ -74,7 +74,7 @@ impl VariableKind {
     /// The limits of the plural command.
     #[expect(clippy::missing_panics_doc, reason = "a property of the table, held by a test")]
     pub fn plural(self) -> Plural {
-        Row::of(self.plural_command()).and_then(|row| row.plural).expect("every variable has a plural command")
+        Row::from_number(self.plural_command()).and_then(|row| row.plural).expect("every variable has a plural command")
     }
 
     /// The last number of a controller as delivered: 99, or 127 for positions.
@@ -100,7 +100,7 @@ impl VariableKind {
     }
 
     fn row(self) -> &'static Row {
-        Row::of(self.command()).expect("every variable has a command")
+        Row::from_number(self.command()).expect("every variable has a command")
     }
 }
 
@@ -200,7 +200,7 @@ mod tests {
     fn kinds_stand_at_their_row() {
         for (index, kind) in VariableKind::all().enumerate() {
             assert_eq!(kind as usize, index);
-            assert_eq!(kind.row().size(), Row::of(kind.plural_command()).unwrap().size());
+            assert_eq!(kind.row().size(), Row::from_number(kind.plural_command()).unwrap().size());
         }
         assert_eq!(VariableKind::P.last_standard(), 127);
         assert_eq!(VariableKind::S16.last_standard(), 99);

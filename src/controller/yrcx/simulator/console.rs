@@ -1,6 +1,6 @@
 //! What somebody at the machine can do: one line, one action.
 
-use super::alarms::{Fault, NOT_AUTO, Place};
+use super::alarms::{AlarmSource, Fault, NOT_AUTO};
 use super::geometry::whole;
 use super::memory::{PORT_NAMES, SI};
 use super::program::assigned;
@@ -55,13 +55,13 @@ pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
 fn set_mode(world: &mut World, mode: Mode) {
     if world.switches.mode != mode {
         world.switches.mode = mode;
-        world.stop(&Fault::new(NOT_AUTO, Place::Controller, "the mode was changed"));
+        world.stop(&Fault::new(NOT_AUTO, AlarmSource::Controller, "the mode was changed"));
     }
 }
 
 fn raise(world: &mut World, number: &str, fatal: bool) -> Result<(), String> {
     let alarm = number.parse::<Alarm>().map_err(|error| error.to_string())?;
-    world.raise(&Fault::new(alarm, Place::Controller, "raised at the console"), fatal);
+    world.raise(&Fault::new(alarm, AlarmSource::Controller, "raised at the console"), fatal);
     Ok(())
 }
 

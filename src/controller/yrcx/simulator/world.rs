@@ -9,7 +9,7 @@ use jiff::civil::DateTime;
 use super::alarms::{
     AlarmLog, EMERGENCY_STOP, Fault, LINK, LINK_TOO_LATE, MOVING, NO_AXIS, NO_ORIGIN, NO_POWER, NO_ROBOT,
 };
-use super::alarms::{NOT_AUTO, Place};
+use super::alarms::{AlarmSource, NOT_AUTO};
 use super::console;
 use super::memory::Memory;
 use super::motion::{End, Motion, Owner};
@@ -142,7 +142,7 @@ impl World {
         if self.link == Link::Waiting && self.link_within.is_some_and(|within| within <= now) {
             self.link = Link::Down;
             self.inputs = Image::default();
-            self.raise(&Fault::new(LINK_TOO_LATE, Place::Slot, "no master came in time"), false);
+            self.raise(&Fault::new(LINK_TOO_LATE, AlarmSource::Slot, "no master came in time"), false);
         }
         while let Some(line) = self.events.take(now) {
             // Lines were tried when the start state was read; one that is refused by now has no effect.
@@ -169,7 +169,7 @@ impl World {
                     self.set_servos(Servo::On);
                 }
             }
-            Action::MotorOff => self.power_off(&Fault::new(NO_POWER, Place::Controller, "motor power went off")),
+            Action::MotorOff => self.power_off(&Fault::new(NO_POWER, AlarmSource::Controller, "motor power went off")),
             Action::PowerLoss => self.power_off(&Fault::emergency()),
             Action::Servo(robot, axes, state) => self.set_servo(robot, axes, state)?,
             Action::AlarmReset => {
@@ -243,7 +243,7 @@ impl World {
         if self.link != Link::Down {
             self.link = Link::Down;
             self.inputs = Image::default();
-            self.raise(&Fault::new(LINK, Place::Slot, "the master is gone"), false);
+            self.raise(&Fault::new(LINK, AlarmSource::Slot, "the master is gone"), false);
         }
     }
 
@@ -270,7 +270,11 @@ impl World {
             return Err(Fault::stopped());
         }
         if self.switches.mode != Mode::Auto || self.switches.boxed {
-            return Err(Fault::new(NOT_AUTO, Place::Controller, "AUTO mode is not selected, or the box has control"));
+            return Err(Fault::new(
+                NOT_AUTO,
+                AlarmSource::Controller,
+                "AUTO mode is not selected, or the box has control",
+            ));
         }
         Ok(())
     }
@@ -287,12 +291,12 @@ impl World {
         if let Some(axis) = off.or((!self.motor).then_some(0)) {
             return Err(Fault::new(
                 NO_POWER,
-                Place::Axis(number, axis),
+                AlarmSource::Axis(number, axis),
                 format!("axis {} has no servo power", axis + 1),
             ));
         }
         if robot.motion.is_some() {
-            return Err(Fault::new(MOVING, Place::Robot(number), format!("robot {} moves already", number + 1)));
+            return Err(Fault::new(MOVING, AlarmSource::Robot(number), format!("robot {} moves already", number + 1)));
         }
         Ok(())
     }
@@ -303,7 +307,7 @@ impl World {
         match unknown {
             Some(axis) => {
                 let why = format!("axis {} has not returned to origin", axis + 1);
-                Err(Fault::new(NO_ORIGIN, Place::Axis(number, axis), why))
+                Err(Fault::new(NO_ORIGIN, AlarmSource::Axis(number, axis), why))
             }
             None => Ok(()),
         }
@@ -326,7 +330,7 @@ impl World {
             return Ok(());
         }
         let why = format!("robot {} has no axis {}", number + 1, missing.trailing_zeros() + 1);
-        Err(Fault::new(NO_AXIS, Place::Robot(number), why))
+        Err(Fault::new(NO_AXIS, AlarmSource::Robot(number), why))
     }
 
     /// Date and time.
@@ -339,7 +343,7 @@ impl World {
     pub(super) fn power_cycle(&mut self) {
         self.stop_tasks();
         self.delayed.clear();
-        self.power_off(&Fault::new(NO_POWER, Place::Controller, "the controller was switched off"));
+        self.power_off(&Fault::new(NO_POWER, AlarmSource::Controller, "the controller was switched off"));
         self.alarms.clear();
         self.why = None;
         for axis in self.robots.iter_mut().flat_map(|robot| &mut robot.axes) {
@@ -368,12 +372,12 @@ impl World {
         if state == Servo::On {
             self.may_power()?;
             if !self.motor {
-                return Err(Fault::new(NO_POWER, Place::Robot(number), "motor power is off"));
+                return Err(Fault::new(NO_POWER, AlarmSource::Robot(number), "motor power is off"));
             }
         }
         let robot = self.robot_mut(number)?;
         if state != Servo::On {
-            robot.halt(&Fault::new(NO_POWER, Place::Robot(number), "a servo went off"));
+            robot.halt(&Fault::new(NO_POWER, AlarmSource::Robot(number), "a servo went off"));
         }
         let chosen = robot.axes.iter_mut().enumerate().filter(|(at, _)| axes == 0 || axes >> at & 1 == 1);
         for (_, axis) in chosen {
@@ -385,9 +389,9 @@ impl World {
 
 /// The refusal while an alarm is active.
 fn active(alarm: Alarm) -> Fault {
-    Fault::new(alarm, Place::Controller, "an alarm is active; reset it")
+    Fault::new(alarm, AlarmSource::Controller, "an alarm is active; reset it")
 }
 
 fn no_robot(number: usize) -> Fault {
-    Fault::new(NO_ROBOT, Place::Controller, format!("there is no robot {}", number + 1))
+    Fault::new(NO_ROBOT, AlarmSource::Controller, format!("there is no robot {}", number + 1))
 }

@@ -214,7 +214,7 @@ impl Images {
                     }
                 }
                 Change::Words { words, .. } => {
-                    let answered = talk.command.filter(|_| Status::of(words[0]) != Status::Ready);
+                    let answered = talk.command.filter(|_| Status::from_word(words[0]) != Status::Ready);
                     heard.answers = answered.map(|(number, _)| number);
                     describe(&mut heard, answer(words, answered.as_ref().map(|(_, words)| words)));
                 }

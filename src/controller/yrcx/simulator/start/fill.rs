@@ -9,7 +9,7 @@ use super::{
 };
 use crate::simulator::start::{Source, numbered};
 use crate::yrcx::alarm::Alarm;
-use crate::yrcx::simulator::alarms::{Entry, Place};
+use crate::yrcx::simulator::alarms::{AlarmSource, Entry};
 use crate::yrcx::simulator::defaults::{CARTESIAN, PARAMETERS, SCARA};
 use crate::yrcx::simulator::geometry::{Arm, Kind, STEPS, whole};
 use crate::yrcx::simulator::memory::{HANDS, Hand, POINTS, Pallet, Point, PointUnit, SHIFTS};
@@ -255,20 +255,20 @@ fn variable(name: &str) -> Option<usize> {
 fn alarm(entry: &AlarmEntry) -> Result<Entry, String> {
     let alarm: Alarm = entry.alarm.parse().map_err(|error: crate::yrcx::alarm::AlarmError| error.to_string())?;
     let place = match entry.place.as_str() {
-        "" | "C1" => Some(Place::Controller),
-        "C1O1" => Some(Place::Slot),
+        "" | "C1" => Some(AlarmSource::Controller),
+        "C1O1" => Some(AlarmSource::Slot),
         other => other_place(other),
     };
     Ok((alarm, place.ok_or_else(|| format!("'{}' is no place such as C1O1 or R1A3", entry.place))?))
 }
 
-fn other_place(text: &str) -> Option<Place> {
+fn other_place(text: &str) -> Option<AlarmSource> {
     let index = |digits: &str, most| digits.parse::<usize>().ok()?.checked_sub(1).filter(|index| *index < most);
     if let Some(task) = text.strip_prefix('T') {
-        return task.parse().ok().filter(|task| (1..=TASKS).contains(task)).map(Place::Task);
+        return task.parse().ok().filter(|task| (1..=TASKS).contains(task)).map(AlarmSource::Task);
     }
     match text.strip_prefix('R')?.split_once('A') {
-        Some((robot, axis)) => Some(Place::Axis(index(robot, ROBOTS)?, index(axis, AXES)?)),
-        None => index(text.strip_prefix('R')?, ROBOTS).map(Place::Robot),
+        Some((robot, axis)) => Some(AlarmSource::Axis(index(robot, ROBOTS)?, index(axis, AXES)?)),
+        None => index(text.strip_prefix('R')?, ROBOTS).map(AlarmSource::Robot),
     }
 }
