@@ -12,7 +12,7 @@ use crate::yerc::Model;
 use crate::yerc::payload::PayloadError;
 use crate::yerc::query::{
     Query, QueryError, ReadIo, ReadIoGroups, ReadRegister, ReadRegisters, ReadVariable, ReadVariables, WriteIo,
-    WriteIoGroups, WriteRegister, WriteRegisters, WriteVariable, WriteVariables,
+    WriteIoGroups, WriteQuery, WriteRegister, WriteRegisters, WriteVariable, WriteVariables,
 };
 use crate::yerc::request::Request;
 use crate::yerc::table::{Plural, Row};
@@ -128,15 +128,9 @@ macro_rules! write_step {
             }
         }
 
-        impl Query for $name {
-            type Answer = ();
-
-            fn request(&self) -> Request {
+        impl WriteQuery for $name {
+            fn write_request(&self) -> Request {
                 self.query.request()
-            }
-
-            fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
-                Ok(())
             }
         }
     };
