@@ -208,7 +208,7 @@ mod tests {
         for (line, part) in [
             (&["io", "set"][..], "SIGNAL=STATE"),
             (&["io", "set", "20"], "servo-on=on"),
-            (&["io", "set", "20=maybe"], "on or off"),
+            (&["io", "set", "20=maybe"], "there are on and off"),
             (&["io", "set", "SI(02)=on"], "reserved"),
             (&["io", "pulse", "cpu-ok"], "is no signal"),
             (&["io", "set", "SOW2=5"], "the controller's to set"),

@@ -177,7 +177,7 @@ pub(super) fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -
             Number::Whole(value) => value.into(),
             Number::Real(value) => value,
         };
-        world.memory.assign(variable, value).map_err(|fault| fault.why.to_string())
+        world.memory.assign(variable, value).map_err(|fault| fault.why)
     })?;
     source.each_of(&entries.ports, |name, value| {
         let assigned = assigned(&format!("{name}={value}"));
