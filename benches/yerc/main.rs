@@ -16,9 +16,8 @@ mod peers;
 mod process;
 
 use anyhow::{Context as _, ensure};
-use armctl::command::yerc::Family as Yerc;
-use armctl::command::yerc::link::Link;
-use armctl::command::{Access, Family as _, Need};
+use armctl::command::yerc::link::{Link, Yerc};
+use armctl::command::{Access, ConnectMode, Family as _};
 use armctl::controller::Risk;
 use armctl::controller::yerc::files::FileName;
 use armctl::controller::yerc::query::ReadStatus;
@@ -173,7 +172,7 @@ fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
         granted: Grant::of(Risk::Read),
         dry_run: false,
         trace: None,
-        need: Need::Command,
+        need: ConnectMode::Control,
         typed: None,
         unit: 0,
     };

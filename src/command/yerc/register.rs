@@ -7,11 +7,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Yerc;
 use super::orders::usage;
 use super::parts::{Parts, read_in_parts};
 use super::writes::{Order, write_all};
-use crate::command::items::{self, ItemError, ItemOutcome};
+use crate::command::frame::items;
+use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::typed;
@@ -21,7 +22,7 @@ use crate::output::view::{Cell, Table, View};
 
 commands! {
     /// What can be done with registers.
-    pub enum Register of Family {
+    pub enum Register {
         /// Read registers: 0 to 999
         Get(Get),
         /// Write registers: 0 to 559
@@ -78,11 +79,11 @@ impl FromStr for Assignment {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Registers;
     const ID: &'static str = "yerc.register.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Registers, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Registers, Failure> {
         let numbers = typed::once(self.registers.iter().flat_map(|numbers| numbers.0.iter().copied()));
         let link = context.link;
         let model = link.model;
@@ -99,7 +100,7 @@ impl Command for Get {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Yerc;
     type Report = WrittenRegisters;
     const ID: &'static str = "yerc.register.set";
 
@@ -107,7 +108,7 @@ impl Command for Set {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<WrittenRegisters, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenRegisters, Failure> {
         let Context { link, screen, .. } = context;
         let mut seen = HashSet::new();
         if let Some(twice) = self.assignments.iter().find(|assignment| !seen.insert(assignment.number)) {

@@ -5,7 +5,7 @@
 //! which no `@OK` can be taken for, nothing older can come any more: then an order goes out.
 
 use super::{Link, Transport, status_page};
-use crate::command::dry_run::Reason;
+use crate::command::frame::dry_run::Reason;
 use crate::command::toyo::reach;
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
@@ -17,7 +17,7 @@ pub const FENCE: &str = "whether the line is at peace";
 
 impl Link {
     /// Asks something harmless before an order, unless an answered question was the last on the line.
-    pub(super) async fn fence(&mut self) -> Result<(), Failure> {
+    pub(in crate::command::toyo) async fn fence(&mut self) -> Result<(), Failure> {
         if self.is_fenced {
             return Ok(());
         }
