@@ -17,7 +17,7 @@ use crate::cli::{Cli, FamilyWord, Top};
 use crate::command::face::words::{Typed, Wish};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::testing::{self, QUIET, context, everything, frames, planned};
-use crate::command::{AnyCommand, CommandSet as _, Context, Family as _};
+use crate::command::{AnyCommand, Context, Family as _};
 use crate::controller::Risk;
 use crate::controller::toyo::simulator::Start;
 use crate::failure::Failure;

@@ -9,7 +9,7 @@ use crate::cli::{Cli, FamilyWord, Top};
 use crate::command::face::words::{Typed, Wish};
 use crate::command::frame::testing;
 use crate::command::frame::testing::{context, everything, planned};
-use crate::command::{AnyCommand, CommandSet as _, Family as _};
+use crate::command::{AnyCommand, Family as _};
 use crate::controller::text::hex;
 use crate::failure::Failure;
 use crate::output::{ColorChoice, Format, Screen};

@@ -13,7 +13,7 @@ use crate::cli::{Cli, FamilyWord, Top};
 use crate::command::face::words::{Typed, Wish};
 use crate::command::frame::testing;
 use crate::command::frame::testing::{context, planned};
-use crate::command::{Access, AnyCommand, CommandSet as _, ConnectMode, Family as _};
+use crate::command::{Access, AnyCommand, ConnectMode, Family as _};
 use crate::controller::Risk;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Words};
 use crate::controller::yrcx::signal::output;
