@@ -168,14 +168,7 @@ fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
     let sources = Sources { selection, ..Sources::default() };
     let robots = sources.robots(Some(Family::Yerc))?;
     let robot = robots.first().context("a target is a robot")?;
-    let access = Access {
-        granted: Grant::of(Risk::Read),
-        dry_run: false,
-        trace: None,
-        need: ConnectMode::Control,
-        typed: None,
-        unit: 0,
-    };
+    let access = Access::reading(ConnectMode::Control);
     let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
     Ok(runtime.block_on(Yerc::connect(robot, access, &screen))?)
 }
