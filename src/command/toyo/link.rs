@@ -19,7 +19,7 @@ use super::reach;
 use super::refusal;
 use super::trace::Trace;
 use super::wear::Wear;
-use crate::command::attach::hindered;
+use crate::command::attach::session_busy;
 use crate::command::dry_run::{Plan, Reason, unknown};
 use crate::command::{Access, Family};
 use crate::controller::toyo::field::Value;
@@ -437,7 +437,7 @@ impl Link {
             }
             stream.take(until).await
         };
-        turn.await.map_err(|hindrance| hindered(&self.label, &hindrance))
+        turn.await.map_err(|hindrance| session_busy(&self.label, &hindrance))
     }
 
     async fn drive_alone(&mut self, risk: Risk) -> Result<Ended, Failure> {

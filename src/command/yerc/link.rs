@@ -11,7 +11,7 @@ use super::reach::{self, Transport};
 pub use super::refusal::{Asked, Refusal};
 use super::simulated::channel;
 use super::trace::Trace;
-use crate::command::attach::hindered;
+use crate::command::attach::session_busy;
 use crate::command::dry_run::{Plan, Reason, unknown};
 use crate::command::{Access, Family};
 use crate::controller::text::{Encoding, hex};
@@ -30,7 +30,7 @@ use crate::gate::Grant;
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target;
-use crate::transport::session::client::Hindrance;
+use crate::transport::session::client::SessionBusy;
 use crate::transport::tap::Direction;
 
 /// The yerc family.
@@ -426,7 +426,7 @@ impl Link {
         }
         if request.risk() == Risk::Motion {
             if let Transport::Session(attached) = &mut self.transport {
-                attached.claim_motion().await.map_err(|hindrance| hindered(&self.label, &hindrance))?;
+                attached.claim_motion().await.map_err(|busy| session_busy(&self.label, &busy))?;
             }
             self.has_moved = true;
         }
@@ -489,7 +489,7 @@ impl Link {
         attached
             .take_for(reach::number(channel(division)), until)
             .await
-            .map_err(|hindrance| hindered(&self.label, &hindrance))
+            .map_err(|busy| session_busy(&self.label, &busy))
     }
 
     fn give_turn(&mut self) {
@@ -604,7 +604,7 @@ impl Link {
         let port = match &self.transport {
             Transport::Udp(udp) => udp.peer(channel).port().to_string(),
             Transport::Session(attached) => match attached.ended() {
-                Some(why) => return hindered(&self.label, &Hindrance::Ended(why.to_owned())),
+                Some(why) => return session_busy(&self.label, &SessionBusy::Ended(why.to_owned())),
                 None => "of the session".to_owned(),
             },
             Transport::Sim(_) | Transport::Notes(_) => return Failure::io(&self.label, error),

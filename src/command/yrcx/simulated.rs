@@ -12,7 +12,7 @@ use crate::files;
 use crate::settings::target::Sim;
 use crate::transport::eip::PORT;
 use crate::transport::eip::adapter::server::{Listen, Server};
-use crate::transport::eip::adapter::{Application, Event, Mischief, Setup};
+use crate::transport::eip::adapter::{Application, Event, AdapterFault, Setup};
 use crate::transport::eip::settings::Role;
 use crate::transport::eip::wire::{Identity, Revision};
 use crate::transport::fault::{FaultSpec, Faults};
@@ -90,10 +90,10 @@ pub fn faults(text: &str) -> Result<FaultSpec, String> {
 }
 
 /// What an adapter does wrong, by its name.
-pub fn mischief(text: &str) -> Result<Mischief, String> {
-    let found = Mischief::ALL.iter().find(|(name, _)| *name == text);
+pub fn mischief(text: &str) -> Result<AdapterFault, String> {
+    let found = AdapterFault::ALL.iter().find(|(name, _)| *name == text);
     found.map(|(_, mischief)| *mischief).ok_or_else(|| {
-        let names = Mischief::ALL.map(|(name, _)| name).join(", ");
+        let names = AdapterFault::ALL.map(|(name, _)| name).join(", ");
         format!("there are {names}")
     })
 }

@@ -10,6 +10,7 @@ pub mod client;
 pub mod discovery;
 mod engine;
 pub mod explicit;
+pub mod link;
 pub mod originator;
 pub mod probe;
 pub mod reader;
@@ -18,7 +19,7 @@ pub mod session;
 pub mod settings;
 pub mod status;
 pub mod tap;
-pub mod trouble;
+pub mod error;
 pub mod wire;
 
 /// A moment, as time passed since an origin of the driver's choice. It never runs backwards.

@@ -13,7 +13,7 @@ use crate::command::Report;
 use crate::command::run::{Run, Stopped};
 use crate::command::yrcx::simulated::{self, Controller, faults, mischief};
 use crate::output::view::View;
-use crate::transport::eip::adapter::Mischief;
+use crate::transport::eip::adapter::AdapterFault;
 use crate::transport::eip::adapter::server::{Listen, Server};
 use crate::transport::eip::{IO_PORT, PORT};
 use crate::transport::fault::FaultSpec;
@@ -40,7 +40,7 @@ pub(super) struct SimYrcx {
     /// What the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, frozen, unreadable,
     /// reset, mute, garbage, trailing, unowned
     #[arg(long, value_name = "WHAT", value_parser = mischief)]
-    mischief: Option<Mischief>,
+    mischief: Option<AdapterFault>,
     /// Take lines on stdin; `help` lists them
     #[arg(long)]
     console: bool,

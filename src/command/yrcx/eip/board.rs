@@ -18,7 +18,7 @@ use crate::transport::eip::client::Client;
 use crate::transport::eip::explicit::{Answer, Message};
 use crate::transport::eip::probe::{self, Findings, Instances};
 use crate::transport::eip::status;
-use crate::transport::eip::trouble::Trouble;
+use crate::transport::eip::error::EipError;
 use crate::transport::eip::wire;
 use crate::transport::image::OpenError;
 
@@ -55,7 +55,7 @@ impl Board {
     pub async fn identity(&mut self) -> Result<Option<Identity>, Failure> {
         match self.client.identity().await {
             Ok(identity) => Ok(identity.map(Identity::from)),
-            Err(Trouble::Encapsulation { .. }) => Ok(None),
+            Err(EipError::Encapsulation { .. }) => Ok(None),
             Err(trouble) => Err(self.failure(trouble)),
         }
     }
@@ -67,7 +67,7 @@ impl Board {
                 let known = [(5, "messages over TCP"), (8, "images over UDP")];
                 known.iter().filter(|(bit, _)| services.flags >> bit & 1 == 1).map(|(_, what)| *what).collect()
             })),
-            Err(Trouble::Encapsulation { .. }) => Ok(None),
+            Err(EipError::Encapsulation { .. }) => Ok(None),
             Err(trouble) => Err(self.failure(trouble)),
         }
     }
@@ -85,7 +85,7 @@ impl Board {
         self.services().await?;
         let answer = match self.client.ask(SETTING, &object.set(value)).await {
             Ok(answer) => answer,
-            Err(trouble @ (Trouble::Unreachable { .. } | Trouble::Impossible(_) | Trouble::Encapsulation { .. })) => {
+            Err(trouble @ (EipError::Unreachable { .. } | EipError::Impossible(_) | EipError::Encapsulation { .. })) => {
                 return Err(self.failure(trouble));
             }
             Err(trouble) => {
@@ -133,8 +133,8 @@ impl Board {
         Instances { output: usual, input: self.eip.input, configuration: self.eip.configuration }
     }
 
-    fn failure(&self, trouble: Trouble) -> Failure {
-        not_open(&self.label, &self.eip, &OpenError::Trouble(trouble))
+    fn failure(&self, trouble: EipError) -> Failure {
+        not_open(&self.label, &self.eip, &OpenError::EipError(trouble))
     }
 
     fn refused(&self, what: &str, object: Object, answer: &Answer) -> Failure {

@@ -52,7 +52,7 @@ fn way(robot: &Robot) -> Result<Way<'_>, Failure> {
             let start = simulated::start(sim.state.as_deref(), robot.model.value, faults.as_ref())?;
             Ok(Way::Sim(Box::new(start), faults))
         }
-        Place::Serial(_) | Place::Tcp(_) | Place::Eip(_) => {
+        Place::Serial(_) | Place::Tcp(_) | Place::Bus(_) => {
             let message = format!("yerc is not reached over {}:", robot.target.value.scheme());
             Err(Failure::usage(message).hint("use udp:// or sim:"))
         }

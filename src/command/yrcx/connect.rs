@@ -17,7 +17,7 @@ use crate::transport::eip::client::Client;
 use crate::transport::eip::reader::Assembly;
 use crate::transport::eip::settings::{Multiplier, Role, Settings};
 use crate::transport::eip::tap::Tap;
-use crate::transport::eip::trouble::Trouble;
+use crate::transport::eip::error::EipError;
 use crate::transport::eip::wire::Key;
 use crate::transport::image::{self, ImageLink, OpenError};
 
@@ -135,14 +135,14 @@ async fn see(robot: &Robot, eip: &target::Eip, tap: Tap) -> Result<ImageLink, Fa
     let client = client(robot, eip, tap.clone()).await?;
     let assembly = Assembly { instance: eip.input, size: eip.input_size };
     let refused = match ImageLink::reading(client, assembly, eip.rpi.max(PAUSE)).await {
-        Err(OpenError::Trouble(trouble @ Trouble::Refused { .. })) => trouble,
+        Err(OpenError::EipError(trouble @ EipError::Refused { .. })) => trouble,
         opened => return opened.map_err(|error| not_open(&label, eip, &error)),
     };
     for output in HEARTBEATS {
         let listening =
             Settings { role: Role::InputOnly, output, output_size: 0, resting: Vec::new(), ..settings(robot, eip)? };
         match ImageLink::open(&eip.host, eip.port, listening, tap.clone()).await {
-            Err(OpenError::Trouble(Trouble::Refused { .. })) => {}
+            Err(OpenError::EipError(EipError::Refused { .. })) => {}
             opened => return opened.map_err(|error| not_open(&label, eip, &error)),
         }
     }
@@ -208,21 +208,21 @@ pub fn not_open(label: &str, eip: &target::Eip, error: &OpenError) -> Failure {
             return Failure::usage(format!("{label}: '{}' has no IPv4 address, as EtherNet/IP needs", eip.host))
                 .hint("use the IPv4 address of the controller");
         }
-        OpenError::Trouble(trouble) => trouble,
+        OpenError::EipError(trouble) => trouble,
     };
     let (kind, hint) = match trouble {
-        Trouble::Unreachable { .. } | Trouble::NoAnswer { .. } | Trouble::Hangup { .. } | Trouble::Silent { .. } => {
+        EipError::Unreachable { .. } | EipError::NoAnswer { .. } | EipError::Hangup { .. } | EipError::Silent { .. } => {
             (Kind::NoAnswer, "check the address, that the controller is on, and that its EtherNet/IP board is enabled")
         }
-        Trouble::Encapsulation { .. } | Trouble::Refused { .. } => {
+        EipError::Encapsulation { .. } | EipError::Refused { .. } => {
             (Kind::Refused, "check in, out, config, in_size and out_size of the URL: `armctl help targets`")
         }
-        Trouble::Malformed { .. } | Trouble::Senseless { .. } => {
+        EipError::Malformed { .. } | EipError::Senseless { .. } => {
             (Kind::Malformed, "check that an EtherNet/IP adapter has this address")
         }
-        Trouble::Misfit { .. } => (Kind::Malformed, "check in and in_size of the URL: `yrcx eip probe` finds both"),
-        Trouble::Impossible(_) => (Kind::Usage, "`armctl help targets` tells what an eip: URL can say"),
-        Trouble::Local { .. } | Trouble::Outdated | Trouble::Ended => {
+        EipError::WrongSize { .. } => (Kind::Malformed, "check in and in_size of the URL: `yrcx eip probe` finds both"),
+        EipError::Impossible(_) => (Kind::Usage, "`armctl help targets` tells what an eip: URL can say"),
+        EipError::Local { .. } | EipError::Outdated | EipError::Ended => {
             (Kind::Local, "check the network settings of this machine, and its firewall")
         }
     };

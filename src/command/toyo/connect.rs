@@ -47,7 +47,7 @@ pub fn way(robot: &Robot) -> Result<Way<'_>, Failure> {
         })),
         Place::Tcp(tcp) => Ok(Way::Tcp(tcp)),
         Place::Sim(sim) => Ok(Way::Sim(sim)),
-        Place::Udp(_) | Place::Eip(_) => {
+        Place::Udp(_) | Place::Bus(_) => {
             Err(Failure::usage(format!("toyo is not reached over {}:", robot.target.value.scheme()))
                 .hint("use serial://, tcp:// or sim:"))
         }
