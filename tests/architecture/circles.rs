@@ -1,0 +1,113 @@
+//! Modules that know each other in a circle can only be understood together: none is larger than a simulator.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::source::{Source, sources};
+
+/// How many modules may know each other in a circle. To become as many as the largest simulator has, 15.
+const LARGEST: usize = 193;
+
+/// Which modules each module mentions, by path.
+type Uses = BTreeMap<String, BTreeSet<String>>;
+
+#[test]
+fn circles_stay_small() {
+    let largest = circles(&uses(&sources())).into_iter().next().unwrap_or_default();
+    println!("largest circle, {} modules: {}", largest.len(), largest.join(" "));
+    assert!(largest.len() <= LARGEST, "{} modules know each other: {}", largest.len(), largest.join(" "));
+}
+
+#[test]
+fn circles_are_found() {
+    let file = |name: &str, text: &str| Source::new(name, text);
+    let sources = [
+        file("a/mod.rs", "mod b; use self::b::B; pub struct A;"),
+        file("a/b.rs", "use super::c::C; pub struct B;"),
+        file("a/c.rs", "pub fn c() -> crate::a::A { todo() }"),
+        file("d.rs", "use crate::a::A;\n#[cfg(test)]\nmod tests { use crate::e::E; }"),
+        file("e.rs", "use crate::d::D;"),
+    ];
+    assert_eq!(circles(&uses(&sources)), [["crate::a", "crate::a::b", "crate::a::c"]]);
+}
+
+/// Tests may know anybody; a declaration (`mod x;`) is not yet a use.
+fn uses(sources: &[Source]) -> Uses {
+    let sources = sources.iter().filter(|source| !source.name.contains("test"));
+    let without_tests = sources.map(|source| {
+        let code = source.code.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+        Source { name: source.name.clone(), text: String::new(), code: code.to_owned() }
+    });
+    let sources: Vec<Source> = without_tests.collect();
+    let modules: BTreeSet<String> = sources.iter().map(|source| source.module().join("::")).collect();
+    let used = |source: &Source| {
+        let itself = source.module().join("::");
+        let paths = source.paths().into_iter().map(|(_, path)| {
+            let child = format!("{itself}::{}", path.split("::").next().unwrap_or_default());
+            if modules.contains(&child) { format!("{itself}::{path}") } else { path }
+        });
+        let found: BTreeSet<String> = paths.filter_map(|path| module_of(&path, &modules)).collect();
+        (itself.clone(), found.into_iter().filter(|module| *module != itself).collect())
+    };
+    sources.iter().map(used).collect()
+}
+
+/// The module that an item is of: the longest beginning of its path that is one.
+fn module_of(path: &str, modules: &BTreeSet<String>) -> Option<String> {
+    let mut path = path.strip_suffix("::self").unwrap_or(path);
+    while !modules.contains(path) {
+        path = path.rsplit_once("::")?.0;
+    }
+    Some(path.to_owned())
+}
+
+/// Groups of modules each of which leads to all others (Tarjan), the largest first.
+fn circles(uses: &Uses) -> Vec<Vec<String>> {
+    let mut search = Search::new(uses);
+    for module in uses.keys() {
+        if !search.order.contains_key(module.as_str()) {
+            search.visit(module);
+        }
+    }
+    search.found.sort_by_key(|circle| std::cmp::Reverse(circle.len()));
+    search.found
+}
+
+struct Search<'a> {
+    uses: &'a Uses,
+    /// When each module was met.
+    order: BTreeMap<&'a str, usize>,
+    /// Met, and not yet known to be of a circle or of none.
+    open: Vec<&'a str>,
+    found: Vec<Vec<String>>,
+}
+
+impl<'a> Search<'a> {
+    fn new(uses: &'a Uses) -> Self {
+        Self { uses, order: BTreeMap::new(), open: Vec::new(), found: Vec::new() }
+    }
+
+    /// The earliest open module that `module` leads to.
+    fn visit(&mut self, module: &'a str) -> usize {
+        let met = self.order.len();
+        self.order.insert(module, met);
+        self.open.push(module);
+        let mut earliest = met;
+        for next in self.uses.get(module).into_iter().flatten() {
+            let reached = match self.order.get(next.as_str()) {
+                None => self.visit(next),
+                Some(when) if self.open.contains(&next.as_str()) => *when,
+                Some(_) => continue,
+            };
+            earliest = earliest.min(reached);
+        }
+        if earliest == met {
+            let start = self.open.iter().position(|open| *open == module).expect("it was pushed above");
+            let mut circle: Vec<String> = self.open.drain(start..).map(str::to_owned).collect();
+            if circle.len() > 1 {
+                circle.sort();
+                self.found.push(circle);
+            }
+        }
+        earliest
+    }
+}

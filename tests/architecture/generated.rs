@@ -1,0 +1,132 @@
+//! What is made from the code is current: man pages, schemas, completions, and says something.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use clap::{CommandFactory as _, ValueEnum as _};
+
+use super::contract::CONTRACT;
+use super::source::{has_word, root};
+
+#[test]
+fn completions_are_for_all_names_of_the_program() {
+    use armctl::command::common::completions::Shell;
+
+    assert_eq!(names(&root().join("completions")).len(), Shell::value_variants().len(), "completions/");
+    for shell in Shell::value_variants() {
+        for name in ["armctl", "yerc", "yrcx", "toyo", "ARMCTL_COMPLETE"] {
+            assert!(has_word(shell.script(), name), "{shell:?}: {name}");
+        }
+    }
+}
+
+#[test]
+fn man_pages_are_current() {
+    let pages = armctl::command::common::man::pages().expect("the man pages render");
+    is_current("man", &pages.into_iter().collect());
+}
+
+#[test]
+fn schemas_are_current() {
+    let made = armctl::command::common::schema::all().into_iter().map(|entry| {
+        let text = serde_json::to_string_pretty(&(entry.schema)()).expect("a schema is JSON");
+        (format!("{}.json", entry.id), format!("{text}\n").into_bytes())
+    });
+    is_current("docs/schemas", &made.collect());
+}
+
+#[test]
+fn schemas_are_schemas() {
+    for entry in armctl::command::common::schema::all() {
+        let schema = (entry.schema)().to_value();
+        if let Err(why) = jsonschema::draft202012::meta::validate(&schema) {
+            panic!("{}: {why}", entry.id);
+        }
+    }
+}
+
+#[test]
+fn every_robot_command_has_a_schema_and_help() {
+    let ids: Vec<&str> = armctl::command::common::schema::all().iter().map(|entry| entry.id).collect();
+    let known: BTreeSet<&str> = ids.iter().copied().collect();
+    assert_eq!(known.len(), ids.len(), "an id is there twice: {ids:?}");
+    let root = armctl::cli::Cli::command();
+    let mut words = BTreeSet::new();
+    for (family, _) in CONTRACT {
+        leaves(root.find_subcommand(family).expect("the family is there"), family, &mut words);
+    }
+    // At a prompt each line reports for itself.
+    let is_known = |word: &str| known.contains(word) || word.rsplit('.').next() == Some("repl");
+    let without: Vec<&String> = words.iter().filter(|word| !is_known(word)).collect();
+    assert!(without.is_empty(), "commands without a schema of their name: {without:?}");
+}
+
+#[test]
+fn no_flag_of_a_command_is_that_of_every_command() {
+    // `--all` of a command would choose all robots as well. `--for` is how long, whatever it is that lasts.
+    fn look(command: &clap::Command, known: &BTreeSet<String>, path: &str, found: &mut Vec<String>) {
+        let own = || command.get_arguments().filter_map(|argument| Some((argument.get_long()?, argument)));
+        let shadowed = own().filter(|(long, _)| known.contains(*long) && *long != "for");
+        found.extend(shadowed.map(|(long, _)| format!("{path} --{long}")));
+        let global = own().filter(|(_, argument)| argument.is_global_set()).map(|(long, _)| long.to_owned());
+        let known: BTreeSet<String> = known.iter().cloned().chain(global).collect();
+        for verb in command.get_subcommands() {
+            look(verb, &known, &format!("{path} {}", verb.get_name()), found);
+        }
+    }
+    let mut found = Vec::new();
+    look(&armctl::cli::Cli::command(), &BTreeSet::new(), "armctl", &mut found);
+    assert_eq!(found, Vec::<String>::new());
+}
+
+#[test]
+fn schemas_describe_reports() {
+    for entry in armctl::command::common::schema::all() {
+        let schema = (entry.schema)();
+        let says_what = ["properties", "$ref", "oneOf", "anyOf", "items"].iter().any(|key| schema.get(*key).is_some());
+        assert!(says_what, "the schema of {} says nothing: {schema:?}", entry.id);
+        assert!(schema.get("title").is_some(), "the schema of {} has no title", entry.id);
+    }
+}
+
+/// The ids of all commands below one: its words, joined by dots.
+fn leaves(command: &clap::Command, id: &str, all: &mut BTreeSet<String>) {
+    if !command.has_subcommands() {
+        assert!(command.get_about().is_some(), "{id} has no line of help");
+        all.insert(id.to_owned());
+    }
+    for sub in command.get_subcommands().filter(|sub| sub.get_name() != "help") {
+        leaves(sub, &format!("{id}.{}", sub.get_name()), all);
+    }
+}
+
+/// Compares a folder with what it should hold, or rewrites it where `ARMCTL_BLESS` is set.
+fn is_current(folder: &str, made: &BTreeMap<String, Vec<u8>>) {
+    let path = root().join(folder);
+    if std::env::var_os("ARMCTL_BLESS").is_some() {
+        std::fs::create_dir_all(&path).expect("the folder can be made");
+        for (name, content) in made {
+            std::fs::write(path.join(name), content).expect("the file can be written");
+        }
+        // Pages of commands that are gone go too.
+        for name in names(&path).difference(&made.keys().cloned().collect()) {
+            std::fs::remove_file(path.join(name)).expect("the old file can go");
+        }
+        return;
+    }
+    let there = names(&path);
+    let stale: Vec<&String> = made
+        .keys()
+        .chain(&there)
+        .filter(|name| std::fs::read(path.join(name)).ok().as_ref() != made.get(*name))
+        .collect();
+    assert!(
+        stale.is_empty(),
+        "{folder}/ is not current; run `ARMCTL_BLESS=1 cargo test --test architecture`: {stale:?}"
+    );
+}
+
+fn names(folder: &Path) -> BTreeSet<String> {
+    let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect()
+}
