@@ -25,7 +25,7 @@ pub enum Direction {
 }
 
 /// `LINKTYPE_RAW`: packets begin with an IP header.
-const LINKTYPE_RAW: u16 = 101;
+pub const LINKTYPE_RAW: u16 = 101;
 /// `LINKTYPE_USER0`: for private use.
 const LINKTYPE_USER0: u16 = 147;
 /// Numbers of the interfaces, in the order of their blocks.
@@ -56,6 +56,12 @@ impl Capture {
     /// Starts a section at the end of a file, which is made if it is not there. A file may have any number of them.
     pub fn append(path: &Path) -> io::Result<Self> {
         Self::new(open(path)?)
+    }
+
+    /// Starts a section of packets of this kind: of [`LINKTYPE_RAW`] as [`append`](Self::append) does, or whole frames of a
+    /// link.
+    pub fn append_packets(path: &Path, link_type: u16) -> io::Result<Self> {
+        Self::start(open(path)?, &[link_type])
     }
 
     /// Starts a section for byte streams: TCP and serial lines. tcpdump reads no file with such a section, because it
@@ -113,6 +119,11 @@ impl<W: Write> Capture<W> {
             self.packet(NETWORK, time, &packet(from, to, TCP, segment))?;
         }
         Ok(())
+    }
+
+    /// Records a whole frame of the link type that the section began with. `time` counts from 1970.
+    pub fn frame(&mut self, time: Duration, frame: &[u8]) -> io::Result<()> {
+        self.packet(NETWORK, time, frame)
     }
 
     /// Records bytes of a serial line, of a capture of [`streams`](Self::streams). `time` counts from 1970.

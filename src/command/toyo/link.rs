@@ -15,7 +15,7 @@ use tokio::time::Instant;
 use super::debts::{Debts, Left};
 use super::letters::Letters;
 use super::position::Place;
-use super::reach;
+use super::connect;
 use super::refusal;
 use super::trace::Trace;
 use super::wear::Wear;
@@ -129,13 +129,13 @@ impl Family for Toyo {
     type Link = Link;
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
-        let way = reach::way(robot)?;
+        let endpoint = connect::endpoint(robot)?;
         let transport = if access.dry_run {
             Transport::Notes(Plan::default())
         } else {
-            Transport::Stream(Box::new(Box::pin(reach::open(robot, &access, screen)).await?))
+            Transport::Stream(Box::new(Box::pin(connect::open(robot, &access, screen)).await?))
         };
-        let mut link = Link::new(robot, &access, screen, transport, way.character())?;
+        let mut link = Link::new(robot, &access, screen, transport, endpoint.character())?;
         link.again = Some((robot.clone(), access));
         Ok(link)
     }

@@ -38,7 +38,7 @@ pub mod ports;
 mod position;
 mod program;
 mod raw;
-mod reach;
+mod connect;
 mod refusal;
 mod robot_type;
 mod rows;
@@ -61,7 +61,7 @@ mod wear;
 pub use check::check;
 pub use link::Toyo as Family;
 pub use overview::overview;
-pub use reach::hold;
+pub use connect::hold;
 
 use crate::command::{AtDesk, Verbs, commands};
 

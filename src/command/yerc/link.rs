@@ -7,7 +7,7 @@ use serde_json::json;
 use tokio::time::Instant;
 
 use super::fitted::Fitted;
-use super::reach::{self, Transport};
+use super::connect::{self, Transport};
 pub use super::refusal::{Asked, Refusal};
 use super::simulated::channel;
 use super::trace::Trace;
@@ -88,7 +88,7 @@ impl Family for Yerc {
     type Link = Link;
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
-        let (transport, model) = reach::open(robot, &access, screen).await?;
+        let (transport, model) = connect::open(robot, &access, screen).await?;
         let timeout = robot.timeout.value;
         let attempt = Policy::default().attempt.min(timeout);
         Ok(Link {
@@ -487,7 +487,7 @@ impl Link {
         let Transport::Session(attached) = &mut self.transport else { return Ok(()) };
         let until = Instant::now() + self.policy.deadline;
         attached
-            .take_for(reach::number(channel(division)), until)
+            .take_for(connect::number(channel(division)), until)
             .await
             .map_err(|busy| session_busy(&self.label, &busy))
     }

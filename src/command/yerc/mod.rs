@@ -22,7 +22,7 @@ mod overview;
 mod parts;
 mod position;
 mod raw;
-mod reach;
+mod connect;
 mod refusal;
 mod register;
 pub mod simulated;
@@ -37,7 +37,7 @@ mod writes;
 pub use check::check;
 pub use link::Yerc as Family;
 pub use overview::overview;
-pub use reach::hold;
+pub use connect::hold;
 
 use crate::command::{Verbs, commands};
 

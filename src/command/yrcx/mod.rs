@@ -1,4 +1,4 @@
-//! `yrcx`: OMRON / Yamaha YRCX over EtherNet/IP.
+//! `yrcx`: OMRON / Yamaha YRCX over a fieldbus, see `buses.rs`.
 //!
 //! A command that gives one remote command implements `single::Single`: which row of the table, its fields, the report.
 //! `servo.rs` is the model of one that changes something, `info.rs` of those that read. What gives several implements
@@ -16,11 +16,14 @@
 mod alarm;
 mod arguments;
 pub mod backup;
+pub mod buses;
 mod check;
 mod clock;
+mod connect;
 #[cfg(test)]
 mod coverage;
 mod data;
+pub mod discover;
 pub mod eip;
 #[cfg(test)]
 mod gate;
@@ -39,7 +42,6 @@ mod position;
 mod procedures;
 mod program;
 mod raw;
-mod reach;
 mod refusal;
 mod select;
 mod servo;

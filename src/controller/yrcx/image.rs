@@ -11,6 +11,9 @@ pub const IMAGE_WORDS: usize = 24;
 /// The word that holds the dedicated signals (SI(00) to SI(17), SO(00) to SO(17)).
 pub const DEDICATED_WORD: usize = 16;
 
+/// The first byte of the signals.
+const SIGNALS_AT: usize = DEDICATED_WORD * 2;
+
 /// WI0 to WI15, or WO0 to WO15.
 pub type Words = [u16; COMMAND_WORDS];
 
@@ -39,6 +42,36 @@ impl Image {
             pair.copy_from_slice(&word.to_le_bytes());
         }
         bytes
+    }
+
+    /// Bytes of the image where a fieldbus carries signals alone (DeviceNet, I/O size "Compact"): the words of the
+    /// dedicated signals and of the first sixteen general-purpose ones.
+    pub const SIGNAL_BYTES: usize = 4;
+
+    /// Whether images of so many bytes hold the words of remote commands.
+    pub const fn has_commands(bytes: usize) -> bool {
+        bytes >= Self::BYTES
+    }
+
+    /// Reads what a fieldbus carries: the whole image with whatever follows it, or signals alone, where all else is 0.
+    pub fn from_link(bytes: &[u8]) -> Option<Self> {
+        if bytes.len() != Self::SIGNAL_BYTES {
+            return Self::from_bytes(bytes.get(..Self::BYTES)?);
+        }
+        let mut whole = [0; Self::BYTES];
+        whole[SIGNALS_AT..SIGNALS_AT + Self::SIGNAL_BYTES].copy_from_slice(bytes);
+        Self::from_bytes(&whole)
+    }
+
+    /// The same as a fieldbus carries it in so many bytes; what follows the image is 0.
+    pub fn to_link(self, bytes: usize) -> Vec<u8> {
+        let whole = self.to_bytes();
+        if bytes == Self::SIGNAL_BYTES {
+            return whole[SIGNALS_AT..SIGNALS_AT + Self::SIGNAL_BYTES].to_vec();
+        }
+        let mut link = whole.to_vec();
+        link.resize(bytes, 0);
+        link
     }
 
     /// The words of the remote command.

@@ -11,7 +11,8 @@ use serde::Serialize;
 use super::{Served, address, cannot_listen, serve};
 use crate::command::Report;
 use crate::command::run::{Run, Stopped};
-use crate::command::yrcx::simulated::{self, Controller, faults, mischief};
+use crate::command::yrcx::eip::simulated::{self, Controller, faults, mischief};
+use crate::command::yrcx::simulated::start;
 use crate::output::view::View;
 use crate::transport::eip::adapter::AdapterFault;
 use crate::transport::eip::adapter::server::{Listen, Server};
@@ -55,7 +56,7 @@ fn listen(text: &str) -> Result<SocketAddrV4, String> {
 
 impl SimYrcx {
     pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
-        let start = simulated::start(self.state.as_deref())?;
+        let start = start(self.state.as_deref())?;
         let io_port = self.io_port.unwrap_or(if self.bind.port() == 0 { 0 } else { IO_PORT });
         let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port };
         let server = simulated::serve(start, listen, self.fault).map_err(|error| {

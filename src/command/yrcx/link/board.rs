@@ -1,23 +1,36 @@
-//! A link that asks only the network board.
+//! A link that asks only the device on the fieldbus.
+
+use std::any::Any;
 
 use serde_json::Value as Json;
 
-use super::{Board, Link, Transport};
+use super::{Link, Transport};
 use crate::command::dry_run::{Reason, unknown};
+use crate::command::yrcx::buses::Board;
 use crate::failure::Failure;
 use crate::transport::tap::Direction;
 
 impl Link {
-    /// The network board, of a link that is for it alone.
-    pub fn board(&mut self) -> Result<&mut Board, Failure> {
+    /// The device, of a link that is for it alone, whatever its fieldbus.
+    pub fn any_board(&mut self) -> Result<&mut dyn Board, Failure> {
         match &mut self.transport {
-            Transport::Board(board) => Ok(board),
+            Transport::Board(board, _) => Ok(&mut **board),
             Transport::Notes(_) => Err(unknown()),
             Transport::Image(_) => Err(Failure::local("this link carries images, not messages")),
         }
     }
 
-    /// Tells at `-vv` what was asked of the board, and what it answered.
+    /// The device as its fieldbus knows it; `scheme` is that of its URLs.
+    pub fn board<B: Board>(&mut self, scheme: &str) -> Result<&mut B, Failure> {
+        let label = self.label.clone();
+        let board: &mut dyn Any = self.any_board()?;
+        board.downcast_mut().ok_or_else(|| {
+            Failure::usage(format!("{label} is reached over another fieldbus than {scheme}:"))
+                .hint("use the commands of its own fieldbus, by the scheme of its URL")
+        })
+    }
+
+    /// Tells at `-vv` what was asked of the device, and what it answered.
     pub fn tell_message(&self, sent: &[u8], received: &[u8], about: &str) {
         self.trace.message(Direction::Sent, sent, about);
         self.trace.message(Direction::Received, received, "done");

@@ -4,13 +4,13 @@ use tokio::time::Instant;
 
 use super::{Link, Transport};
 use crate::command::attach::session_busy;
+use crate::command::yrcx::connect::endpoint;
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::describe::{answer_summary, command_summary};
 use crate::controller::yrcx::image::{Image, Output};
 use crate::controller::{Now, Risk};
 use crate::failure::{Failure, Kind};
 use crate::settings::Robot;
-use crate::settings::target::{EipRole, Place};
 use crate::transport::session::client::SessionBusy;
 use crate::transport::session::wire::Change;
 
@@ -23,7 +23,7 @@ impl Link {
             return;
         }
         (self.is_shared, self.is_held, self.is_up) = (true, true, link.is_up());
-        self.is_owner = !matches!(&robot.target.value.place, Place::Eip(eip) if eip.role != EipRole::Owner);
+        self.is_owner = endpoint(robot).is_ok_and(|endpoint| endpoint.is_owner());
         self.shown_now();
     }
 
@@ -114,5 +114,5 @@ impl Link {
 }
 
 fn image(bytes: &[u8]) -> Option<Image> {
-    Image::from_bytes(bytes.get(..Image::BYTES)?)
+    Image::from_link(bytes)
 }
