@@ -45,7 +45,7 @@ impl Family {
     pub const fn address(self) -> &'static str {
         match self {
             Self::Yerc => "udp://HOST",
-            Self::Yrcx => BUSES[0].shortest,
+            Self::Yrcx => bus::USUAL.shortest,
             Self::Toyo => "serial:///dev/ttyUSB0 or tcp://HOST:PORT",
         }
     }
@@ -164,8 +164,8 @@ pub struct Sim {
     pub fault: Option<String>,
     /// What a yrcx controller does wrong, in the form of `armctl sim yrcx --mischief`.
     pub mischief: Option<String>,
-    /// The fieldbus that a yrcx controller is reached over, by its scheme; without it no network is simulated, unless
-    /// something is to go wrong on it.
+    /// The fieldbus that a yrcx controller is reached over, of [`bus::simulators`]; without it no network is simulated,
+    /// unless something is to go wrong on it.
     pub bus: Option<&'static str>,
 }
 
@@ -201,7 +201,7 @@ impl Target {
             Place::Serial(_) => "serial",
             Place::Tcp(_) => "tcp",
             Place::Sim(_) => "sim",
-            Place::Bus(bus) => bus.scheme,
+            Place::Bus(bus) => bus.scheme.name,
         }
     }
 
@@ -293,7 +293,7 @@ fn hint(scheme: &str) -> String {
         None => format!(
             "write udp://HOST, {}, serial:///dev/ttyUSB0, serial://COM3 or tcp://HOST:PORT for a controller, or sim: for the \
              simulator; `armctl help targets` explains them",
-            BUSES.map(|bus| bus.shortest).join(", ")
+            BUSES.each_ref().map(|bus| bus.shortest).join(", ")
         ),
     }
 }
@@ -366,10 +366,13 @@ fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
     })
 }
 
-/// The name of a fieldbus, which a simulator can be on.
+/// What a simulator can be on.
 fn bus(name: &str) -> Result<&'static str, String> {
-    let found = BUSES.iter().find(|bus| bus.name == name);
-    found.map(|bus| bus.name).ok_or_else(|| format!("bus is {}, not '{name}'", BUSES.map(|bus| bus.name).join(" or ")))
+    let found = bus::simulators().find(|(known, _)| *known == name);
+    found.map(|(known, _)| known).ok_or_else(|| {
+        let all: Vec<&str> = bus::simulators().map(|(known, _)| known).collect();
+        format!("bus is {}, not '{name}'", all.join(" or "))
+    })
 }
 
 impl Sim {

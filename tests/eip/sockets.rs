@@ -8,6 +8,7 @@ use armctl::transport::eip::adapter::server::{Listen, Server};
 use armctl::transport::eip::adapter::{AdapterFault, Setup};
 use armctl::transport::eip::client::Client;
 use armctl::transport::eip::discovery::list_identity;
+use armctl::transport::eip::error::EipError;
 use armctl::transport::eip::explicit::{Answer, Message};
 use armctl::transport::eip::originator::State;
 use armctl::transport::eip::probe::{self, Connectable, Instances, probe};
@@ -15,7 +16,6 @@ use armctl::transport::eip::reader::{Assembly, Reader, Reading};
 use armctl::transport::eip::scanner::Scanner;
 use armctl::transport::eip::settings::{Multiplier, Settings};
 use armctl::transport::eip::tap::Tap;
-use armctl::transport::eip::error::EipError;
 use armctl::transport::eip::wire::Status;
 use armctl::transport::fault::{FaultSpec, Faults};
 

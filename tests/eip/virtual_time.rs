@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use armctl::transport::eip::adapter::{Adapter, Assembly, Event, AdapterFault, Output, Purpose, Setup};
+use armctl::transport::eip::adapter::{Adapter, AdapterFault, Assembly, Event, Output, Purpose, Setup};
+use armctl::transport::eip::error::EipError;
 use armctl::transport::eip::explicit::{Answer, Message};
 use armctl::transport::eip::originator::State;
 use armctl::transport::eip::settings::{Multiplier, Role, Settings};
-use armctl::transport::eip::error::EipError;
 use armctl::transport::eip::wire::{Command, Cyclic, Frame, Identity, Key, Open, Request, RrData, Status};
 
 use crate::world::{HERE, MS, Mirror, World, identity, resting, settings, setup};

@@ -7,10 +7,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use armctl::transport::eip::adapter::{Adapter, Application, Event, Output, Setup};
+use armctl::transport::eip::error::EipError;
 use armctl::transport::eip::originator::{Action, Numbers, Originator, State, View};
 use armctl::transport::eip::session::{Ask, Token};
 use armctl::transport::eip::settings::{Multiplier, Settings};
-use armctl::transport::eip::error::EipError;
 use armctl::transport::eip::wire::{Command, Cyclic, Identity, Revision};
 use armctl::transport::eip::{IO_PORT, Now, PORT};
 use armctl::transport::fault::{FaultSpec, Faults};

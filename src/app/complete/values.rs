@@ -141,7 +141,7 @@ fn tags(context: &Context) -> Vec<Candidate> {
 
 /// How target URLs begin. What follows is nobody's guess.
 fn urls() -> Vec<Candidate> {
-    let buses = BUSES.map(|bus| Candidate::new(format!("{}://", bus.name), bus.about));
+    let buses = BUSES.each_ref().map(|bus| Candidate::new(format!("{}://", bus.name), bus.about));
     let before = [
         Candidate::new("sim:", "the built-in simulator"),
         Candidate::new("udp://", "yerc: name or address of the controller"),

@@ -12,10 +12,10 @@ use std::time::Duration;
 use serde_json::json;
 use tokio::time::Instant;
 
+use super::connect;
 use super::debts::{Debts, Left};
 use super::letters::Letters;
 use super::position::Place;
-use super::connect;
 use super::refusal;
 use super::trace::Trace;
 use super::wear::Wear;

@@ -5,6 +5,7 @@ mod bus;
 mod card;
 mod cells;
 mod check;
+mod connect;
 mod coordinate;
 mod copies;
 mod counter;
@@ -38,7 +39,6 @@ pub mod ports;
 mod position;
 mod program;
 mod raw;
-mod connect;
 mod refusal;
 mod robot_type;
 mod rows;
@@ -59,9 +59,9 @@ mod waiting;
 mod wear;
 
 pub use check::check;
+pub use connect::hold;
 pub use link::Toyo as Family;
 pub use overview::overview;
-pub use connect::hold;
 
 use crate::command::{AtDesk, Verbs, commands};
 

@@ -6,8 +6,8 @@ use std::time::Duration;
 use serde_json::json;
 use tokio::time::Instant;
 
-use super::fitted::Fitted;
 use super::connect::{self, Transport};
+use super::fitted::Fitted;
 pub use super::refusal::{Asked, Refusal};
 use super::simulated::channel;
 use super::trace::Trace;

@@ -4,6 +4,7 @@ mod alarm;
 mod axes;
 mod check;
 mod chosen;
+mod connect;
 mod each;
 pub mod file;
 mod fitted;
@@ -22,7 +23,6 @@ mod overview;
 mod parts;
 mod position;
 mod raw;
-mod connect;
 mod refusal;
 mod register;
 pub mod simulated;
@@ -35,9 +35,9 @@ mod var;
 mod writes;
 
 pub use check::check;
+pub use connect::hold;
 pub use link::Yerc as Family;
 pub use overview::overview;
-pub use connect::hold;
 
 use crate::command::{Verbs, commands};
 

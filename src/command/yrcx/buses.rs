@@ -44,8 +44,8 @@ pub fn identities(generator: &mut SchemaGenerator) -> Vec<Schema> {
 
 /// A fieldbus: how controllers on it are reached, asked, looked for and simulated.
 pub trait Fieldbus: fmt::Debug + Sync {
-    /// The scheme of its URLs.
-    fn scheme(&self) -> &'static str;
+    /// The name of it: the word of its commands, and what its schemes say that they lead to.
+    fn name(&self) -> &'static str;
 
     /// The alarm of a controller whose link over it is lost; the next number is the one of a loss that lasts.
     fn link_alarm(&self) -> Alarm;
@@ -107,9 +107,9 @@ pub struct Simulation {
     pub controller: Box<dyn fmt::Debug>,
 }
 
-/// The fieldbus of a scheme.
-pub fn by_scheme(scheme: &str) -> Option<&'static dyn Fieldbus> {
-    BUSES.into_iter().find(|bus| bus.scheme() == scheme)
+/// The fieldbus of this name.
+pub fn by_name(name: &str) -> Option<&'static dyn Fieldbus> {
+    BUSES.into_iter().find(|bus| bus.name() == name)
 }
 
 /// A URL that leads to a fieldbus, taken apart.
@@ -127,9 +127,15 @@ mod tests {
 
     #[test]
     fn every_scheme_has_a_fieldbus_and_an_alarm_of_its_own() {
-        assert_eq!(BUSES.map(Fieldbus::scheme), target::BUSES.map(|scheme| scheme.name));
+        for scheme in &target::BUSES {
+            assert!(by_name(scheme.bus).is_some(), "{scheme:?}");
+        }
+        let mut alarms = Vec::new();
         for bus in BUSES {
-            assert!(bus.link_alarm().known().is_some(), "{bus:?}");
+            assert!(target::BUSES.iter().any(|scheme| scheme.bus == bus.name()), "{bus:?}");
+            assert!(target::bus::simulators().any(|(_, name)| name == bus.name()), "{bus:?}");
+            assert!(bus.link_alarm().known().is_some() && !alarms.contains(&bus.link_alarm()), "{bus:?}");
+            alarms.push(bus.link_alarm());
             assert_eq!(bus.layers().first(), Some(&"name"), "{bus:?}");
         }
     }

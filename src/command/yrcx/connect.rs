@@ -9,6 +9,7 @@ use crate::command::{Access, Need};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
+use crate::settings::target::bus::{Scheme, simulators};
 use crate::settings::target::{self, Bus, Place};
 use crate::transport::image::{ImageLink, LinkError};
 
@@ -24,13 +25,13 @@ pub enum Endpoint<'a> {
 /// What a robot's target leads to.
 pub fn endpoint(robot: &Robot) -> Result<Endpoint<'_>, Failure> {
     match &robot.target.value.place {
-        Place::Bus(bus) => match buses::by_scheme(bus.scheme) {
+        Place::Bus(bus) => match buses::by_name(bus.scheme.bus) {
             Some(fieldbus) => Ok(Endpoint::Bus(bus, fieldbus)),
-            None => Err(Failure::local(format!("nothing is known of {}:", bus.scheme))),
+            None => Err(Failure::local(format!("nothing is known of {}", bus.scheme.bus))),
         },
         Place::Sim(sim) => Ok(Endpoint::Sim(sim)),
         Place::Udp(_) | Place::Serial(_) | Place::Tcp(_) => {
-            let schemes = BUSES.map(|bus| format!("{}://", bus.scheme())).join(", ");
+            let schemes = target::BUSES.each_ref().map(|scheme| format!("{}://", scheme.name)).join(", ");
             Err(Failure::usage(format!("yrcx is not reached over {}:", robot.target.value.scheme()))
                 .hint(format!("use {schemes} or sim:")))
         }
@@ -115,7 +116,8 @@ impl Endpoint<'_> {
 
 /// The fieldbus that a simulator is on.
 fn simulated_on(sim: &target::Sim) -> &'static dyn Fieldbus {
-    sim.bus.and_then(buses::by_scheme).unwrap_or(BUSES[0])
+    let named = sim.bus.and_then(|wanted| simulators().find(|(name, _)| *name == wanted));
+    named.and_then(|(_, bus)| buses::by_name(bus)).unwrap_or(BUSES[0])
 }
 
 /// Starts a simulated controller on its fieldbus.
@@ -124,8 +126,8 @@ fn simulate(sim: &target::Sim) -> Result<(&'static dyn Fieldbus, Simulation), Fa
     Ok((fieldbus, fieldbus.simulate(sim)?))
 }
 
-/// Why a link or a board was not opened; `scheme` is that of the URL.
-pub fn not_open(label: &str, scheme: &str, error: &LinkError) -> Failure {
+/// Why a link or a board was not opened; the scheme is that of the URL.
+pub fn not_open(label: &str, Scheme { name, bus, .. }: &Scheme, error: &LinkError) -> Failure {
     let cause = error.cause();
     let options = listed(cause.options);
     let (kind, hint) = match error {
@@ -134,11 +136,13 @@ pub fn not_open(label: &str, scheme: &str, error: &LinkError) -> Failure {
             let failure = Failure { code: cause.code.clone(), ..Failure::new(Kind::Refused, message) };
             return failure.hint(cause.advice.as_deref().unwrap_or(OWNED));
         }
-        LinkError::Size(_) => (Kind::Malformed, format!("check {options} of the URL: `yrcx {scheme} probe` finds both")),
+        LinkError::Size(_) => (Kind::Malformed, format!("check {options} of the URL: `yrcx {bus} probe` finds both")),
         LinkError::Refused(_) => (Kind::Refused, format!("check {options} of the URL: `armctl help targets`")),
-        LinkError::Silent(_) | LinkError::Lost { .. } => (Kind::NoAnswer, "check the link to the controller".to_owned()),
+        LinkError::Silent(_) | LinkError::Lost { .. } => {
+            (Kind::NoAnswer, "check the link to the controller".to_owned())
+        }
         LinkError::Malformed(_) => (Kind::Malformed, "check the address".to_owned()),
-        LinkError::Settings(_) => (Kind::Usage, format!("`armctl help targets` tells what URLs of {scheme}: can say")),
+        LinkError::Settings(_) => (Kind::Usage, format!("`armctl help targets` tells what URLs of {name}: can say")),
         LinkError::Local(_) => (Kind::Local, "check the adapter and its settings on this machine".to_owned()),
     };
     let failure = Failure::new(kind, format!("{label}: {error}")).hint(cause.advice.as_deref().unwrap_or(&hint));

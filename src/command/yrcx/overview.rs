@@ -13,7 +13,8 @@ const NOT_ASKED: &str =
     "servos and position are remote commands, which take command of the controller: `yrcx status --full`, or a session";
 
 /// The same where there are no remote commands.
-const NO_COMMANDS: &str = "servos and position are remote commands, for which the fieldbus unit has no words (I/O size \"Compact\")";
+const NO_COMMANDS: &str =
+    "servos and position are remote commands, for which the fieldbus unit has no words (I/O size \"Compact\")";
 
 /// The same while a session gives somebody else's command.
 const BUSY: &str =

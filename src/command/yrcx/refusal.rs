@@ -76,10 +76,8 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
 }
 
 /// Commands that end what an alarm is about.
-const WAYS_OUT: [(&str, &[Alarm]); 2] = [
-    (": `yrcx io set stop=on`", &[STOP_INPUT]),
-    ("; `yrcx recover` ends the alarm", &RECOVERABLE),
-];
+const WAYS_OUT: [(&str, &[Alarm]); 2] =
+    [(": `yrcx io set stop=on`", &[STOP_INPUT]), ("; `yrcx recover` ends the alarm", &RECOVERABLE)];
 
 /// Alarms of a lost link, on each fieldbus, and of an emergency stop.
 const RECOVERABLE: [Alarm; 9] = [
@@ -148,7 +146,8 @@ pub fn unanswered(label: &str, row: &Row, outcome: &Outcome, stop: Option<bool>)
 
 /// A remote command where the fieldbus carries signals alone.
 pub fn no_commands(label: &str, row: &Row) -> Failure {
-    let message = format!("{label}: the fieldbus unit carries signals alone (I/O size \"Compact\"), and {} is words", row.id);
+    let message =
+        format!("{label}: the fieldbus unit carries signals alone (I/O size \"Compact\"), and {} is words", row.id);
     Failure::new(Kind::RefusedHere, message).hint(
         "set the unit's I/O size to Normal for remote commands; signals work: `yrcx status`, `yrcx io`, `yrcx run`, \
          `yrcx stop`, `yrcx recover`",

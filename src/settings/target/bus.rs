@@ -1,5 +1,5 @@
-//! URLs of the fieldbuses that a yrcx may be on. Each has a file here and a line in [`BUSES`]; `command/yrcx/buses.rs`
-//! has what is done over it.
+//! URLs of the fieldbuses that a yrcx may be on. Each fieldbus has a file here and a line for each of its schemes in
+//! [`BUSES`]; `command/yrcx/buses.rs` has what is done over it.
 
 use std::any::Any;
 use std::fmt;
@@ -8,14 +8,26 @@ use std::time::Duration;
 
 use super::{Address, Query, eip};
 
-/// All of them, the usual one first.
-pub const BUSES: [Scheme; 1] = [eip::SCHEME];
+/// The one that hints name first.
+pub const USUAL: Scheme = eip::SCHEME;
+
+/// All of them.
+pub static BUSES: [Scheme; 1] = [eip::SCHEME];
+
+/// What `bus=` of a `sim:` URL may be, with the fieldbus that it names.
+pub fn simulators() -> impl Iterator<Item = (&'static str, &'static str)> {
+    BUSES.iter().flat_map(|scheme| scheme.simulators.iter().map(|name| (*name, scheme.bus)))
+}
 
 /// A kind of URL that leads to a yrcx over a fieldbus.
 #[derive(Debug, Clone, Copy)]
 pub struct Scheme {
     /// What stands before the colon.
     pub name: &'static str,
+    /// The fieldbus: the word of its commands (`armctl yrcx eip`), and the name of its folders.
+    pub bus: &'static str,
+    /// What `bus=` of a `sim:` URL may be to have a controller on it simulated.
+    pub simulators: &'static [&'static str],
     /// The shortest URL there is, for hints: `eip://HOST`.
     pub shortest: &'static str,
     /// What URLs look like, with the options that matter most.
@@ -42,7 +54,7 @@ pub struct Place {
 #[derive(Clone)]
 pub struct Bus {
     /// The kind of URL.
-    pub scheme: &'static str,
+    pub scheme: &'static Scheme,
     /// Whether a connection is to command the controller; else it only sees.
     pub is_owner: bool,
     /// Whoever only looks now and then wants no images in shorter intervals than this.
@@ -55,10 +67,10 @@ pub struct Bus {
 }
 
 impl Bus {
-    pub(super) fn parse(scheme: &Scheme, place: &str, query: &mut Query) -> Result<Self, String> {
+    pub(super) fn parse(scheme: &'static Scheme, place: &str, query: &mut Query) -> Result<Self, String> {
         let text = format!("{place}?{query}");
         let Place { address, short_name, is_owner, options } = (scheme.parse)(place, query)?;
-        Ok(Self { scheme: scheme.name, is_owner, calm: Duration::ZERO, address, short_name, options, text })
+        Ok(Self { scheme, is_owner, calm: Duration::ZERO, address, short_name, options, text })
     }
 
     /// Which controller it is.
@@ -79,13 +91,13 @@ impl Bus {
 
 impl fmt::Debug for Bus {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}", self.scheme, self.text)
+        write!(f, "{}:{}", self.scheme.name, self.text)
     }
 }
 
 impl PartialEq for Bus {
     fn eq(&self, other: &Self) -> bool {
-        (self.scheme, &self.text, self.calm) == (other.scheme, &other.text, other.calm)
+        (self.scheme.name, &self.text, self.calm) == (other.scheme.name, &other.text, other.calm)
     }
 }
 
@@ -98,7 +110,7 @@ mod tests {
 
     #[test]
     fn every_scheme_says_how_its_urls_look() {
-        for scheme in BUSES {
+        for scheme in &BUSES {
             assert!(scheme.shortest.starts_with(&format!("{}:", scheme.name)), "{scheme:?}");
             assert!(scheme.form.starts_with(&format!("{}:", scheme.name)), "{scheme:?}");
             let target: Target = scheme.shortest.to_lowercase().parse().unwrap();

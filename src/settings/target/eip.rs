@@ -12,6 +12,8 @@ use crate::settings::duration;
 /// The scheme.
 pub const SCHEME: Scheme = Scheme {
     name: "eip",
+    bus: "eip",
+    simulators: &["eip"],
     shortest: "eip://HOST",
     form: "eip://HOST[:44818][?in=100&out=150&config=1&rpi=20ms]",
     about: "yrcx: name or address of the network board",

@@ -6,10 +6,10 @@ use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
 use tokio::time::{Duration, Instant, sleep_until, timeout_at};
 
+use super::error::EipError;
 use super::explicit::{Answer, Message};
 use super::session::{Ask, Session, Step, Token};
 use super::tap::Tap;
-use super::error::EipError;
 use super::wire::{Command, Identity, Services};
 
 /// The one request that is on its way.

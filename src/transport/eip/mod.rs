@@ -9,6 +9,7 @@ mod class1;
 pub mod client;
 pub mod discovery;
 mod engine;
+pub mod error;
 pub mod explicit;
 pub mod link;
 pub mod originator;
@@ -19,7 +20,6 @@ pub mod session;
 pub mod settings;
 pub mod status;
 pub mod tap;
-pub mod error;
 pub mod wire;
 
 /// A moment, as time passed since an origin of the driver's choice. It never runs backwards.

@@ -11,10 +11,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::class1::{Consumer, Producer, Verdict};
+use super::error::EipError;
 use super::explicit::Answer;
 use super::session::{Ask, Session, Step, Token};
 use super::settings::{Role, Settings};
-use super::error::EipError;
 use super::wire::{Close, Command, Cyclic, Net, Open, Opened, RUN, RrData, Triad};
 use super::{IO_PORT, Now};
 

@@ -8,9 +8,9 @@ use std::fmt;
 use std::time::Duration;
 
 use super::client::Client;
+use super::error::EipError;
 use super::explicit::{Answer, Message};
 use super::settings::Settings;
-use super::error::EipError;
 use super::wire::{Close, Command, Identity, Open, Opened, RrData, Status, Triad};
 use super::{ASSEMBLY, UNREGISTERED_VENDOR};
 

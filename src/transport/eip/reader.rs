@@ -11,8 +11,8 @@ use tokio::task::JoinHandle;
 
 use super::ASSEMBLY;
 use super::client::Client;
-use super::explicit::Message;
 use super::error::EipError;
+use super::explicit::Message;
 
 /// The attribute of an assembly that is its image.
 const IMAGE: u32 = 3;

@@ -11,12 +11,12 @@ use tokio::runtime::Handle;
 use tokio::sync::{mpsc, oneshot, watch};
 
 use super::engine::{Alarm, Engine, Prepared, spawn};
+use super::error::EipError;
 use super::explicit::{Answer, Message};
 use super::originator::{Action, Numbers, Originator, State, View};
 use super::session::{Ask, Token};
 use super::settings::Settings;
 use super::tap::Tap;
-use super::error::EipError;
 use super::wire::{Command, Cyclic};
 use super::{IO_PORT, Now};
 

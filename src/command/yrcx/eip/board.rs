@@ -18,11 +18,11 @@ use crate::output::view::{Cell, Tone};
 use crate::settings::target::eip::{self, EipRole, SCHEME};
 use crate::transport::eip::ASSEMBLY;
 use crate::transport::eip::client::Client;
+use crate::transport::eip::error::EipError;
 use crate::transport::eip::explicit::{Answer, Message};
 use crate::transport::eip::link::as_advice;
 use crate::transport::eip::probe::{self, Findings, Instances};
 use crate::transport::eip::status;
-use crate::transport::eip::error::EipError;
 use crate::transport::eip::wire;
 use crate::transport::image::LinkError;
 
@@ -131,7 +131,7 @@ impl Board {
     }
 
     fn failure(&self, error: EipError) -> Failure {
-        not_open(&self.label, SCHEME.name, &LinkError::from(error))
+        not_open(&self.label, &SCHEME, &LinkError::from(error))
     }
 
     fn refused(&self, what: &str, object: Object, answer: &Answer) -> Failure {

@@ -31,8 +31,8 @@ use crate::transport::image::{ImageLink, LinkError};
 pub struct EtherNetIp;
 
 impl Fieldbus for EtherNetIp {
-    fn scheme(&self) -> &'static str {
-        SCHEME.name
+    fn name(&self) -> &'static str {
+        SCHEME.bus
     }
 
     fn link_alarm(&self) -> Alarm {
@@ -64,7 +64,7 @@ impl Fieldbus for EtherNetIp {
 
 /// The board of a link that is for it alone.
 fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
-    link.board(SCHEME.name)
+    link.board(SCHEME.bus)
 }
 
 /// Why `--unit` means nothing here.

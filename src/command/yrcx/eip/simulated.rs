@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::settings::target::Sim;
 use crate::transport::eip::PORT;
 use crate::transport::eip::adapter::server::{Listen, Server};
-use crate::transport::eip::adapter::{Application, Event, AdapterFault, Setup};
+use crate::transport::eip::adapter::{AdapterFault, Application, Event, Setup};
 use crate::transport::eip::settings::Role;
 use crate::transport::eip::wire::{Identity, Revision};
 use crate::transport::fault::{FaultSpec, Faults};

@@ -20,13 +20,13 @@ impl Link {
         }
     }
 
-    /// The device as its fieldbus knows it; `scheme` is that of its URLs.
-    pub fn board<B: Board>(&mut self, scheme: &str) -> Result<&mut B, Failure> {
+    /// The device as this fieldbus knows it.
+    pub fn board<B: Board>(&mut self, fieldbus: &str) -> Result<&mut B, Failure> {
         let label = self.label.clone();
         let board: &mut dyn Any = self.any_board()?;
         board.downcast_mut().ok_or_else(|| {
-            Failure::usage(format!("{label} is reached over another fieldbus than {scheme}:"))
-                .hint("use the commands of its own fieldbus, by the scheme of its URL")
+            Failure::usage(format!("{label} is on another fieldbus than {fieldbus}"))
+                .hint("`armctl yrcx --help` lists the commands of each fieldbus")
         })
     }
 

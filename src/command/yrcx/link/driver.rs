@@ -283,7 +283,9 @@ impl Link {
     fn take(&mut self, now: Now, bytes: &[u8]) -> Result<(), Failure> {
         let Some(image) = Image::from_link(bytes) else {
             let message = format!("{}: the controller shows {} bytes, fewer than an image", self.label, bytes.len());
-            return Err(Failure::new(Kind::Malformed, message).hint("check the sizes in the URL: `armctl robots check`"));
+            return Err(
+                Failure::new(Kind::Malformed, message).hint("check the sizes in the URL: `armctl robots check`")
+            );
         };
         self.trace.received(&image);
         self.input = Some(image);

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use super::super::settings::MOST_IMAGE;
 use super::super::wire::{Request, service};
 use super::super::{ASSEMBLY, Now};
-use super::{Adapter, Application, AdapterFault, NOT_ENOUGH_DATA, Purpose, UNKNOWN_DESTINATION, UNKNOWN_SERVICE};
+use super::{Adapter, AdapterFault, Application, NOT_ENOUGH_DATA, Purpose, UNKNOWN_DESTINATION, UNKNOWN_SERVICE};
 
 const IDENTITY: u32 = 1;
 /// The attribute of an assembly that is its image.

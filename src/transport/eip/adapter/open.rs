@@ -6,7 +6,9 @@ use std::time::Duration;
 use super::super::settings::{Multiplier, Role};
 use super::super::wire::{Flow, Key, Net, Open, Opened, Problem, Refused, Segment, Status};
 use super::super::{ASSEMBLY, IO_PORT, Now};
-use super::{Adapter, Application, Consumer, Event, Held, AdapterFault, NOT_ENOUGH_DATA, Peer, Producer, Purpose, Setup};
+use super::{
+    Adapter, AdapterFault, Application, Consumer, Event, Held, NOT_ENOUGH_DATA, Peer, Producer, Purpose, Setup,
+};
 
 /// Refusals (volume 1, table 3-5.29).
 const DUPLICATE: u16 = 0x0100;

@@ -9,7 +9,7 @@ use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpSocket, TcpStream};
 use tokio::sync::mpsc::UnboundedReceiver;
 
-use super::{Inner, Slot, Tap, EipError, mpsc};
+use super::{EipError, Inner, Slot, Tap, mpsc};
 
 /// Room for what is read at once.
 const BUFFER: usize = 4096;
