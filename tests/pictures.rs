@@ -1,7 +1,7 @@
 //! The pictures of the terminal in `docs/pictures/` are what the program prints.
 //!
 //! Each is a session that is typed into a shell, in a folder of its own, and drawn as a terminal of [`COLUMNS`] shows it.
-//! `ARMCTL_BLESS=1 cargo test --test pictures` draws them anew. What would differ from run to run is settled: the
+//! `ARMCTL_BLESS=1 cargo test --test terminal pictures::` draws them anew. What would differ from run to run is settled: the
 //! simulators begin as files say, and [`settled`] puts one time for all.
 #![cfg(unix)]
 
@@ -75,7 +75,10 @@ fn pictures_are_current() {
             stale.push(name);
         }
     }
-    assert!(stale.is_empty(), "not as in docs/pictures; run `ARMCTL_BLESS=1 cargo test --test pictures`: {stale:?}");
+    assert!(
+        stale.is_empty(),
+        "not as in docs/pictures; run `ARMCTL_BLESS=1 cargo test --test terminal pictures::`: {stale:?}"
+    );
 }
 
 #[test]

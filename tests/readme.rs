@@ -8,19 +8,19 @@
 //! TOML blocks that begin with `# NAME.toml` lie in the folders of that page's sessions as files of that name. Blocks
 //! marked `sh` are not run: installation, real controllers.
 //!
-//! `ARMCTL_BLESS=1 cargo test --test readme` writes what was printed into the blocks that differ.
+//! `ARMCTL_BLESS=1 cargo test --test terminal readme::` writes what was printed into the blocks that differ.
 #![cfg(unix)]
-
-#[path = "support/schemas.rs"]
-mod schemas;
 
 use std::fmt::Write as _;
 use std::io::{BufRead as _, BufReader};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use snapbox::IntoData as _;
+
+use crate::support::schemas;
 
 /// Families, and where blocks find the simulator of each, as a reader starts it without arguments.
 const DOCUMENTED: [(&str, &str); 3] =
@@ -44,42 +44,97 @@ const PAGES: [&str; 10] = [
 #[test]
 fn console_blocks_print_what_they_show() {
     let bless = std::env::var_os("ARMCTL_BLESS").is_some();
+    let mut pages: Vec<Page> = PAGES.iter().map(|name| Page::read(name)).collect();
+    let sessions: Vec<Session> = pages.iter().flat_map(Page::sessions).collect();
+    let ended = side_by_side(&sessions, |session| run(&session.shown, &session.files));
     let mut wrong = Vec::new();
-    for page in PAGES {
-        let path = root().join(page);
-        let Ok(mut text) = std::fs::read_to_string(&path) else { panic!("{page} is missing") };
-        let files = files(&text);
-        // From the end, so that blessing one section leaves the places of those before it.
-        for section in sections(&text).into_iter().rev() {
-            let heading = text[section.clone()].lines().next().unwrap_or_default().to_owned();
-            let blocks: Vec<Range<usize>> = blocks(&text[section.clone()], "console")
-                .into_iter()
-                .map(|block| section.start + block.start..section.start + block.end)
-                .collect();
-            let shown: Vec<String> = blocks.iter().map(|block| text[block.clone()].to_owned()).collect();
-            let printed = match run(&shown, &files) {
-                Ok(printed) => printed,
-                Err(why) => {
-                    wrong.push(format!("{page}, {heading}: {why}"));
-                    continue;
-                }
-            };
-            let broken = printed.iter().flat_map(|printed| printed.lines()).filter_map(|line| promise(line).err());
-            wrong.extend(broken.map(|why| format!("{page}, {heading}: {why}")));
-            for ((range, shown), printed) in blocks.into_iter().zip(shown).zip(printed).rev() {
-                let assert = snapbox::Assert::new().normalize_paths(false);
-                match assert.try_eq(Some(&page), printed.as_str().into_data(), shown.as_str().into_data()) {
-                    Ok(()) => {}
-                    Err(_) if bless => text.replace_range(range, &printed),
-                    Err(difference) => wrong.push(format!("{page}, {heading}:\n{difference}")),
-                }
+    // From the end, so that blessing one section leaves the places of those before it.
+    for (session, ended) in sessions.iter().zip(ended).rev() {
+        let place = format!("{}, {}", PAGES[session.page], session.heading);
+        let printed = match ended {
+            Ok(printed) => printed,
+            Err(why) => {
+                wrong.push(format!("{place}: {why}"));
+                continue;
+            }
+        };
+        let broken = printed.iter().flat_map(|printed| printed.lines()).filter_map(|line| promise(line).err());
+        wrong.extend(broken.map(|why| format!("{place}: {why}")));
+        for ((range, shown), printed) in session.blocks.iter().zip(&session.shown).zip(printed).rev() {
+            let assert = snapbox::Assert::new().normalize_paths(false);
+            match assert.try_eq(Some(&place), printed.as_str().into_data(), shown.as_str().into_data()) {
+                Ok(()) => {}
+                Err(_) if bless => pages[session.page].text.replace_range(range.clone(), &printed),
+                Err(difference) => wrong.push(format!("{place}:\n{difference}")),
             }
         }
-        if bless {
-            std::fs::write(&path, text).expect("the page is writable");
-        }
+    }
+    for page in pages.iter().filter(|_| bless) {
+        std::fs::write(&page.path, &page.text).expect("the page is writable");
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A page with blocks.
+struct Page {
+    number: usize,
+    path: PathBuf,
+    text: String,
+}
+
+/// What stands below one heading: a shell session.
+struct Session {
+    page: usize,
+    heading: String,
+    blocks: Vec<Range<usize>>,
+    shown: Vec<String>,
+    files: Vec<(String, String)>,
+}
+
+impl Page {
+    fn read(name: &str) -> Self {
+        let path = root().join(name);
+        let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let number = PAGES.iter().position(|page| *page == name).expect("it is one of them");
+        Self { number, path, text }
+    }
+
+    fn sessions(&self) -> Vec<Session> {
+        let session = |section: Range<usize>| {
+            let inside = &self.text[section.clone()];
+            let moved = |block: Range<usize>| section.start + block.start..section.start + block.end;
+            let blocks: Vec<Range<usize>> = blocks(inside, "console").into_iter().map(moved).collect();
+            Session {
+                page: self.number,
+                heading: inside.lines().next().unwrap_or_default().to_owned(),
+                shown: blocks.iter().map(|block| self.text[block.clone()].to_owned()).collect(),
+                blocks,
+                files: files(&self.text),
+            }
+        };
+        sections(&self.text).into_iter().map(session).collect()
+    }
+}
+
+/// Does the work on each item, on as many threads as there are cores and a few more, as the work mostly waits.
+fn side_by_side<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let next = AtomicUsize::new(0);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from) * 3;
+    let take_turns = || {
+        let mut done = Vec::new();
+        while let Some((number, item)) =
+            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|n| Some((n, items.get(n)?)))
+        {
+            done.push((number, work(item)));
+        }
+        done
+    };
+    let mut done: Vec<(usize, R)> = std::thread::scope(|scope| {
+        let running: Vec<_> = (0..threads).map(|_| scope.spawn(take_turns)).collect();
+        running.into_iter().flat_map(|thread| thread.join().expect("a session does not panic")).collect()
+    });
+    done.sort_unstable_by_key(|(number, _)| *number);
+    done.into_iter().map(|(_, result)| result).collect()
 }
 
 #[test]
@@ -188,7 +243,7 @@ fn the_set_up_takes_exactly_the_two_commands() {
     let (_, after) = readme.split_once("## Try it").expect("a section that says how to start");
     let block = after.split("```").nth(1).expect("the section has a block");
     let commands: Vec<&str> = block.lines().skip(1).filter(|line| !line.trim().is_empty()).collect();
-    assert_eq!(commands, ["cargo run --release -- --sim yerc status", "cargo test"]);
+    assert_eq!(commands, ["cargo run -- --sim yerc status", "cargo test"]);
 }
 
 fn root() -> PathBuf {

@@ -1,18 +1,13 @@
 //! `armctl repl` on a terminal: prompt, completion, history, Ctrl-C, questions, the link that others share, every way out.
 #![cfg(unix)]
 
-#[path = "support/simulator.rs"]
-mod simulator;
-#[path = "support/terminal.rs"]
-mod terminal;
-
 use std::process::Command;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-use simulator::Simulator;
-use terminal::Terminal;
+use crate::support::simulator::Simulator;
+use crate::support::terminal::Terminal;
 
 /// A user with a home of his own.
 struct Desk {

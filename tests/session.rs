@@ -355,6 +355,24 @@ fn a_lost_link_is_opened_again() {
 }
 
 #[test]
+fn a_motion_whose_link_was_lost_says_how_the_stop_input_stands_after_it_came_back() {
+    const TOLD: &str = "the link went down; it is up again, and the stop input SI(06) is on";
+    // Through a session, and on a connection of the command's own.
+    for is_held in [true, false] {
+        let (simulator, desk) = cell();
+        let mut session = is_held.then(|| Running::session(&desk, "cell"));
+        let mut moving = Running::start(desk.command(&format!("{SLOW} -vv --timeout 1m")), false);
+        moving.says("<- WO 0100");
+        simulator.signal("STOP");
+        let lost = "the link was lost";
+        session.as_mut().unwrap_or(&mut moving).says(lost);
+        simulator.signal("CONT");
+        let (code, said) = moving.end();
+        assert!(code == Some(6) && said.contains(TOLD) && !said.contains("stays off"), "{is_held}: {code:?} {said}");
+    }
+}
+
+#[test]
 fn a_session_in_the_background_is_up_when_it_says_so() {
     let (_simulator, desk) = cell();
     let opened = desk.data("-r cell session open --background");

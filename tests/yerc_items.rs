@@ -6,6 +6,7 @@
 use std::net::UdpSocket;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -18,6 +19,16 @@ type Spoil = fn(&RequestFrame<'_>) -> Option<Vec<u8>>;
 
 /// A simulated controller on real ports that spoils some answers; it lasts as long as the tests.
 fn controller(state: &str, spoil: Spoil) -> String {
+    recording(state, spoil).0
+}
+
+/// What a controller received, in order.
+type Received = Arc<Mutex<Vec<Vec<u8>>>>;
+
+/// The same, with what it receives.
+fn recording(state: &str, spoil: Spoil) -> (String, Received) {
+    let received = Received::default();
+    let record = Received::clone(&received);
     let mut simulator = Simulator::new(Start::parse(state, |_| Err(String::new())).unwrap());
     let sockets = [Division::Robot, Division::File].map(|division| (division, UdpSocket::bind("127.0.0.1:0").unwrap()));
     let [robot, file] = [0, 1].map(|index: usize| sockets[index].1.local_addr().unwrap().port());
@@ -32,6 +43,7 @@ fn controller(state: &str, spoil: Spoil) -> String {
             for (index, (division, socket)) in sockets.iter().enumerate() {
                 if let Ok((len, from)) = socket.recv_from(&mut buffer) {
                     peers[index] = Some(from);
+                    record.lock().unwrap().push(buffer[..len].to_vec());
                     match RequestFrame::parse(&buffer[..len]).ok().and_then(|request| spoil(&request)) {
                         Some(answer) => drop(socket.send_to(&answer, from).unwrap()),
                         None => simulator.receive(began.elapsed(), *division, from.port().into(), &buffer[..len]),
@@ -46,7 +58,7 @@ fn controller(state: &str, spoil: Spoil) -> String {
             }
         }
     });
-    format!("udp://127.0.0.1:{robot}?file_port={file}")
+    (format!("udp://127.0.0.1:{robot}?file_port={file}"), received)
 }
 
 fn answer(request: &RequestFrame<'_>, block: u32, status: Status, data: &[u8]) -> Vec<u8> {
@@ -294,7 +306,7 @@ fn filters_and_names_are_those_of_the_protocol() {
     assert_eq!(exit, 2, "stdout and --json do not go together: {error}");
     let (exit, frames, error) =
         run(folder.path(), &target, &format!("file get {} --dry-run", "N".repeat(200) + ".ABC"));
-    assert_eq!((exit, frames["data"]["frames"].as_array().map(Vec::len)), (0, Some(1)), "{error}");
+    assert_eq!((exit, frames["data"]["frames"].as_array().map(Vec::len)), (0, Some(2)), "{error}");
 }
 
 #[test]
@@ -341,4 +353,58 @@ fn the_date_in_a_header_can_be_left_out() {
     .unwrap();
     let (exit, diff, _) = run(folder.path(), &target, "file diff TESTJOB.JBI --ignore-header");
     assert_eq!((exit, diff["data"]["hunks"].as_array().map(Vec::len)), (8, Some(1)), "{diff}");
+}
+
+/// Whether a frame is one of those that a line of a dry run shows; requests have another number each time.
+fn shows(line: &Value, frame: &[u8]) -> bool {
+    let shown = line["hex"].as_str().unwrap();
+    let byte = |index: usize| shown.get(2 * index..2 * index + 2);
+    let is_same = |(index, sent): (usize, &u8)| {
+        index == 11 || byte(index).is_some_and(|digits| digits == "??" || digits == format!("{sent:02x}"))
+    };
+    shown.len() == 2 * frame.len() && frame.iter().enumerate().all(is_same)
+}
+
+#[test]
+fn a_dry_run_shows_acknowledgements_and_what_is_read_again() {
+    fn as_asked(_: &RequestFrame<'_>) -> Option<Vec<u8>> {
+        None
+    }
+    fn several_unknown(request: &RequestFrame<'_>) -> Option<Vec<u8>> {
+        if (0x300..0x30A).contains(&request.command) { refused(request, 0xA000) } else { None }
+    }
+    fn several_refused(request: &RequestFrame<'_>) -> Option<Vec<u8>> {
+        if (0x300..0x30A).contains(&request.command) { refused(request, 0x2010) } else { None }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let job = format!("/JOB\r\n//NAME LONG\r\nNOP\r\n{}END\r\n", "NOP\r\n".repeat(300));
+    std::fs::write(folder.path().join("LONG.JBI"), &job).unwrap();
+    let lines: [(&str, Spoil); 9] = [
+        ("file list --type jbi,prm", as_asked),
+        ("file get TESTJOB.JBI --force", as_asked),
+        ("file put LONG.JBI --verify --ignore-header --yes", as_asked),
+        ("file put LONG.JBI --replace --yes", as_asked),
+        ("var get B0..B9 P0..P2", several_unknown),
+        ("var get B0..B3", several_refused),
+        ("register get 0..3", several_refused),
+        ("io get --group 1..4", several_refused),
+        ("io set 27010=on 27020=on", several_refused),
+    ];
+    for (line, spoil) in lines {
+        let (target, received) = recording("plain_last_ack = true", spoil);
+        let (exit, dry, error) = run(folder.path(), &target, &format!("{line} --dry-run"));
+        assert_eq!((exit, &dry["data"]["complete"]), (0, &json!(true)), "{line}: {error}");
+        assert_eq!(received.lock().unwrap().len(), 0, "{line}: a dry run sends nothing");
+        let shown = dry["data"]["frames"].as_array().unwrap();
+        run(folder.path(), &target, line);
+        let sent = received.lock().unwrap().clone();
+        for (at, frame) in sent.iter().enumerate() {
+            assert!(shown.iter().any(|line| shows(line, frame)), "{line}: frame {at} is not shown: {frame:02x?}");
+        }
+        let mut rest = sent.iter();
+        for certain in shown.iter().filter(|line| line["depends_on"].is_null()) {
+            assert!(rest.any(|frame| shows(certain, frame)), "{line}: not sent, or in another order: {certain}");
+        }
+        assert!(shown.iter().any(|line| line["depends_on"].is_string()) && sent.len() > 1, "{line}: {sent:02x?}");
+    }
 }

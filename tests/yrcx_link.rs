@@ -3,9 +3,16 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::{Ipv4Addr, SocketAddrV4};
 use std::process::{Child, ChildStdin, Command, Output, Stdio};
+use std::time::Duration;
 
-use serde_json::Value;
+use armctl::controller::yrcx::image::{COMMAND_WORDS, Image};
+use armctl::controller::yrcx::signal::output;
+use armctl::transport::eip::adapter::server::{Listen, Server};
+use armctl::transport::eip::adapter::{Application, Event, Setup};
+use armctl::transport::eip::wire::{Identity, Revision};
+use serde_json::{Value, json};
 
 fn armctl() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
@@ -245,4 +252,82 @@ fn tshark_reads_what_was_recorded() {
 fn interrupt(child: &Child) {
     let sent = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
+}
+
+/// A controller that refuses some remote commands, and answers all others as those of its clock.
+struct Refusing {
+    commands: &'static [u16],
+    shown: Image,
+}
+
+impl Refusing {
+    fn start(commands: &'static [u16]) -> (Server<Self>, String) {
+        let identity = Identity {
+            address: SocketAddrV4::new(Ipv4Addr::LOCALHOST, 44818),
+            vendor: 636,
+            device_type: 43,
+            product: 5,
+            revision: Revision { major: 1, minor: 2 },
+            status: 0,
+            serial: 1,
+            name: "RCX".to_owned(),
+            state: Some(3),
+        };
+        let mut shown = Image::default();
+        output::CPU_OK.set(&mut shown, true);
+        let setup = Setup::new(identity, (100, 48), (150, 48), 1);
+        let listen = Listen::anywhere(Ipv4Addr::LOCALHOST);
+        let server = Server::start(setup, Self { commands, shown }, listen, None).unwrap();
+        let target = format!("eip://{}?rpi=5ms&multiplier=512", server.address());
+        (server, target)
+    }
+}
+
+impl Application for Refusing {
+    fn image_out(&mut self, _: Duration, _: u32, image: &[u8], _: bool) {
+        let Some(given) = Image::from_bytes(image) else { return };
+        let command = given.command()[0] & 0x0FFF;
+        let mut words = [0; COMMAND_WORDS];
+        let answer: [u16; 5] = match command {
+            0 => [0; 5],
+            refused if self.commands.contains(&refused) => [0x4000, 5, 1, 0, 0],
+            0x511 => [0x0200, 0, 26, 3, 1],
+            _ => [0x0200, 0, 8, 45, 0],
+        };
+        words[..5].copy_from_slice(&answer);
+        self.shown.set_command(&words);
+    }
+
+    fn image_in(&mut self, _: Duration, _: u32, image: &mut [u8]) {
+        image.copy_from_slice(&self.shown.to_bytes());
+    }
+
+    fn event(&mut self, _: Duration, _: &Event) {}
+}
+
+#[test]
+fn date_and_time_answer_for_themselves() {
+    let told = |refused: &'static [u16], line: &str| {
+        let (_server, target) = Refusing::start(refused);
+        let mut command = armctl();
+        command.args(["-t", &target, "--yes", "--json", "-q", "yrcx", "clock"]).args(line.split(' '));
+        let Output { status, stdout, stderr } = command.output().unwrap();
+        let json = |bytes: &[u8]| serde_json::from_slice(bytes).unwrap_or(Value::Null);
+        (status.code(), json(&stdout), json(&stderr))
+    };
+    let (exit, clock, error) = told(&[], "get");
+    assert_eq!((exit, &clock["data"]["time"]), (Some(0), &json!("2026-03-01T08:45:00")), "{error}");
+    let (exit, clock, _) = told(&[0x511], "get");
+    let data = &clock["data"];
+    assert_eq!((exit, &data["date"], &data["time_of_day"]), (Some(9), &json!(null), &json!("08:45:00")), "{clock}");
+    assert_eq!((&data["errors"][0]["asked"], &data["errors"][0]["code"]), (&json!("date"), &json!("5.1")));
+    assert!(data["errors"][0]["message"].as_str().unwrap().contains("date-get"), "{clock}");
+    let (exit, clock, _) = told(&[0x512], "get");
+    let data = &clock["data"];
+    assert_eq!((exit, &data["date"], &data["time_of_day"]), (Some(9), &json!("2026-03-01"), &json!(null)), "{clock}");
+    let (exit, _, error) = told(&[0x511, 0x512], "get");
+    assert_eq!((exit, &error["error"]["code"]), (Some(3), &json!("5.1")), "{error}");
+    let (exit, clock, _) = told(&[0x602], "set 2026-03-01T08:45:00");
+    let data = &clock["data"];
+    assert_eq!((exit, &data["time"], &data["errors"][0]["asked"]), (Some(9), &json!("08:45:00"), &json!("date")));
 }

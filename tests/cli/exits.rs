@@ -10,8 +10,8 @@ use std::thread;
 
 use serde_json::Value;
 
-use crate::json;
-use crate::transcript::{Desk, Simulator};
+use super::json;
+use super::transcript::{Desk, Simulator};
 
 /// A controller that answers what `answer` makes of each request; it ends with the process.
 fn peer(answer: impl Fn(&[u8]) -> Option<Vec<u8>> + Send + 'static) -> String {

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::schemas::check;
+use crate::support::schemas::check;
 
 /// Widest line of indented JSON.
 const WIDTH: usize = 100;

@@ -18,7 +18,7 @@ use std::process::{Child, Command, Stdio};
 
 use tempfile::TempDir;
 
-use crate::json;
+use super::json;
 
 /// Families, and where transcripts find the simulator of each.
 const DOCUMENTED: [(&str, &str); 3] =

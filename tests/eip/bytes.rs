@@ -13,7 +13,7 @@ use armctl::transport::eip::wire::{
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-use crate::world::{HERE, MS, Mirror, World, settings, setup};
+use super::world::{HERE, MS, Mirror, World, settings, setup};
 
 fn segment() -> impl Strategy<Value = Segment> {
     prop_oneof![

@@ -21,8 +21,8 @@ use armctl::transport::eip::tap::Tap;
 use armctl::transport::eip::{IO_PORT, PORT};
 use ciplink::adapter::{Adapter, AdapterConfig, Assembly, Event};
 
-use crate::pcap;
-use crate::world::{MS, Mirror, patient, setup};
+use super::pcap;
+use super::world::{MS, Mirror, patient, setup};
 
 /// An address of the loopback whose port 2222 is free; the tests run side by side, so each has one.
 fn address(last: u8) -> Option<Ipv4Addr> {

@@ -19,7 +19,7 @@ use armctl::transport::eip::tap::Tap;
 use armctl::transport::eip::wire::Status;
 use armctl::transport::fault::{FaultSpec, Faults};
 
-use crate::world::{MS, Mirror, identity, patient, resting, setup};
+use super::world::{MS, Mirror, identity, patient, resting, setup};
 
 const LOOPBACK: Ipv4Addr = Ipv4Addr::LOCALHOST;
 

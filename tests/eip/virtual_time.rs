@@ -9,7 +9,7 @@ use armctl::transport::eip::originator::State;
 use armctl::transport::eip::settings::{Multiplier, Role, Settings};
 use armctl::transport::eip::wire::{Command, Cyclic, Frame, Identity, Key, Open, Request, RrData, Status};
 
-use crate::world::{HERE, MS, Mirror, World, identity, resting, settings, setup};
+use super::world::{HERE, MS, Mirror, World, identity, resting, settings, setup};
 
 /// An image that is easily told from others.
 fn image(mark: u8) -> Vec<u8> {

@@ -4,7 +4,7 @@ use armctl::controller::Now;
 use armctl::controller::yerc::request::Request;
 use armctl::controller::yerc::wire::Status;
 
-use crate::link::{Class, Controller, Way};
+use super::link::{Class, Controller, Way};
 
 /// What every read answers.
 const STATE: [u8; 8] = [0x42, 0, 0, 0, 0x40, 0, 0, 0];

@@ -19,11 +19,11 @@ use armctl::controller::yerc::variables::{Value, VariableKind};
 use armctl::controller::yerc::wire::{AnswerFrame, Division, Status};
 use armctl::transport::fault::FaultSpec;
 
+use super::link::{Class, Controller, Link, Way};
 use super::{
     End, FAULTS, SIZES, WAYS, answered_well, check_exchanges, content, exchange, exchanges, file_request, spec,
     successes, transfer,
 };
-use crate::link::{Class, Controller, Link, Way};
 
 const MODELS: [Model; 2] = [Dx200, Fs100];
 const EXCHANGE_SEEDS: u64 = 150;

@@ -1,7 +1,7 @@
 //! What holds for every family.
 
-use crate::desk::Desk;
-use crate::simulator::Simulator;
+use super::desk::Desk;
+use crate::support::simulator::Simulator;
 
 fn entry(name: &str, target: &str, more: &str) -> String {
     format!("[[robot]]\nname = \"{name}\"\ntarget = \"{target}\"\n{more}\n")

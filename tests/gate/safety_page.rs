@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::desk::Desk;
-use crate::simulator::Simulator;
-use crate::terminal::Terminal;
+use super::desk::Desk;
+use crate::support::simulator::Simulator;
+use crate::support::terminal::Terminal;
 
 /// Names of the tests that a file of Rust has.
 fn tests_of(code: &str) -> impl Iterator<Item = &str> {

@@ -1,7 +1,7 @@
 //! Toyo: what is replaced is asked, dry runs go to their end, a stop is always allowed.
 
-use crate::desk::Desk;
-use crate::simulator::Simulator;
+use super::desk::Desk;
+use crate::support::simulator::Simulator;
 
 fn desk(controller: &Simulator, more: &str) -> Desk {
     Desk::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n{more}\n", controller.url))

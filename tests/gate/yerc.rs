@@ -2,9 +2,9 @@
 
 use serde_json::Value;
 
-use crate::desk::Desk;
-use crate::simulator::Simulator;
-use crate::terminal::Terminal;
+use super::desk::Desk;
+use crate::support::simulator::Simulator;
+use crate::support::terminal::Terminal;
 
 const JOB: &str = "/JOB\r\n//NAME NEW\r\n//POS\r\n///NPOS 0,0,0,0,0,0\r\n//INST\r\nNOP\r\nEND\r\n";
 
@@ -153,8 +153,8 @@ fn a_dry_run_goes_to_its_end() {
         ("io set 27010=on", "7800 8d0a 0e, 7800 8d0a 10?"),
         ("var set P1.tool=2", "7f00 0100 01, 7f00 0100 02?"),
         ("register set 1=1", "7900 0100 10"),
-        ("file put NEW.JBI", "0000 0000 32, 0000 0000 15, 0000 0000 15"),
-        ("file delete HOME.JBI", "0000 0000 32, 0000 0000 09?"),
+        ("file put NEW.JBI", "0000 0000 32, 0000 0000 32?, 0000 0000 15, 0000 0000 15, 0000 0000 32?, 0000 0000 32?"),
+        ("file delete HOME.JBI", "0000 0000 32, 0000 0000 32?, 0000 0000 09?"),
     ];
     for (line, expected) in heads {
         assert_eq!(shown(line), expected, "{line}");

@@ -1,7 +1,7 @@
 //! What holds for a YRCX controller.
 
-use crate::desk::Desk;
-use crate::simulator::Simulator;
+use super::desk::Desk;
+use crate::support::simulator::Simulator;
 
 fn entry(url: &str, more: &str) -> String {
     format!("[[robot]]\nname = \"cell\"\ntarget = \"{url}\"\n{more}\n")

@@ -1,9 +1,10 @@
 //! The connection to a controller: the one driver that moves datagrams between sessions and a transport.
 
+mod plan;
+
 use std::io;
 use std::time::Duration;
 
-use serde_json::json;
 use tokio::time::Instant;
 
 use super::connect::{self, Transport};
@@ -14,16 +15,15 @@ use super::trace::Trace;
 use crate::command::attach::session_busy;
 use crate::command::dry_run::{Plan, Reason, unknown};
 use crate::command::{Access, Family};
-use crate::controller::text::{Encoding, hex};
+use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
-use crate::controller::yerc::files::data_frame;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::query::{Coordinates, Hold, Query};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::session::{
     Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd,
 };
-use crate::controller::yerc::wire::{Division, LAST_BLOCK, MAX_DATA, RequestFrame};
+use crate::controller::yerc::wire::{Division, RequestFrame};
 use crate::controller::{Risk, Session, Step};
 use crate::failure::{Failure, Kind, plain};
 use crate::gate::Grant;
@@ -203,19 +203,6 @@ impl Link {
         Ok(answers)
     }
 
-    /// In a dry run, notes all the questions, whose answers are not known then.
-    pub fn dry_run<Q: Query>(&mut self, queries: &[Q]) -> Result<(), Failure> {
-        if !self.is_dry() || queries.is_empty() {
-            return Ok(());
-        }
-        for query in queries {
-            let request = query.request();
-            self.authorize(&request)?;
-            self.note(&request, Reason::default());
-        }
-        Err(unknown())
-    }
-
     /// Sends a request as it is and returns the data of the answer.
     pub async fn exchange(&mut self, request: &Request) -> Result<Result<Vec<u8>, Refusal>, Failure> {
         let reply = self.reply(request).await?;
@@ -254,6 +241,10 @@ impl Link {
         first_wait: Option<Duration>,
         mut take: impl FnMut(&[u8]) -> Result<(), Failure>,
     ) -> Result<DownloadEnd, Failure> {
+        if self.is_dry() {
+            self.plan_download(request, Reason::default())?;
+            return Err(unknown());
+        }
         self.admit(request).await?;
         let frame = request.frame(0);
         let frame = RequestFrame::parse(&frame).map_err(|error| Failure::local(error.to_string()))?;
@@ -295,7 +286,7 @@ impl Link {
         request: &Request,
         mut give: impl FnMut() -> Result<Vec<u8>, Failure>,
     ) -> Result<UploadEnd, Failure> {
-        if let Transport::Notes(_) = self.transport {
+        if self.is_dry() {
             self.plan_upload(request, Reason::default(), give)?;
             return Err(unknown());
         }
@@ -363,60 +354,6 @@ impl Link {
         })
     }
 
-    /// Whether nothing is sent, only noted.
-    pub fn is_dry(&self) -> bool {
-        matches!(self.transport, Transport::Notes(_))
-    }
-
-    /// Says what the next request is for, where a dry run notes it.
-    pub fn is_for(&mut self, purpose: &'static str) -> &mut Self {
-        self.purpose = self.is_dry().then_some(purpose);
-        self
-    }
-
-    /// Notes in a dry run what is sent after an answer, and what it is about.
-    pub fn plan(&mut self, request: &Request, about: &str) {
-        self.note(request, Reason::about(about));
-    }
-
-    /// Notes in a dry run a request whose bytes, or whose sending, an answer before it decides. `other` is the same
-    /// request with other answers: where both differ nothing is known.
-    pub fn plan_depending(&mut self, request: &Request, other: &Request, reason: Reason<'_>) {
-        let id = self.ids.next_id();
-        if let Transport::Notes(plan) = &mut self.transport {
-            plan.note(json!({ "hex": masked(&request.frame(id), &other.frame(id)) }), reason);
-        }
-    }
-
-    /// Says in a dry run what follows that cannot be shown.
-    pub fn then(&mut self, what: &str) {
-        if let Transport::Notes(plan) = &mut self.transport {
-            plan.then(what);
-        }
-    }
-
-    /// Notes in a dry run a request that an answer before it decides whether it is sent.
-    pub fn plan_if(&mut self, request: &Request, reason: Reason<'_>) {
-        self.note(request, reason);
-    }
-
-    /// Notes in a dry run a request that follows whatever the answers before it are.
-    pub fn plan_next(&mut self, request: &Request) {
-        self.note(request, Reason::default());
-    }
-
-    /// Notes in a dry run what [`Link::upload`] would send.
-    pub fn plan_upload(
-        &mut self,
-        request: &Request,
-        reason: Reason<'_>,
-        mut give: impl FnMut() -> Result<Vec<u8>, Failure>,
-    ) -> Result<(), Failure> {
-        self.authorize(request)?;
-        let id = self.note(request, reason);
-        self.note_blocks(id, reason.depends_on, &mut give)
-    }
-
     /// The last check before anything leaves; a dry run notes it instead, and has no answer.
     async fn admit(&mut self, request: &Request) -> Result<(), Failure> {
         self.authorize(request)?;
@@ -435,39 +372,6 @@ impl Link {
 
     fn authorize(&self, request: &Request) -> Result<(), Failure> {
         self.granted.check(request.risk(), &format!("request {:#04x}", request.command))
-    }
-
-    fn note(&mut self, request: &Request, reason: Reason<'_>) -> u8 {
-        let id = self.ids.next_id();
-        let reason = Reason { about: reason.about.or(self.purpose.take()), ..reason };
-        if let Transport::Notes(plan) = &mut self.transport {
-            plan.note(json!({ "hex": hex(&request.frame(id)) }), reason);
-        }
-        id
-    }
-
-    /// The data blocks of an upload, which are known beforehand.
-    fn note_blocks(
-        &mut self,
-        id: u8,
-        depends_on: Option<&str>,
-        give: &mut dyn FnMut() -> Result<Vec<u8>, Failure>,
-    ) -> Result<(), Failure> {
-        let Transport::Notes(plan) = &mut self.transport else { return Ok(()) };
-        let mut content = Vec::new();
-        loop {
-            let piece = give()?;
-            if piece.is_empty() {
-                break;
-            }
-            content.extend(piece);
-        }
-        let blocks: Vec<&[u8]> = content.chunks(MAX_DATA).collect();
-        for (number, block) in (1u32..).zip(&blocks) {
-            let last = if number as usize == blocks.len() { LAST_BLOCK } else { 0 };
-            plan.note(json!({ "hex": hex(&data_frame(id, number | last, block)) }), Reason { about: None, depends_on });
-        }
-        Ok(())
     }
 
     /// Moves datagrams and time until the session has ended. Who shares the link has it for so long.
@@ -624,13 +528,6 @@ impl Link {
                 .hint("check this machine's network"),
         }
     }
-}
-
-/// Bytes as digits, with `??` where two frames differ.
-fn masked(one: &[u8], other: &[u8]) -> String {
-    let differs = |index: usize| other.get(index) != one.get(index);
-    let digits = one.iter().enumerate().map(|(index, byte)| if differs(index) { "??".into() } else { hex(&[*byte]) });
-    digits.collect::<Vec<String>>().concat()
 }
 
 /// What tells whether a request that changes something was carried out.

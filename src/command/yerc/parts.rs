@@ -4,6 +4,8 @@ use std::collections::{HashMap, VecDeque};
 
 use super::each::{Denied, Outcome, Round};
 use super::link::Link;
+use crate::command::dry_run::{Reason, unknown};
+use crate::controller::yerc::request::Request;
 use crate::controller::yerc::variables::PlannedRead;
 use crate::failure::{Failure, Kind};
 
@@ -29,8 +31,11 @@ pub async fn read_in_parts<S: PlannedRead>(
     if wanted.is_empty() {
         return Ok(HashMap::new());
     }
+    if link.is_dry() {
+        plan_in_parts(link, plan, wanted, parts, |_| None)?;
+        return Err(unknown());
+    }
     let mut steps: VecDeque<S> = plan(wanted)?.into();
-    link.dry_run(steps.make_contiguous())?;
     let mut round = Round::default();
     let mut known: HashMap<S::Item, Outcome<S::Value>> = HashMap::with_capacity(wanted.len());
     while let Some(step) = steps.pop_front() {
@@ -43,9 +48,7 @@ pub async fn read_in_parts<S: PlannedRead>(
             }
             Err(denied) => denied,
         };
-        // Even one thing may have been asked for together with others that nobody wants.
-        let is_alone = asked.len() == 1 && plan(asked)?.iter().all(|alone| alone.request() == step.request());
-        let again = if is_alone { None } else { how(&denied, parts(asked)) };
+        let again = if is_alone(&step, &mut plan)? { None } else { how(&denied, parts(asked)) };
         let Some(parts) = again else {
             known.extend(asked.iter().map(|item| (*item, Err(denied.clone()))));
             continue;
@@ -59,6 +62,60 @@ pub async fn read_in_parts<S: PlannedRead>(
     }
     Ok(known)
 }
+
+/// Whether a request asks for one thing; it may ask for others with it that nobody wants.
+fn is_alone<S: PlannedRead>(
+    step: &S,
+    plan: &mut impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
+) -> Result<bool, Failure> {
+    let asked = step.wanted();
+    Ok(asked.len() == 1 && plan(asked)?.iter().all(|alone| alone.request() == step.request()))
+}
+
+/// Notes in a dry run what [`read_in_parts`] sends, each run with what is asked if it is refused. Of a long one these are
+/// its halves, which are halved again, and the request for a single thing, which stands for those of all. `about` tells
+/// what a run is for.
+pub fn plan_in_parts<S: PlannedRead>(
+    link: &mut Link,
+    mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
+    wanted: &[S::Item],
+    parts: impl Fn(&[S::Item]) -> Parts,
+    about: impl Fn(&[S::Item]) -> Option<String>,
+) -> Result<(), Failure> {
+    for step in plan(wanted)? {
+        let asked = step.wanted();
+        let purpose = about(asked);
+        link.plan_if(&step.request(), Reason { about: purpose.as_deref(), depends_on: None });
+        if is_alone(&step, &mut plan)? {
+            continue;
+        }
+        let singles = asked.iter().map(|item| plan(&[*item]));
+        let singles = singles.collect::<Result<Vec<_>, _>>()?.into_iter().flatten();
+        let singles: Vec<Request> = singles.map(|single| single.request()).collect();
+        match (parts(asked), &singles[..]) {
+            (Parts::Halves, [first, _, .., last]) => {
+                let (one, other) = asked.split_at(asked.len().div_ceil(2));
+                for (half, which) in [(one, "first"), (other, "second")] {
+                    let about = format!("its {which} half, if it is refused; likewise down to what is refused alone");
+                    for step in plan(half)? {
+                        link.plan_if(&step.request(), Reason::about(&about).depending_on(REFUSED));
+                    }
+                }
+                let about = "each alone, if the controller has no request for several";
+                link.plan_depending(first, last, Reason::about(about).depending_on(REFUSED));
+            }
+            _ => {
+                for single in &singles {
+                    link.plan_if(single, Reason::about("alone, if it is refused").depending_on(REFUSED));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What the requests behind a run depend on.
+const REFUSED: &str = "whether the run is refused";
 
 /// How a run is read again after this; `None` where that leads nowhere.
 fn how(denied: &Denied, usual: Parts) -> Option<Parts> {

@@ -8,14 +8,15 @@ use serde::Serialize;
 
 use super::Family;
 use super::link::Link;
-use crate::command::orders::Done;
+use super::several::ask_each;
+use crate::command::items::{self, ItemError};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::{Failure, Kind};
-use crate::output::view::View;
+use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with the controller's clock.
@@ -42,18 +43,23 @@ impl Command for Get {
     const ID: &'static str = "yrcx.clock.get";
 
     async fn run(&self, context: Context<'_, Family>) -> Result<Reading, Failure> {
-        let link = context.link;
-        let date = link.draft(table::Command::DateGet)?.build()?;
-        let time = link.draft(table::Command::TimeGet)?.build()?;
-        link.dry_run(&[date.clone(), time.clone()])?;
-        let mut day = date_of(&link.run(&date).await?.values)?;
-        let moment = time_of(&link.run(&time).await?.values)?;
+        let Context { link, screen, .. } = context;
+        let order = |command| Ok::<_, Failure>(link.draft(command)?.build()?);
+        let orders = [order(table::Command::DateGet)?, order(table::Command::TimeGet)?];
+        let mut outcomes = ask_each(link, screen, "reading the clock", &orders).await?.outcomes.into_iter();
+        let mut of_next = || outcomes.next().unwrap_or_else(|| Err(Failure::local("the clock was not read")));
+        let mut date = of_next().and_then(|values| date_of(&values));
+        let time = of_next().and_then(|values| time_of(&values));
         // Midnight may have come between the two.
-        if moment.hour() == 0 && moment.minute() == 0 {
-            day = date_of(&link.run(&date).await?.values)?;
+        if let (Ok(_), Ok(moment)) = (&date, &time)
+            && moment.hour() == 0
+            && moment.minute() == 0
+        {
+            date = link.run(&orders[0]).await.and_then(|done| date_of(&done.values));
         }
-        let now = Zoned::now().datetime();
-        Ok(Reading::of(day.to_datetime(moment), now))
+        let reading = Reading::of(date, time, Zoned::now().datetime());
+        items::nothing(PARTS, &reading.errors)?;
+        Ok(reading)
     }
 }
 
@@ -77,28 +83,60 @@ fn malformed(message: String) -> Failure {
 /// What the clock shows.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Reading {
-    /// Local time of the controller, as in `2026-03-01T08:45:00`.
-    time: String,
-    /// By how much the clock is ahead of this machine's; negative if it is behind.
-    ahead_s: i64,
+    /// Local time of the controller, as in `2026-03-01T08:45:00`; null unless both its parts were told.
+    time: Option<String>,
+    /// `2026-03-01`; null if it was not told.
+    date: Option<String>,
+    /// `08:45:00`; null if it was not told.
+    time_of_day: Option<String>,
+    /// By how much the clock is ahead of this machine's; negative if it is behind; null unless both parts were told.
+    ahead_s: Option<i64>,
+    /// What was not told, and why.
+    errors: Vec<ItemError>,
 }
 
 impl Reading {
-    fn of(time: DateTime, now: DateTime) -> Self {
-        Self { time: time.to_string(), ahead_s: time.duration_since(now).as_secs() }
+    fn of(date: Result<Date, Failure>, time: Result<Time, Failure>, now: DateTime) -> Self {
+        let moment = date.as_ref().ok().zip(time.as_ref().ok()).map(|(date, time)| date.to_datetime(*time));
+        Self {
+            time: moment.map(|moment| moment.to_string()),
+            date: date.as_ref().ok().map(ToString::to_string),
+            time_of_day: time.as_ref().ok().map(told),
+            ahead_s: moment.map(|moment| moment.duration_since(now).as_secs()),
+            errors: [("date", date.err()), ("time", time.err())]
+                .into_iter()
+                .filter_map(|(name, failure)| Some(ItemError::new(name, failure?)))
+                .collect(),
+        }
     }
+}
+
+fn told(time: &Time) -> String {
+    time.strftime("%H:%M:%S").to_string()
 }
 
 impl Report for Reading {
     fn view(&self) -> View {
-        let difference = match self.ahead_s {
+        let Some(ahead_s) = self.ahead_s else {
+            let fields = [("date", self.date.as_deref()), ("time", self.time_of_day.as_deref())];
+            return View::fields(fields.map(|(name, value)| (name, Cell::maybe(value))));
+        };
+        let difference = match ahead_s {
             0 => "that of this machine".to_owned(),
             ahead @ 1.. => format!("{} ahead of this machine", in_words(ahead.unsigned_abs())),
             behind => format!("{} behind this machine", in_words(behind.unsigned_abs())),
         };
-        View::fields([("clock", self.time.replacen('T', " ", 1).into()), ("compared", difference.into())])
+        let clock = self.time.as_ref().map(|time| time.replacen('T', " ", 1));
+        View::fields([("clock", Cell::maybe(clock.as_deref())), ("compared", difference.into())])
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::verdict(PARTS, &self.errors)
     }
 }
+
+/// Date and time.
+const PARTS: usize = 2;
 
 /// `3 s`, `1:02:03`, `252 days 1:02:03`.
 fn in_words(seconds: u64) -> String {
@@ -170,14 +208,14 @@ fn digits<N: std::str::FromStr>(text: &str, count: usize) -> Option<N> {
 
 impl Command for Set {
     type Family = Family;
-    type Report = Done;
+    type Report = WasSet;
     const ID: &'static str = "yrcx.clock.set";
 
     fn risk(&self) -> Risk {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Family>) -> Result<WasSet, Failure> {
         let link = context.link;
         let (date, time) = match self.moment {
             Moment::Given { date, time } => (date, time),
@@ -189,19 +227,39 @@ impl Command for Set {
             link.run(&order).await?;
         }
         let date = if self.moment == Moment::Now { Some(Zoned::now().date()) } else { date };
+        let mut errors = Vec::new();
         if let Some(date) = date {
             let order = date_order(link, date)?;
-            link.run(&order).await.map_err(|failure| match time {
-                Some(_) => {
-                    Failure { message: format!("the time is set, but not the date: {}", failure.message), ..failure }
-                }
-                None => failure,
-            })?;
+            match link.run(&order).await {
+                Ok(_) => {}
+                Err(failure) if time.is_some() => errors.push(ItemError::new("date", failure)),
+                Err(failure) => return Err(failure),
+            }
         }
-        let date = date.map(|date| date.to_string());
-        let time = time.map(|time| time.strftime("%H:%M:%S").to_string());
-        let told: Vec<String> = date.into_iter().chain(time).collect();
-        Ok(Done::new(format!("the controller's clock is set to {}", told.join(" "))))
+        let date = date.filter(|_| errors.is_empty()).map(|date| date.to_string());
+        Ok(WasSet { date, time: time.as_ref().map(told), errors })
+    }
+}
+
+/// What the clock was set to.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct WasSet {
+    /// `2026-03-01`; null if it was not set.
+    date: Option<String>,
+    /// `08:45:00`; null if it was not set.
+    time: Option<String>,
+    /// What could not be set, and why.
+    errors: Vec<ItemError>,
+}
+
+impl Report for WasSet {
+    fn view(&self) -> View {
+        let told: Vec<&str> = self.date.iter().chain(&self.time).map(String::as_str).collect();
+        View::text(format!("the controller's clock is set to {}", told.join(" ")))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::verdict(PARTS, &self.errors)
     }
 }
 
@@ -220,10 +278,11 @@ fn time_order(link: &Link, time: Time) -> Result<Order, Failure> {
 #[cfg(test)]
 mod tests {
     use jiff::civil::datetime;
+    use serde_json::json;
 
     use super::*;
     use crate::command::yrcx::testing::{
-        Reply, Scripted, example, objection, read_example, read_in_turn, run_on, words,
+        Reply, Scripted, example, objection, read_example, read_in_turn, report_on, run_on, words,
     };
 
     #[test]
@@ -235,11 +294,12 @@ mod tests {
         let (date, time) = (["clock", "set", "2014-02-02"], ["clock", "set", "08:45"]);
         assert_eq!(words(&date).unwrap(), [example("4.8.1-set")]);
         assert_eq!(words(&time).unwrap(), [example("4.8.2-set")]);
-        assert_eq!(read_example("4.8.1-set", &date)["done"], "the controller's clock is set to 2014-02-02");
+        let set = read_example("4.8.1-set", &date);
+        assert_eq!((&set["date"], &set["time"]), (&json!("2014-02-02"), &json!(null)));
         let both = ["clock", "set", "2014-02-02T08:45:00"];
         assert_eq!(words(&both).unwrap(), [example("4.8.2-set"), example("4.8.1-set")]);
         let done = read_in_turn(&["4.8.2-set", "4.8.1-set"], &both);
-        assert_eq!(done["done"], "the controller's clock is set to 2014-02-02 08:45:00");
+        assert_eq!(done, json!({"date": "2014-02-02", "time": "08:45:00", "errors": []}));
     }
 
     fn answer(numbers: [u16; 3]) -> Reply {
@@ -256,12 +316,43 @@ mod tests {
         assert_eq!((read.unwrap()["time"].as_str(), peer.taken.len()), (Some("2027-01-01T00:00:00"), 3));
     }
 
+    fn no() -> Reply {
+        let mut words = [0; 16];
+        words[..3].copy_from_slice(&[0x4000, 5, 1]);
+        Reply::Ends(1, words)
+    }
+
     #[test]
-    fn a_date_that_does_not_exist_is_no_answer() {
-        for replies in [[answer([26, 2, 30]), answer([1, 0, 0])], [answer([26, 2, 1]), answer([24, 0, 0])]] {
-            let (read, _) = run_on(Scripted::new(replies), &["clock", "get"]);
-            assert_eq!(read.unwrap_err().kind, Kind::Malformed);
+    fn a_part_that_is_refused_or_does_not_exist_hides_nothing() {
+        let (date, time) = (answer([26, 3, 1]), answer([8, 45, 0]));
+        for (replies, asked, of_date, of_time) in [
+            ([no(), time.clone()], "date", json!(null), json!("08:45:00")),
+            ([answer([26, 2, 30]), time], "date", json!(null), json!("08:45:00")),
+            ([date.clone(), no()], "time", json!("2026-03-01"), json!(null)),
+            ([date, answer([24, 0, 0])], "time", json!("2026-03-01"), json!(null)),
+        ] {
+            let (read, failure, peer) = report_on(Scripted::new(replies), &["clock", "get"]);
+            assert_eq!((&read["date"], &read["time_of_day"], &read["time"]), (&of_date, &of_time, &json!(null)));
+            assert_eq!((&read["errors"][0]["asked"], peer.taken.len()), (&json!(asked), 2));
+            let failure = failure.unwrap();
+            assert_eq!(failure.kind.exit(), 9);
+            assert!(failure.message.starts_with(&format!("1 of 2 failed: {asked}: ")), "{failure}");
         }
+        let (refused, _) = run_on(Scripted::new([no(), no()]), &["clock", "get"]);
+        let failure = refused.unwrap_err();
+        assert_eq!(failure.message, "all 2 failed: date: the controller refused date-get: alarm 5.1, program syntax");
+        assert_eq!(failure.kind.exit(), 3);
+    }
+
+    #[test]
+    fn a_time_that_is_set_is_told_where_the_date_is_refused() {
+        let line = ["clock", "set", "2014-02-02T08:45:00"];
+        let (set, failure, _) = report_on(Scripted::new([answer([0; 3]), no()]), &line);
+        assert_eq!((&set["date"], &set["time"]), (&json!(null), &json!("08:45:00")));
+        assert_eq!((&set["errors"][0]["asked"], &set["errors"][0]["code"]), (&json!("date"), &json!("5.1")));
+        assert_eq!(failure.unwrap().kind.exit(), 9);
+        let (refused, peer) = run_on(Scripted::new([no()]), &line);
+        assert_eq!((refused.unwrap_err().kind.exit(), peer.taken.len()), (3, 1), "the date does not go alone");
     }
 
     #[test]
@@ -284,9 +375,9 @@ mod tests {
 
     #[test]
     fn the_difference_is_told() {
-        let reading =
-            |second| Reading::of(datetime(2026, 3, 1, 8, 45, second, 0), datetime(2026, 3, 1, 8, 45, 30, 500));
-        assert_eq!([29, 30, 35].map(|second| reading(second).ahead_s), [-1, 0, 4]);
+        let now = datetime(2026, 3, 1, 8, 45, 30, 500);
+        let reading = |second| Reading::of(Ok(now.date()), Ok(Time::constant(8, 45, second, 0)), now);
+        assert_eq!([29, 30, 35].map(|second| reading(second).ahead_s), [Some(-1), Some(0), Some(4)]);
         assert_eq!([3, 3723, 90_000].map(in_words), ["3 s", "1:02:03", "1 days 1:00:00"]);
     }
 }

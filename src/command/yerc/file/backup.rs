@@ -90,8 +90,8 @@ impl Command for Backup {
         let (types, only) = asked(&scope);
         if link.is_dry() {
             link.plan_next(&Controller::question(link)?.request());
-            transfer::plan_all(link, types.iter().map(|kind| files::list(*kind)));
-            link.then("fetches every file that the lists name (service 0x16)");
+            transfer::plan_all(link, transfer::LISTS, types.iter().map(|kind| files::list(*kind)))?;
+            link.then("fetches every file that the lists name (service 0x16), and acknowledges each of its blocks");
             return Ok(BackedUp::new(&folder, Results::new(Vec::new(), SHAPE), &scope, false));
         }
         let controller = Controller::ask(link).await?;

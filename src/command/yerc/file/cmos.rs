@@ -12,6 +12,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::transfer;
+use crate::command::dry_run::Reason;
 use crate::command::local::{Target, folder_of, make_folder, own_folder};
 use crate::command::yerc::Family;
 use crate::command::yerc::link::Link;
@@ -65,9 +66,11 @@ impl Command for Cmos {
         let path = if several { folder.join(name) } else { file.to_owned() };
         let target = Target::new(path, self.force)?;
         if link.is_dry() {
-            link.plan_next(&files::batch_backup());
+            link.plan_download(&files::batch_backup(), Reason::default())?;
             if !self.download_only {
-                link.plan(&files::batch_backup(), "once the backup has been made");
+                let reason = Reason::about("once the backup has been made");
+                let reason = reason.depending_on("whether the controller made its backup first or sent it at once");
+                link.plan_download(&files::batch_backup(), reason)?;
             }
             return Ok(BatchBackup { path: None, bytes: None });
         }

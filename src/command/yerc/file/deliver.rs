@@ -76,12 +76,12 @@ pub fn plan(link: &mut Link, delivery: &mut Delivery, manner: Manner, reason: Re
     if manner.replace && file.file_type() == Some(FileType::Jbi) {
         let if_refused =
             |about| Reason::about(about).depending_on("whether the controller overwrites the job by itself");
-        link.plan_if(&file.save(), if_refused("if it does not overwrite the job: a copy of the old one"));
+        link.plan_download(&file.save(), if_refused("if it does not overwrite the job: a copy of the old one"))?;
         link.plan_if(&file.delete(), if_refused("if it does not overwrite the job: deletes the old one"));
         transfer::plan_send(link, file, content, if_refused("if it does not overwrite the job: sends the new one"))?;
     }
     if manner.verify {
-        link.plan_if(&file.save(), Reason { about: Some("reads it back"), ..reason });
+        link.plan_download(&file.save(), Reason { about: Some("reads it back"), ..reason })?;
     }
     Ok(())
 }

@@ -53,7 +53,7 @@ impl Command for Get {
         let folder = own_folder(output, &robot.name, several);
         let targets = if to_stdout { Vec::new() } else { targets(link.encoding, &files, &folder, self.force)? };
         if link.is_dry() {
-            transfer::plan_all(link, files.iter().map(FileName::save));
+            transfer::plan_all(link, "fetches the file", files.iter().map(FileName::save))?;
             return Ok(Fetched { results: None });
         }
         if let ([file], true) = (&files[..], to_stdout) {

@@ -45,7 +45,7 @@ impl Command for List {
             Failure::usage(error.to_string()).hint("a filter looks like *.JBI; remove --filter to list jobs")
         })?;
         if link.is_dry() {
-            transfer::plan_all(link, requests);
+            transfer::plan_all(link, transfer::LISTS, requests)?;
             return Ok(Listing::default());
         }
         let mut listing = Listing { asked: filters.len(), ..Listing::default() };

@@ -2,6 +2,7 @@
 
 use super::transfer;
 use crate::command::backup::goes_on;
+use crate::command::dry_run::Reason;
 use crate::command::yerc::link::Link;
 use crate::controller::yerc::files::{self, FileName, FileType};
 use crate::failure::Failure;
@@ -35,7 +36,7 @@ impl Lists {
         }
         if link.is_dry() {
             for kind in types {
-                link.plan(&files::list(kind), "which files are there");
+                link.plan_download(&files::list(kind), Reason::about(transfer::LISTS))?;
             }
             return Ok(None);
         }

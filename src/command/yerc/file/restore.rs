@@ -201,7 +201,7 @@ impl Restore {
             for Delivery { file, .. } in &*deliveries {
                 let reason =
                     Reason::about("if the list has it: compares").depending_on("whether the list has the file");
-                link.plan_if(&file.save(), reason);
+                link.plan_download(&file.save(), reason)?;
             }
             Reason::about("if it differs").depending_on("whether the file differs")
         } else {

@@ -157,15 +157,21 @@ async fn is_listed(link: &mut Link, file: &FileName) -> bool {
 /// What a dry run would send for [`send`].
 pub fn plan_send(link: &mut Link, file: &FileName, content: &mut Content, reason: Reason<'_>) -> Result<(), Failure> {
     let mut pieces = content.pieces()?;
-    link.plan_upload(&file.load(), reason, || pieces.next_piece())
+    link.plan_upload(&file.load(), reason, || pieces.next_piece())?;
+    let Some(kind) = file.file_type() else { return Ok(()) };
+    let unnumbered = Reason::about("whether it is there, if the last acknowledgement bears no block number");
+    let mark = "whether the last acknowledgement bears a block number";
+    let depends_on = reason.depends_on.map_or_else(|| mark.to_owned(), |before| format!("{before}, and {mark}"));
+    link.plan_download(&files::list(kind), unnumbered.depending_on(&depends_on))
 }
 
-/// Notes in a dry run what would be sent, one request after the other.
-pub fn plan_all(link: &mut Link, requests: impl IntoIterator<Item = Request>) {
-    for request in requests {
-        link.plan_next(&request);
-    }
+/// Notes in a dry run what would be sent, one transfer from the controller after the other.
+pub fn plan_all(link: &mut Link, about: &str, requests: impl IntoIterator<Item = Request>) -> Result<(), Failure> {
+    requests.into_iter().try_for_each(|request| link.plan_download(&request, Reason::about(about)))
 }
+
+/// What lists are for, in dry runs.
+pub const LISTS: &str = "which files are there";
 
 /// Whether a controller refused a file because it has a job of that name.
 pub fn is_job_exists(failure: &Failure) -> bool {

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::super::Family;
 use super::super::orders::usage;
-use super::super::parts::{Parts, read_in_parts};
+use super::super::parts::{Parts, plan_in_parts, read_in_parts};
 use super::super::register::unsigned;
 use super::super::writes::{Order, runs, write_all};
 use super::signal;
@@ -20,7 +20,7 @@ use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yerc::query::Query as _;
 use crate::controller::yerc::signal::{Signal, SignalError};
-use crate::controller::yerc::variables::{IoStep, PlannedRead as _, WriteIoStep, plan_io_reads, plan_io_writes};
+use crate::controller::yerc::variables::{WriteIoStep, plan_io_reads, plan_io_writes};
 use crate::failure::Failure;
 use crate::output::view::View;
 
@@ -111,9 +111,8 @@ impl Command for Set {
         }
         let partial: Vec<u16> =
             changes.iter().filter(|(_, change)| change.mask != u8::MAX).map(|(group, _)| *group).collect();
-        let reads = plan_io_reads(model, &partial).map_err(usage)?;
-        if link.is_dry() && !reads.is_empty() {
-            return Err(plan(link, &reads, &changes)?);
+        if link.is_dry() && !partial.is_empty() {
+            return Err(plan(link, &partial, &changes)?);
         }
         let plan = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
         let mut found = BTreeMap::new();
@@ -158,10 +157,11 @@ impl Set {
 }
 
 /// Notes in a dry run a change that depends on what is read first: signals that were not named are not known.
-fn plan(link: &mut Link, reads: &[IoStep], changes: &BTreeMap<u16, Change>) -> Result<Failure, Failure> {
-    for read in reads {
-        link.plan(&read.request(), &format!("reads group {}", runs(read.wanted())));
-    }
+fn plan(link: &mut Link, partial: &[u16], changes: &BTreeMap<u16, Change>) -> Result<Failure, Failure> {
+    let model = link.model;
+    let reads = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
+    let about = |groups: &[u16]| Some(format!("reads group {}", runs(groups)));
+    plan_in_parts(link, reads, partial, |_| Parts::Halves, about)?;
     let writes = |byte: u8| {
         let values: Vec<(u16, u8)> = changes.iter().map(|(group, change)| (*group, change.apply(byte))).collect();
         plan_io_writes(link.model, &values).map_err(usage)

@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::items::{ItemError, verdict};
+use crate::command::items::{self, ItemError};
 use crate::command::yrcx::Family;
 use crate::command::yrcx::several::ask_each;
 use crate::command::yrcx::single::shown;
@@ -40,6 +40,7 @@ impl Command for Arm {
                 Err(failure) => errors.push(ItemError::new(format!("{name} hand system"), failure)),
             }
         }
+        items::nothing(commands.len(), &errors)?;
         let [selected, current] = arms;
         Ok(Arms { selected, current, errors })
     }
@@ -65,7 +66,7 @@ impl Report for Arms {
     }
 
     fn failure(&self) -> Option<Failure> {
-        verdict(2, &self.errors)
+        items::verdict(2, &self.errors)
     }
 }
 

@@ -3,18 +3,14 @@
 #![cfg(unix)]
 
 mod proxy;
-#[path = "../support/simulator.rs"]
-mod simulator;
-#[path = "../support/terminal.rs"]
-mod terminal;
 
 use std::process::Command;
 
 use tempfile::TempDir;
 
+use crate::support::simulator::Simulator;
+use crate::support::terminal::Terminal;
 use proxy::Sent;
-use simulator::Simulator;
-use terminal::Terminal;
 
 /// A user with an inventory of these targets, robot1 and so on.
 struct Desk {

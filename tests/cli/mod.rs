@@ -1,13 +1,11 @@
 //! Every command at the terminal, through the built binary: what it prints, where, and how it ends.
 //!
-//! `NAME.console` files are transcripts; `transcript.rs` says how they read. `SNAPSHOTS=overwrite cargo test --test cli`
+//! `NAME.console` files are transcripts; `transcript.rs` says how they read. `SNAPSHOTS=overwrite cargo test --test terminal cli::`
 //! writes into them what was printed: type the commands, have the rest written, and read it.
 #![cfg(unix)]
 
 mod exits;
 mod json;
-#[path = "../support/schemas.rs"]
-mod schemas;
 mod transcript;
 
 use std::collections::BTreeSet;

@@ -2,11 +2,6 @@
 
 #![cfg(unix)]
 
-#[path = "../support/simulator.rs"]
-mod simulator;
-#[path = "../support/terminal.rs"]
-mod terminal;
-
 mod desk;
 mod frame;
 mod safety_page;

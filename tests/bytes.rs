@@ -1,0 +1,13 @@
+//! The bytes of the protocols: golden frames, captures, tables, properties, arbitrary bytes. No sockets, no binary.
+
+mod capture_files;
+mod captures;
+mod coverage;
+mod fuzz;
+mod golden;
+mod golden_toyo;
+mod properties;
+mod toyo_properties;
+mod toyo_tables;
+mod yrcx_golden;
+mod yrcx_properties;

@@ -1,0 +1,8 @@
+//! Sessions, transports and simulators against lines that lose, double and delay, in virtual time, and against ends that
+//! others wrote.
+
+mod eip;
+mod faults;
+mod peers;
+mod toyo_faults;
+mod toyo_peers;

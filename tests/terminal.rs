@@ -1,0 +1,25 @@
+//! The built binary, as people and scripts run it: transcripts, exit codes, questions, prompts, bad input, documents.
+#![cfg(unix)]
+
+mod support {
+    pub mod schemas;
+    pub mod simulator;
+    pub mod terminal;
+}
+
+mod bad_input;
+mod bounds;
+mod cli;
+mod eip_bad_input;
+mod environment;
+mod gate;
+mod pictures;
+mod readme;
+mod repl;
+mod safety;
+mod session;
+mod top;
+mod toyo_safety;
+mod toyo_sim;
+mod yerc_items;
+mod yrcx_link;
