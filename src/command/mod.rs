@@ -9,6 +9,7 @@ pub mod authority;
 pub mod backup;
 pub mod checks;
 pub mod common;
+pub mod decode;
 pub mod dry_run;
 pub mod holding;
 pub mod interrupt;
@@ -22,6 +23,7 @@ pub mod orders;
 pub mod overview;
 pub mod run;
 pub mod sample;
+pub mod serve;
 #[cfg(test)]
 mod testing;
 pub mod toyo;

@@ -12,8 +12,10 @@ mod counter;
 #[cfg(test)]
 mod coverage;
 mod debts;
+pub mod decode;
 mod easy;
 mod error;
+pub mod explain;
 mod files;
 #[cfg(test)]
 mod gate;
@@ -43,6 +45,7 @@ mod refusal;
 mod robot_type;
 mod rows;
 mod run;
+pub mod serve;
 mod sim;
 pub mod simulated;
 mod status;

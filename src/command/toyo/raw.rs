@@ -5,13 +5,14 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use crate::command::common::decode::toyo::{FieldRow, field_table};
+use super::decode::FieldRow;
+use crate::command::decode::{field_table, problem_lines};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::describe::{Sender, describe};
 use crate::controller::toyo::request::{BlockError, Request};
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Section, View};
+use crate::output::view::View;
 
 /// Sends a block as it is. Nothing is done before or after it: no host ON, no comparison, no waiting.
 #[derive(Debug, Args)]
@@ -118,9 +119,9 @@ impl Exchange {
 
 impl Report for Exchange {
     fn view(&self) -> View {
-        let problem = self.problem.as_ref().map(|problem| format!("\nproblem: {problem}")).unwrap_or_default();
+        let problem = problem_lines(&self.problem);
         let view = View::text(format!("{}\n{}{problem}", self.answer, self.title));
-        if self.fields.is_empty() { view } else { view.and(Section::Table(field_table(&self.fields))) }
+        if self.fields.is_empty() { view } else { view.and(field_table(&self.fields)) }
     }
 
     fn failure(&self) -> Option<Failure> {

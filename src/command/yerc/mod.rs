@@ -5,7 +5,9 @@ mod axes;
 mod check;
 mod chosen;
 mod connect;
+pub mod decode;
 mod each;
+pub mod explain;
 pub mod file;
 mod fitted;
 #[cfg(test)]
@@ -25,6 +27,7 @@ mod position;
 mod raw;
 mod refusal;
 mod register;
+pub mod serve;
 pub mod simulated;
 mod status;
 #[cfg(test)]

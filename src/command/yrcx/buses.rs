@@ -8,8 +8,10 @@ use clap::Args;
 use futures_util::future::LocalBoxFuture;
 use schemars::{JsonSchema as _, Schema, SchemaGenerator};
 
+use super::decode::capture::BusDecoder;
 use super::discover::Search;
 use super::eip;
+use super::serve::Serve;
 use crate::command::checks::Layers;
 use crate::controller::yrcx::alarm::Alarm;
 use crate::controller::yrcx::image::Image;
@@ -33,6 +35,20 @@ pub struct Searches {
 impl Searches {
     /// Each with its fieldbus.
     pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Search); 1] {
+        [(&eip::EtherNetIp, &self.eip)]
+    }
+}
+
+/// How each serves a simulated controller to others: arguments of `armctl sim yrcx`.
+#[derive(Debug, Args)]
+pub struct Servers {
+    #[command(flatten)]
+    eip: eip::ServeArgs,
+}
+
+impl Servers {
+    /// Each with its fieldbus.
+    pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Serve); 1] {
         [(&eip::EtherNetIp, &self.eip)]
     }
 }
@@ -64,6 +80,9 @@ pub trait Fieldbus: fmt::Debug + Sync {
 
     /// The layers of `robots check` between the name and the signals, in order; the first is there whatever fails.
     fn layers(&self) -> &'static [&'static str];
+
+    /// What finds its images in captures.
+    fn decoder(&self) -> Box<dyn BusDecoder>;
 
     /// Starts a simulated controller on it, as the URL of a simulator says.
     fn simulate(&self, sim: &Sim) -> Result<Simulation, Failure>;

@@ -23,8 +23,10 @@ mod connect;
 #[cfg(test)]
 mod coverage;
 mod data;
+pub mod decode;
 pub mod discover;
 pub mod eip;
+pub mod explain;
 #[cfg(test)]
 mod gate;
 mod hold;
@@ -44,6 +46,7 @@ mod program;
 mod raw;
 mod refusal;
 mod select;
+pub mod serve;
 mod servo;
 mod several;
 pub mod simulated;

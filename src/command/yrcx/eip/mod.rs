@@ -3,11 +3,14 @@
 
 mod board;
 mod check;
+mod cip;
 mod connect;
+mod decode;
 mod discover;
 mod identity;
 mod message;
 mod probe;
+mod serve;
 pub mod simulated;
 
 use futures_util::FutureExt as _;
@@ -16,8 +19,10 @@ use futures_util::future::LocalBoxFuture;
 use self::board::Board;
 pub use self::board::Identity;
 pub use self::discover::Search;
+pub use self::serve::ServeArgs;
 use super::Family;
 use super::buses::{self, At, Fieldbus, Purpose, Simulation, bus_of};
+use super::decode::capture::BusDecoder;
 use super::link::Link;
 use crate::command::commands;
 use crate::controller::yrcx::alarm::Alarm;
@@ -53,6 +58,10 @@ impl Fieldbus for EtherNetIp {
 
     fn layers(&self) -> &'static [&'static str] {
         check::LAYERS
+    }
+
+    fn decoder(&self) -> Box<dyn BusDecoder> {
+        Box::new(decode::Decoder::default())
     }
 
     fn simulate(&self, sim: &Sim) -> Result<Simulation, Failure> {

@@ -31,7 +31,7 @@ impl Link {
     }
 
     /// Tells at `-vv` what was asked of the device, and what it answered.
-    pub fn tell_message(&self, sent: &[u8], received: &[u8], about: &str) {
+    pub fn tell_message(&mut self, sent: &[u8], received: &[u8], about: &str) {
         self.trace.message(Direction::Sent, sent, about);
         self.trace.message(Direction::Received, received, "done");
     }

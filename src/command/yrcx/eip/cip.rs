@@ -1,15 +1,15 @@
-//! EtherNet/IP messages in words: what is said before images flow, and when they end.
+//! EtherNet/IP messages in words: what passes before images flow, and when they end.
 
-use super::super::yrcx::FieldRow;
+use crate::command::yrcx::decode::FieldRow;
 use crate::transport::eip::status::{describe, encapsulation};
 use crate::transport::eip::wire::{
     Close, Command, Flow, Frame, HEADER_LEN, Identity, Net, Open, Opened, Path, Reply, Request, RrData, Segment,
     WireError, service,
 };
 
-/// What a message is.
+/// A message in words.
 #[derive(Debug)]
-pub struct Said {
+pub struct EncapsulatedMessage {
     /// In a line.
     pub text: String,
     /// Its parts.
@@ -62,7 +62,7 @@ pub fn may_be_message(bytes: &[u8]) -> bool {
 }
 
 /// Explains a message. Never fails: what is wrong is told.
-pub fn explain(bytes: &[u8]) -> Said {
+pub fn explain(bytes: &[u8]) -> EncapsulatedMessage {
     let frame = match Frame::parse(bytes) {
         Ok(frame) => frame,
         Err(error) => return broken("a message that is no whole one", false, &error),
@@ -77,7 +77,7 @@ pub fn explain(bytes: &[u8]) -> Said {
             encapsulation(frame.status).map_or("unknown", |code| code.name),
         ),
     ];
-    let mut said = match frame.command {
+    let mut message = match frame.command {
         Command::SEND_RR_DATA if frame.status == 0 => unconnected(&frame),
         Command::LIST_IDENTITY if !frame.data.is_empty() => identity(&frame),
         command => {
@@ -91,18 +91,18 @@ pub fn explain(bytes: &[u8]) -> Said {
     };
     if frame.status != 0 {
         let why = encapsulation(frame.status).map_or("an unknown status", |code| code.name);
-        said.text = format!("{}: refused, {why} ({:#x})", said.text, frame.status);
+        message.text = format!("{}: refused, {why} ({:#x})", message.text, frame.status);
     }
-    said.fields = head.into_iter().chain(said.fields).collect();
-    said
+    message.fields = head.into_iter().chain(message.fields).collect();
+    message
 }
 
-fn plain(text: String, is_answer: bool) -> Said {
-    Said { text, fields: Vec::new(), problem: None, is_answer, opened: None }
+fn plain(text: String, is_answer: bool) -> EncapsulatedMessage {
+    EncapsulatedMessage { text, fields: Vec::new(), problem: None, is_answer, opened: None }
 }
 
-fn broken(text: &str, is_answer: bool, error: &WireError) -> Said {
-    Said { problem: Some(error.to_string()), ..plain(text.to_owned(), is_answer) }
+fn broken(text: &str, is_answer: bool, error: &WireError) -> EncapsulatedMessage {
+    EncapsulatedMessage { problem: Some(error.to_string()), ..plain(text.to_owned(), is_answer) }
 }
 
 fn field(name: &str, raw: impl Into<String>, meaning: impl Into<String>) -> FieldRow {
@@ -110,11 +110,11 @@ fn field(name: &str, raw: impl Into<String>, meaning: impl Into<String>) -> Fiel
 }
 
 /// An answer of a device that was looked for.
-fn identity(frame: &Frame<'_>) -> Said {
-    let said = plain("answer to ListIdentity".to_owned(), true);
+fn identity(frame: &Frame<'_>) -> EncapsulatedMessage {
+    let message = plain("answer to ListIdentity".to_owned(), true);
     match Identity::parse(frame.data) {
-        Ok(Some(found)) => Said {
-            text: format!("{}: {} at {}", said.text, found.name, found.address.ip()),
+        Ok(Some(found)) => EncapsulatedMessage {
+            text: format!("{}: {} at {}", message.text, found.name, found.address.ip()),
             fields: vec![
                 field("product name", found.name.clone(), ""),
                 field("address", found.address.to_string(), ""),
@@ -123,36 +123,36 @@ fn identity(frame: &Frame<'_>) -> Said {
                 field("revision", format!("{}.{}", found.revision.major, found.revision.minor), ""),
                 field("serial number", format!("{:#010x}", found.serial), ""),
             ],
-            ..said
+            ..message
         },
-        Ok(None) => said,
-        Err(error) => Said { problem: Some(error.to_string()), ..said },
+        Ok(None) => message,
+        Err(error) => EncapsulatedMessage { problem: Some(error.to_string()), ..message },
     }
 }
 
 /// A CIP message outside a connection.
-fn unconnected(frame: &Frame<'_>) -> Said {
+fn unconnected(frame: &Frame<'_>) -> EncapsulatedMessage {
     let message = match RrData::parse_answer(frame.data) {
         Ok(data) => data.message,
         Err(error) => return broken("SendRRData", false, &error),
     };
     if message.first().is_some_and(|first| first & service::REPLY != 0) {
         match Reply::parse(message) {
-            Ok(reply) => answered(&reply),
+            Ok(reply) => reply_in_words(&reply),
             Err(error) => broken("answer to SendRRData", true, &error),
         }
     } else {
         match Request::parse(message) {
-            Ok(request) => asked(&request),
+            Ok(request) => request_in_words(&request),
             Err(error) => broken("SendRRData", false, &error),
         }
     }
 }
 
-fn asked(request: &Request<'_>) -> Said {
+fn request_in_words(request: &Request<'_>) -> EncapsulatedMessage {
     let name = service_name(request.service);
     let path = path_text(&request.path);
-    let said = |text: String, fields: Vec<FieldRow>| Said { fields, ..plain(text, false) };
+    let asked = |text: String, fields: Vec<FieldRow>| EncapsulatedMessage { fields, ..plain(text, false) };
     match request.service {
         service::FORWARD_OPEN | service::LARGE_FORWARD_OPEN => {
             match Open::parse(request.data, request.service == service::LARGE_FORWARD_OPEN) {
@@ -164,7 +164,7 @@ fn asked(request: &Request<'_>) -> Said {
                         flow_text(&open.t_o)
                     );
                     let timeout = 4u32 << open.multiplier.min(7);
-                    said(
+                    asked(
                         text,
                         vec![
                             field("connection", format!("{:#06x}", open.triad.serial), ""),
@@ -185,7 +185,7 @@ fn asked(request: &Request<'_>) -> Said {
             }
         }
         service::FORWARD_CLOSE => match Close::parse(request.data) {
-            Ok(close) => said(
+            Ok(close) => asked(
                 format!("{name}: connection {:#06x}", close.triad.serial),
                 vec![
                     field("connection", format!("{:#06x}", close.triad.serial), ""),
@@ -194,18 +194,18 @@ fn asked(request: &Request<'_>) -> Said {
             ),
             Err(error) => broken(&name, false, &error),
         },
-        _ => said(format!("{name} of {path}"), vec![field("service", format!("{:#04x}", request.service), path)]),
+        _ => asked(format!("{name} of {path}"), vec![field("service", format!("{:#04x}", request.service), path)]),
     }
 }
 
-fn answered(reply: &Reply<'_>) -> Said {
+fn reply_in_words(reply: &Reply<'_>) -> EncapsulatedMessage {
     let name = service_name(reply.service);
     let status = field("general status", format!("{:#04x}", reply.status.general), describe(&reply.status));
     if !reply.status.is_ok() {
         let text = format!("answer to {name}: refused, {}", describe(&reply.status));
-        return Said { fields: vec![status], ..plain(text, true) };
+        return EncapsulatedMessage { fields: vec![status], ..plain(text, true) };
     }
-    let done = Said { fields: vec![status], ..plain(format!("answer to {name}: done"), true) };
+    let done = EncapsulatedMessage { fields: vec![status], ..plain(format!("answer to {name}: done"), true) };
     if !matches!(reply.service, service::FORWARD_OPEN | service::LARGE_FORWARD_OPEN) {
         return done;
     }
@@ -215,14 +215,14 @@ fn answered(reply: &Reply<'_>) -> Said {
             let mut fields = done.fields;
             fields.push(field("id to the controller", format!("{o_t_id:#010x}"), interval(o_t_api_us)));
             fields.push(field("id back", format!("{t_o_id:#010x}"), interval(t_o_api_us)));
-            Said {
+            EncapsulatedMessage {
                 text: format!("answer to {name}: opened, {o_t_id:#010x} to the controller, {t_o_id:#010x} back"),
                 fields,
                 opened: Some((o_t_id, t_o_id)),
                 ..plain(String::new(), true)
             }
         }
-        Err(error) => Said { problem: Some(error.to_string()), ..done },
+        Err(error) => EncapsulatedMessage { problem: Some(error.to_string()), ..done },
     }
 }
 

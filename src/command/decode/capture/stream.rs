@@ -6,7 +6,8 @@ use std::io::{self, Read};
 
 use serde::ser::{Serialize, SerializeSeq as _, Serializer};
 
-use super::{Capture, Field, Heard, Link, Links, Listener, Problems, Row, Source, Whole};
+use super::report::{Capture, Link, Links, Problems, Row};
+use super::{CaptureDecoder, DecodedMessage, ReportEnvelope, Source};
 use crate::command::Report as _;
 use crate::command::run::{Run, Stopped};
 use crate::failure::Failure;
@@ -19,69 +20,73 @@ use crate::transport::capture::Summary;
 /// Rows that are laid out at a time.
 const PIECE: usize = 1000;
 
-/// Reports a file as it is read.
-pub fn tell<R: Read, O: Fn() -> io::Result<R>, L: Listener>(
+/// Prints a file as it is read.
+pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
     run: &Run,
     id: &str,
     source: &Source<'_, O>,
-    mut listener: L,
+    mut decoder: D,
 ) -> Result<(), Stopped> {
     let mut links = Links::default();
     let mut problems = Problems::default();
-    let mut layout = Layout::new(&Row::<L::Field>::COLUMNS);
+    let mut layout = Layout::new(&Row::<D::Field>::COLUMNS);
     let summary = {
         let _busy = busy();
-        source.pass(&mut listener, |heard| {
-            let row = links.row(heard, std::time::Duration::ZERO);
+        source.decode(&mut decoder, |message| {
+            let row = links.row(message, std::time::Duration::ZERO);
             problems.add(&row);
             layout.measure(&row.cells());
             true
         })?
     };
-    let told = std::mem::take(listener.told());
-    let mut about: Capture<L::Field> = source.about(&summary, told.packets, told.notes);
+    let decoded = std::mem::take(decoder.decoded());
+    let mut about: Capture<D::Field> = source.about(&summary, decoded.packets, decoded.notes);
     (about.links, about.problems) = (links.list, problems);
     let failure = about.failure();
-    let again = Again { source, summary: &summary, all: about.problems.all };
+    let second_pass = SecondPass { source, summary: &summary, all: about.problems.all };
     let _busy = busy();
     if !run.is_for_people() {
         let Capture { file, packets, other_packets, links, notes, damage, .. } = &about;
-        let messages = Messages(RefCell::new(Some((again, listener.again()))));
+        let messages = Messages(RefCell::new(Some((second_pass, decoder.restart()))));
         let (packets, other_packets) = (*packets, *other_packets);
         let data = Written { file, packets, other_packets, links, messages, notes, damage };
-        run.screen.json_as_it_comes(&Whole::new(run, id, data, failure.as_ref()))?;
+        run.screen.json_as_it_comes(&ReportEnvelope::new(run, id, data, failure.as_ref()))?;
         return failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: true }));
     }
-    again.rows_for_people(run, &about, layout, listener.again())?;
+    second_pass.rows_for_people(run, &about, layout, decoder.restart())?;
     failure.map_or(Ok(()), |failure| Err(failure.into()))
 }
 
 /// The file once more, up to as many messages as were seen before.
-struct Again<'a, 'b, O> {
+struct SecondPass<'a, 'b, O> {
     source: &'a Source<'b, O>,
     summary: &'a Summary,
     all: u64,
 }
 
-impl<R: Read, O: Fn() -> io::Result<R>> Again<'_, '_, O> {
+impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
     /// Hands over every message until nobody wants more.
-    fn rows<L: Listener>(&self, mut listener: L, mut each: impl FnMut(Row<L::Field>) -> bool) -> Result<(), Failure> {
+    fn rows<D: CaptureDecoder>(
+        &self,
+        mut decoder: D,
+        mut each: impl FnMut(Row<D::Field>) -> bool,
+    ) -> Result<(), Failure> {
         let mut links = Links::default();
         let mut left = self.all;
-        let row = |heard: Heard<L::Field>| {
+        let row = |message: DecodedMessage<D::Field>| {
             let Some(fewer) = left.checked_sub(1) else { return false };
             left = fewer;
-            each(links.row(heard, self.summary.first))
+            each(links.row(message, self.summary.first))
         };
-        self.source.pass(&mut listener, row).map(|_| ())
+        self.source.decode(&mut decoder, row).map(|_| ())
     }
 
-    fn rows_for_people<L: Listener>(
+    fn rows_for_people<D: CaptureDecoder>(
         &self,
         run: &Run,
-        about: &Capture<L::Field>,
+        about: &Capture<D::Field>,
         layout: Layout,
-        listener: L,
+        decoder: D,
     ) -> Result<(), Failure> {
         let screen = &run.screen;
         let is_csv = screen.format == Format::Csv;
@@ -92,7 +97,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Again<'_, '_, O> {
             screen.data("\n")?;
         }
         let mut layout = layout.fit(width);
-        let mut table = Table::new(&Row::<L::Field>::COLUMNS, "");
+        let mut table = Table::new(&Row::<D::Field>::COLUMNS, "");
         let mut is_first = true;
         let mut write = |table: &mut Table| {
             let piece = if is_csv {
@@ -106,7 +111,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Again<'_, '_, O> {
             screen.data(&piece)
         };
         let mut written = Ok(());
-        self.rows(listener, |row| {
+        self.rows(decoder, |row| {
             table.row(row.cells());
             if table.rows.len() >= PIECE {
                 written = write(&mut table);
@@ -138,17 +143,14 @@ struct Written<'a, M> {
 }
 
 /// Messages that are read when they are written.
-struct Messages<'a, 'b, O, L>(RefCell<Option<(Again<'a, 'b, O>, L)>>);
+struct Messages<'a, 'b, O, D>(RefCell<Option<(SecondPass<'a, 'b, O>, D)>>);
 
-impl<R: Read, O: Fn() -> io::Result<R>, L: Listener> Serialize for Messages<'_, '_, O, L>
-where
-    L::Field: Field,
-{
+impl<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder> Serialize for Messages<'_, '_, O, D> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut list = serializer.serialize_seq(None)?;
-        let Some((again, listener)) = self.0.borrow_mut().take() else { return list.end() };
+        let Some((second_pass, decoder)) = self.0.borrow_mut().take() else { return list.end() };
         let mut written = Ok(());
-        let read = again.rows(listener, |row| {
+        let read = second_pass.rows(decoder, |row| {
             written = list.serialize_element(&row);
             written.is_ok()
         });

@@ -5,24 +5,19 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use super::{Served, address, cannot_listen, serve};
-use crate::command::Report;
 use crate::command::interrupt::catch_interrupts;
-use crate::command::run::{Run, Stopped};
+use crate::command::serve::{self, Serving, Started, address, cannot_listen};
 use crate::command::toyo::simulated::{self, Simulated};
 use crate::failure::{Failure, plain};
-use crate::output::view::View;
 use crate::transport::fault::LineFaultSpec;
 use crate::transport::line::Pace;
 use crate::transport::stream_server::StreamServer;
 
-/// Arguments of `sim toyo`.
+/// A Toyo controller on a TCP port, like a serial device server, or on a pseudo-terminal
 #[derive(Debug, Args)]
 #[command(after_help = "A line has one host: while a client is connected, others on the TCP port are let go at once.")]
-pub(super) struct SimToyo {
+pub struct Serve {
     /// Address to listen on, with the TCP port; port 0 lets the system choose
     #[arg(
         long,
@@ -60,14 +55,18 @@ const PORT: u16 = 4001;
 /// Bits of a character with 8 data bits, parity and one stop bit (TO 1-2).
 const BITS: u32 = 11;
 
-impl SimToyo {
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+impl serve::Serve for Serve {
+    const ID: &'static str = "sim.toyo";
+    type Report = Serving;
+    type Server = Toyo;
+
+    async fn start(self) -> Result<Started<Self>, Failure> {
         let start = simulated::start(self.state.as_deref(), self.axes, self.fault.as_ref())?;
         let speed = self.baud.map(|baud| Pace::new(baud, BITS));
         let settings = self.baud.map(|baud| format!("?baud={baud}")).unwrap_or_default();
         // From here on there may be a link to remove.
         catch_interrupts();
-        let (server, place, address, link) = if self.pty {
+        let (server, endpoint, address, link) = if self.pty {
             let made = StreamServer::pseudo_terminal(speed, self.fault);
             let (server, path) = made.map_err(|error| no_terminal(&error))?;
             let link = self.link.map(|link| Link::make(&link, &path)).transpose()?;
@@ -78,21 +77,25 @@ impl SimToyo {
             let (server, local) = made.map_err(|error| cannot_listen(&format!("TCP {}", self.bind), &error))?;
             (server, format!("tcp://{local}"), Some(local), None)
         };
-        run.local("sim.toyo", &Serving { family: "toyo", target: format!("{place}{settings}") })?;
-        let mut toyo = Toyo { server, simulated: Simulated::new(start), _link: link };
-        serve(run, &mut toyo, address, self.console).await
+        Ok(Started {
+            report: Serving { family: "toyo", target: format!("{endpoint}{settings}") },
+            server: Toyo { server, simulated: Simulated::new(start), _link: link },
+            address,
+            with_console: self.console,
+        })
     }
 }
 
 /// A simulated controller on its line.
-struct Toyo {
+#[derive(Debug)]
+pub struct Toyo {
     server: StreamServer,
     simulated: Simulated,
     /// Removed with it.
     _link: Option<Link>,
 }
 
-impl Served for Toyo {
+impl serve::Server for Toyo {
     async fn turn(&mut self) -> io::Result<()> {
         self.server.turn(&mut self.simulated).await
     }
@@ -149,20 +152,6 @@ use std::os::unix::fs::symlink;
 #[cfg(not(unix))]
 fn symlink(_: &Path, _: &Path) -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
-}
-
-/// A simulator that listens.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Serving {
-    family: &'static str,
-    /// The URL to reach it by.
-    target: String,
-}
-
-impl Report for Serving {
-    fn view(&self) -> View {
-        View::text(format!("{} at {}", self.family, self.target))
-    }
 }
 
 #[cfg(all(test, unix))]

@@ -8,9 +8,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Served, address, cannot_listen, serve};
 use crate::command::Report;
-use crate::command::run::{Run, Stopped};
+use crate::command::serve::{self, Started, address, cannot_listen};
 use crate::command::yerc::simulated::{self, Simulated};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::simulator::Simulator;
@@ -19,9 +18,9 @@ use crate::output::view::View;
 use crate::transport::fault::{FaultSpec, Faults};
 use crate::transport::server::Server;
 
-/// Arguments of `sim yerc`.
+/// An FS100 or DX200 on two UDP ports
 #[derive(Debug, Args)]
-pub(super) struct SimYerc {
+pub struct Serve {
     /// Address to listen on, with the port of the robot server; port 0 lets the system choose
     #[arg(
         long,
@@ -50,20 +49,24 @@ pub(super) struct SimYerc {
 /// Port of the robot server where the address names none.
 const ROBOT_PORT: u16 = 10040;
 
-impl Default for SimYerc {
+impl Default for Serve {
     fn default() -> Self {
         let bind = SocketAddr::new(Ipv4Addr::LOCALHOST.into(), ROBOT_PORT);
         Self { bind, file_port: None, model: None, state: None, fault: None, console: false }
     }
 }
 
-impl SimYerc {
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
+impl serve::Serve for Serve {
+    const ID: &'static str = "sim.yerc";
+    type Report = Serving;
+    type Server = Yerc;
+
+    async fn start(self) -> Result<Started<Self>, Failure> {
         let model = self.model.unwrap_or(Model::Dx200);
         let start = simulated::start(self.state.as_deref(), model, self.fault.as_ref())?;
         if let Some(model) = self.model.filter(|model| *model != start.model()) {
             let message = format!("the start state is for model {}, not {model}", start.model());
-            return Err(Failure::usage(message).hint("leave --model away, or change the file").into());
+            return Err(Failure::usage(message).hint("leave --model away, or change the file"));
         }
         let model = start.model();
         let robot = self.bind;
@@ -73,26 +76,24 @@ impl SimYerc {
         let server = bound.map_err(|error| cannot_listen(&format!("UDP {robot} and {}", file.port()), &error))?;
         let local = |channel| server.local(channel).map_err(|error| Failure::io("socket", &error));
         let (robot, file) = (local(0)?, local(1)?);
-        run.local(
-            "sim.yerc",
-            &Serving {
-                family: "yerc",
-                model: model.name(),
-                target: format!("udp://{robot}?file_port={}&model={model}", file.port()),
-            },
-        )?;
-        let mut yerc = Yerc { server, simulated: Simulated(Simulator::new(start)) };
-        serve(run, &mut yerc, Some(robot), self.console).await
+        let target = format!("udp://{robot}?file_port={}&model={model}", file.port());
+        Ok(Started {
+            report: Serving { family: "yerc", model: model.name(), target },
+            server: Yerc { server, simulated: Simulated(Simulator::new(start)) },
+            address: Some(robot),
+            with_console: self.console,
+        })
     }
 }
 
 /// A simulated controller on its sockets.
-struct Yerc {
+#[derive(Debug)]
+pub struct Yerc {
     server: Server,
     simulated: Simulated,
 }
 
-impl Served for Yerc {
+impl serve::Server for Yerc {
     async fn turn(&mut self) -> io::Result<()> {
         self.server.turn(&mut self.simulated).await
     }

@@ -1,29 +1,33 @@
 //! `armctl decode yrcx`: words of a remote command and its answer, in words.
 
-use std::path::PathBuf;
+pub mod capture;
+
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::capture::{self, Selection};
+pub use self::capture::ImageDecoder;
+use super::words;
 use crate::command::Report;
-use crate::command::run::{Run, Stopped};
-use crate::command::yrcx::words;
+use crate::command::decode::capture::Selection;
+use crate::command::decode::{self, field_table, in_parentheses, problem_lines};
 use crate::controller::yrcx::describe::{Description, FieldNote, answer, command};
 use crate::controller::yrcx::image::Words;
+use crate::controller::yrcx::value::Key;
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Section, Table, View};
+use crate::output::view::{Cell, Section, View};
 
-/// Words to explain.
+/// Words of remote commands and their answers
 #[derive(Debug, Args)]
 #[command(
     after_help = "Words that are left away are 0. An answer is explained by its command, where that is given. Words that \
     must not be sent are explained as far as they go, and the exit code is 5.\n\nOf a capture file, what the images \
-    say is listed in the words of --trace when it is new, with the EtherNet/IP messages around it; NUMBER and TIME are \
+    say is listed in the words of --trace when it is new, with the messages of the fieldbus around it; NUMBER and TIME are \
     those of Wireshark. Nothing found is no failure. A file that is damaged is told up to there, and the exit code is 1."
 )]
-pub struct Yrcx {
+pub struct Decode {
     /// WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013
     #[arg(long, value_name = "WORDS", required_unless_present_any = ["wo", "file"], value_parser = words)]
     wi: Option<Words>,
@@ -40,29 +44,34 @@ pub struct Yrcx {
     every_image: bool,
 }
 
-impl Yrcx {
-    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
-        if let Some(path) = &self.file {
-            let images = capture::yrcx::Images::new(self.every_image);
-            return capture::tell(run, "decode.yrcx.capture", path, &self.selection, images);
-        }
-        if self.every_image || self.selection.is_given() {
-            return Err(capture::without_file().into());
-        }
-        run.local("decode.yrcx", &self.explained())
+impl decode::Decode for Decode {
+    const ID: &'static str = "decode.yrcx";
+    const CAPTURE_ID: &'static str = "decode.yrcx.capture";
+    type Report = DecodedWords;
+    type Capture = ImageDecoder;
+
+    fn capture(&self) -> Option<(&Path, ImageDecoder)> {
+        Some((self.file.as_deref()?, ImageDecoder::new(self.every_image)))
     }
 
-    fn explained(&self) -> Explained {
-        let part = |side, description| Part::of(side, description);
-        let wi = self.wi.map(|wi| part("command", command(&wi)));
-        let wo = self.wo.map(|wo| part("answer", answer(&wo, self.wi.as_ref())));
-        Explained { parts: wi.into_iter().chain(wo).collect() }
+    fn selection(&self) -> &Selection {
+        &self.selection
+    }
+
+    fn needs_capture(&self) -> bool {
+        self.every_image || self.selection.is_given()
+    }
+
+    fn decode(&self) -> Result<DecodedWords, Failure> {
+        let wi = self.wi.map(|wi| Part::new("command", command(&wi)));
+        let wo = self.wo.map(|wo| Part::new("answer", answer(&wo, self.wi.as_ref())));
+        Ok(DecodedWords { parts: wi.into_iter().chain(wo).collect() })
     }
 }
 
 /// Words in words.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Explained {
+pub struct DecodedWords {
     parts: Vec<Part>,
 }
 
@@ -81,7 +90,7 @@ struct Part {
 }
 
 impl Part {
-    fn of(kind: &'static str, description: Description) -> Self {
+    fn new(kind: &'static str, description: Description) -> Self {
         let Description { title, section, fields, problems } = description;
         Self { kind, title, section, fields: fields.into_iter().map(FieldRow::from).collect(), problems }
     }
@@ -112,28 +121,26 @@ impl FieldRow {
 impl From<FieldNote> for FieldRow {
     fn from(note: FieldNote) -> Self {
         let FieldNote { place, key, name, raw, meaning } = note;
-        Self { place, key: key.map(crate::controller::yrcx::value::Key::name), name, raw, meaning }
+        Self { place, key: key.map(Key::name), name, raw, meaning }
     }
 }
 
-/// Fields as a table.
-pub fn field_table(fields: &[FieldRow]) -> Table {
-    let mut table = Table::new(&["word", "field", "raw", "meaning"], "no fields");
-    for field in fields {
-        let FieldRow { place, name, raw, meaning, .. } = field;
-        table.row([place.as_str().into(), name.as_str().into(), raw.as_str().into(), meaning.as_str().into()]);
+impl decode::Field for FieldRow {
+    const COLUMNS: &'static [&'static str] = &["word", "field", "raw", "meaning"];
+
+    fn cells(&self) -> Vec<Cell> {
+        let Self { place, name, raw, meaning, .. } = self;
+        [place, name, raw, meaning].map(|text| text.as_str().into()).into()
     }
-    table
 }
 
-impl Report for Explained {
+impl Report for DecodedWords {
     fn view(&self) -> View {
         let mut sections = Vec::new();
-        for part in &self.parts {
-            let section = part.section.map(|section| format!(" ({section})")).unwrap_or_default();
-            let problems: String = part.problems.iter().map(|problem| format!("\nproblem: {problem}")).collect();
-            sections.push(Section::Text(format!("{}: {}{section}{problems}", part.kind, part.title)));
-            sections.push(Section::Table(field_table(&part.fields)));
+        for Part { kind, title, section, fields, problems } in &self.parts {
+            let (section, problems) = (in_parentheses(*section), problem_lines(problems));
+            sections.push(Section::Text(format!("{kind}: {title}{section}{problems}")));
+            sections.push(field_table(fields));
         }
         View { sections }
     }
@@ -148,11 +155,12 @@ impl Report for Explained {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::decode::Decode as _;
 
-    fn explained(wi: Option<&str>, wo: Option<&str>) -> Explained {
+    fn explained(wi: Option<&str>, wo: Option<&str>) -> DecodedWords {
         let read = |text: &str| words(text).unwrap();
         let (selection, file) = (Selection::default(), None);
-        Yrcx { wi: wi.map(read), wo: wo.map(read), file, selection, every_image: false }.explained()
+        Decode { wi: wi.map(read), wo: wo.map(read), file, selection, every_image: false }.decode().unwrap()
     }
 
     #[test]

@@ -1,66 +1,79 @@
-//! `armctl sim`: the simulators as servers on real sockets and ports.
-
-pub mod toyo;
-pub mod yerc;
-pub mod yrcx;
+//! Simulators as servers on real sockets and ports: what is the same for all families. `FAMILY/serve.rs` has the rest;
+//! `armctl sim` brings both together.
 
 use std::io;
 use std::net::{IpAddr, SocketAddr};
 
-use clap::{Args, Subcommand};
+use schemars::JsonSchema;
+use serde::Serialize;
 use tokio::io::{AsyncBufReadExt as _, BufReader, Lines, Stdin};
 
-use self::toyo::SimToyo;
-use self::yerc::SimYerc;
-use self::yrcx::SimYrcx;
-use crate::command::interrupt::interruptible;
-use crate::command::run::{Run, Stopped};
+use super::interrupt::interruptible;
+use super::run::{Run, Stopped};
+use super::{Report, SchemaEntry};
 use crate::failure::{Failure, Kind, plain};
+use crate::output::view::View;
 
-/// Which simulator to serve.
-#[derive(Debug, Args)]
-pub struct Sim {
-    #[command(subcommand)]
-    family: Option<SimFamily>,
+/// The arguments of `armctl sim FAMILY`.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Serve: Sized {
+    /// `sim.yerc`: its name in envelopes and schemas.
+    const ID: &'static str;
+    /// Says how to reach the simulator.
+    type Report: Report + 'static;
+    /// The simulator.
+    type Server: Server;
+
+    /// Begins to listen.
+    async fn start(self) -> Result<Started<Self>, Failure>;
 }
 
-/// Families with a simulator.
-#[derive(Debug, Subcommand)]
-enum SimFamily {
-    /// An FS100 or DX200 on two UDP ports
-    Yerc(SimYerc),
-    /// A YRCX as an adapter of EtherNet/IP
-    Yrcx(SimYrcx),
-    /// A Toyo controller on a TCP port, like a serial device server, or on a pseudo-terminal
-    Toyo(SimToyo),
-}
-
-impl Sim {
-    pub(super) async fn run(self, run: &Run) -> Result<(), Stopped> {
-        match self.family {
-            Some(SimFamily::Yerc(yerc)) => yerc.run(run).await,
-            Some(SimFamily::Yrcx(yrcx)) => yrcx.run(run).await,
-            Some(SimFamily::Toyo(toyo)) => toyo.run(run).await,
-            None => SimYerc::default().run(run).await,
-        }
-    }
+/// A simulator that listens.
+#[derive(Debug)]
+pub struct Started<S: Serve> {
+    /// How to reach it.
+    pub report: S::Report,
+    /// The simulator.
+    pub server: S::Server,
+    /// Where others may come from; none for a terminal.
+    pub address: Option<SocketAddr>,
+    /// Whether lines on stdin are for it.
+    pub with_console: bool,
 }
 
 /// A simulator behind what clients connect to.
-trait Served {
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Server {
     /// Serves until something arrives or is due, and all that follows from it. The future may be dropped.
     async fn turn(&mut self) -> io::Result<()>;
     /// Does what a line of the console says, and tells what was done, or why not.
     fn console(&mut self, line: &str) -> Result<String, String>;
 }
 
-/// Serves until Ctrl-C; `address` is where others may come from.
-async fn serve(
-    run: &Run,
-    served: &mut impl Served,
-    address: Option<SocketAddr>,
-    with_console: bool,
-) -> Result<(), Stopped> {
+/// The schema of what is said of a simulator that listens.
+pub fn schema<S: Serve>() -> SchemaEntry {
+    SchemaEntry::of::<S::Report>(S::ID)
+}
+
+/// A simulator that listens.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Serving {
+    /// Its family.
+    pub family: &'static str,
+    /// The URL to reach it by.
+    pub target: String,
+}
+
+impl Report for Serving {
+    fn view(&self) -> View {
+        View::text(format!("{} at {}", self.family, self.target))
+    }
+}
+
+/// Starts a simulator, says where, and serves it until Ctrl-C.
+pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), Stopped> {
+    let Started { report, mut server, address, with_console } = arguments.start().await?;
+    run.local(S::ID, &report)?;
     if address.is_some_and(|address| !address.ip().is_loopback()) {
         run.screen.note("warning: others on the network can reach this simulator");
     }
@@ -68,7 +81,7 @@ async fn serve(
     loop {
         let turn = interruptible(async {
             tokio::select! {
-                turned = served.turn() => turned.map(|()| None).map_err(|error| Failure::io("simulator", &error)),
+                turned = server.turn() => turned.map(|()| None).map_err(|error| Failure::io("simulator", &error)),
                 line = next_line(&mut console) => Ok(Some(line)),
             }
         });
@@ -81,7 +94,7 @@ async fn serve(
             None => {}
             Some(None) => console = None,
             Some(Some(line)) if line.trim().is_empty() => {}
-            Some(Some(line)) => match served.console(&line) {
+            Some(Some(line)) => match server.console(&line) {
                 Ok(text) => run.screen.note(&text),
                 Err(why) => run.screen.failure(&Failure::usage(why).hint("`help` lists what the console takes")),
             },
@@ -98,12 +111,13 @@ async fn next_line(console: &mut Option<Lines<BufReader<Stdin>>>) -> Option<Stri
 }
 
 /// An address with a port, or without one.
-fn address(text: &str, usual_port: u16) -> Result<SocketAddr, String> {
+pub fn address(text: &str, usual_port: u16) -> Result<SocketAddr, String> {
     let address = text.parse().or_else(|_| text.parse::<IpAddr>().map(|ip| SocketAddr::new(ip, usual_port)));
     address.map_err(|_| format!("'{text}' is no address such as 127.0.0.1:{usual_port}"))
 }
 
-fn cannot_listen(on: &str, error: &io::Error) -> Failure {
+/// The failure of a server that cannot begin.
+pub fn cannot_listen(on: &str, error: &io::Error) -> Failure {
     let hint = match error.kind() {
         io::ErrorKind::AddrInUse => "another simulator may run; choose a port with --bind 127.0.0.1:0",
         io::ErrorKind::PermissionDenied => "ports below 1024 need rights; choose a higher one",

@@ -3,13 +3,12 @@
 use std::collections::{HashMap, HashSet};
 use std::net::SocketAddr;
 
-use super::super::yerc::{FieldRow, ID_AT, IDENTIFIER, field_table};
-use super::{Field, Heard, Listener, Told, cut};
+use super::{FieldRow, ID_AT, IDENTIFIER};
+use crate::command::decode::capture::{CaptureDecoder, DecodedCapture, DecodedMessage, cut};
 use crate::controller::text::hex;
 use crate::controller::yerc::describe::{Sender, describe, summary};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::wire::RequestFrame;
-use crate::output::view::Table;
 use crate::transport::capture::{Carrier, Message};
 use crate::transport::tap::Direction;
 
@@ -18,24 +17,24 @@ const MOST_ASKED: usize = 1 << 16;
 
 /// Datagrams that begin like a frame.
 #[derive(Debug, Default)]
-pub struct Frames {
-    told: Told<FieldRow>,
+pub struct FrameDecoder {
+    decoded: DecodedCapture<FieldRow>,
     /// Who made requests.
     clients: HashSet<SocketAddr>,
     /// The last request of each id, with the number of its packet.
     asked: HashMap<(SocketAddr, SocketAddr, u8), (u64, Request)>,
 }
 
-impl Listener for Frames {
+impl CaptureDecoder for FrameDecoder {
     type Field = FieldRow;
 
-    fn hear(&mut self, message: &Message<'_>) {
+    fn take(&mut self, message: &Message<'_>) {
         let Carrier::Datagram { from, to } = message.carrier else { return };
         let bytes = message.bytes;
         if !bytes.starts_with(IDENTIFIER) {
             return;
         }
-        self.told.packets += 1;
+        self.decoded.packets += 1;
         // In the middle of a file transfer, frames of both sides look alike.
         let sender = match Sender::guess(bytes) {
             _ if self.clients.contains(&from) => Sender::Client,
@@ -53,7 +52,7 @@ impl Listener for Frames {
             && !frame.ack
         {
             if self.asked.len() >= MOST_ASKED {
-                // Not of a plant; what follows is told without the requests before.
+                // Not of a plant; what follows is decoded without the requests before.
                 self.asked.clear();
                 self.clients.clear();
             }
@@ -63,7 +62,7 @@ impl Listener for Frames {
         let asked = self.asked.get(&key).filter(|_| sender == Sender::Controller);
         let request = asked.map(|(_, request)| request);
         let description = describe(bytes, sender, request);
-        self.told.messages.push(Heard {
+        self.decoded.messages.push(DecodedMessage {
             number: message.number,
             time: message.time,
             direction,
@@ -77,19 +76,13 @@ impl Listener for Frames {
         });
     }
 
-    fn told(&mut self) -> &mut Told<FieldRow> {
-        &mut self.told
+    fn decoded(&mut self) -> &mut DecodedCapture<FieldRow> {
+        &mut self.decoded
     }
 
-    fn end(&mut self) {}
+    fn finish(&mut self) {}
 
-    fn again(self) -> Self {
+    fn restart(self) -> Self {
         Self::default()
-    }
-}
-
-impl Field for FieldRow {
-    fn table(fields: &[Self]) -> Table {
-        field_table(fields)
     }
 }

@@ -4,38 +4,37 @@ use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::time::Duration;
 
-use super::super::toyo::{FieldRow, field_table};
-use super::{Field, Heard, Listener, Told, cut, note};
+use super::FieldRow;
+use crate::command::decode::capture::{CaptureDecoder, DecodedCapture, DecodedMessage, cut, note};
 use crate::controller::toyo::describe::{Sender, describe, summary};
 use crate::controller::toyo::request::Request;
-use crate::output::view::Table;
 use crate::transport::capture::{Carrier, Message};
 use crate::transport::tap::Direction;
 
 /// Everything that may be a conversation; which is, its lines tell in the end.
 #[derive(Debug, Default)]
-pub struct Lines {
-    talks: BTreeMap<Place, Talk>,
+pub struct LineDecoder {
+    conversations: BTreeMap<Connection, Conversation>,
     /// Bytes that they take.
     kept: usize,
-    told: Told<FieldRow>,
+    decoded: DecodedCapture<FieldRow>,
 }
 
-/// Where a conversation takes place.
+/// What a conversation goes over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Place {
+enum Connection {
     /// A serial line, of a section of the file.
-    Line(usize),
-    /// A TCP connection, its ends in order.
-    Stream(SocketAddr, SocketAddr),
+    Serial(usize),
+    /// TCP, its ends in order.
+    Tcp(SocketAddr, SocketAddr),
 }
 
-/// What both ends said.
+/// The lines of both ends.
 #[derive(Debug, Default)]
-struct Talk {
-    said: Vec<Said>,
+struct Conversation {
+    lines: Vec<ReceivedLine>,
     /// Characters of each end since its last line end.
-    coming: [Vec<u8>; 2],
+    pending: [Vec<u8>; 2],
     packets: u64,
     notes: Vec<String>,
     /// Whether any line can only be of this communication.
@@ -44,19 +43,19 @@ struct Talk {
     kept: usize,
 }
 
-/// A line.
+/// A line, with the packet where it ends.
 #[derive(Debug)]
-struct Said {
+struct ReceivedLine {
     number: u64,
     time: Duration,
-    /// 0 for the end that is first in the place.
-    by: usize,
+    /// 0 for the end that is first in the connection.
+    end: usize,
     text: String,
     is_cut: bool,
 }
 
 /// Bytes that a conversation takes beside its lines.
-const TALK: usize = 1024;
+const CONVERSATION: usize = 1024;
 /// Bytes of conversations that are kept: their lines are told in order at the end, which takes all of them.
 const ROOM: usize = 64 << 20;
 /// Longest piece without a line end; the longest block is shorter.
@@ -64,122 +63,122 @@ const MOST: usize = 512;
 /// Lines without a block after which a stream is something else, which need not be kept.
 const MOST_FOREIGN: usize = 1000;
 
-impl Listener for Lines {
+impl CaptureDecoder for LineDecoder {
     type Field = FieldRow;
 
-    fn hear(&mut self, message: &Message<'_>) {
-        let (place, by) = match message.carrier {
+    fn take(&mut self, message: &Message<'_>) {
+        let (connection, end) = match message.carrier {
             Carrier::Datagram { .. } => return,
-            Carrier::Stream { from, to, .. } if from <= to => (Place::Stream(from, to), 0),
-            Carrier::Stream { from, to, .. } => (Place::Stream(to, from), 1),
+            Carrier::Stream { from, to, .. } if from <= to => (Connection::Tcp(from, to), 0),
+            Carrier::Stream { from, to, .. } => (Connection::Tcp(to, from), 1),
             Carrier::Line { direction, section } => {
-                (Place::Line(section), usize::from(direction == Direction::Received))
+                (Connection::Serial(section), usize::from(direction == Direction::Received))
             }
         };
         if self.kept > ROOM {
             let full = "there are more lines than there is room for; the first ones are told";
-            if !self.told.notes.iter().any(|note| note == full) {
-                self.told.notes.push(full.to_owned());
+            if !self.decoded.notes.iter().any(|note| note == full) {
+                self.decoded.notes.push(full.to_owned());
             }
             return;
         }
-        let talk = self.talks.entry(place).or_insert_with(|| {
-            self.kept += TALK;
-            Talk::default()
+        let conversation = self.conversations.entry(connection).or_insert_with(|| {
+            self.kept += CONVERSATION;
+            Conversation::default()
         });
-        talk.packets += 1;
-        let kept = talk.kept;
+        conversation.packets += 1;
+        let kept = conversation.kept;
         let (mut begins, mut lost) = (false, 0);
         if let Carrier::Stream { begins: anew, lost: missing, .. } = message.carrier {
             (begins, lost) = (anew, missing);
         }
         if begins {
-            talk.coming = [Vec::new(), Vec::new()];
+            conversation.pending = [Vec::new(), Vec::new()];
         }
         if lost > 0 {
-            let notes = &mut talk.notes;
+            let notes = &mut conversation.notes;
             note(notes, format!("{lost} characters before packet {} are not in the capture", message.number));
-            talk.line(by, message, message.is_cut);
+            conversation.line(end, message, message.is_cut);
         }
         for byte in message.bytes {
-            talk.coming[by].push(*byte);
-            if *byte == b'\n' || talk.coming[by].len() >= MOST {
-                talk.line(by, message, false);
+            conversation.pending[end].push(*byte);
+            if *byte == b'\n' || conversation.pending[end].len() >= MOST {
+                conversation.line(end, message, false);
             }
         }
         if message.is_cut {
-            talk.line(by, message, true);
+            conversation.line(end, message, true);
         }
-        self.kept += talk.kept - kept;
+        self.kept += conversation.kept - kept;
     }
 
-    fn told(&mut self) -> &mut Told<FieldRow> {
-        &mut self.told
+    fn decoded(&mut self) -> &mut DecodedCapture<FieldRow> {
+        &mut self.decoded
     }
 
-    fn end(&mut self) {
-        for (place, talk) in std::mem::take(&mut self.talks) {
-            if !talk.is_ours {
+    fn finish(&mut self) {
+        for (connection, conversation) in std::mem::take(&mut self.conversations) {
+            if !conversation.is_ours {
                 continue;
             }
-            self.told.packets += talk.packets;
-            talk.tell(place, &mut self.told);
+            self.decoded.packets += conversation.packets;
+            conversation.decode(connection, &mut self.decoded);
         }
     }
 
-    fn again(self) -> Self {
+    fn restart(self) -> Self {
         Self::default()
     }
 }
 
-impl Talk {
+impl Conversation {
     /// Ends the line of one end.
-    fn line(&mut self, by: usize, message: &Message<'_>, is_cut: bool) {
-        let bytes = std::mem::take(&mut self.coming[by]);
+    fn line(&mut self, end: usize, message: &Message<'_>, is_cut: bool) {
+        let bytes = std::mem::take(&mut self.pending[end]);
         let text = String::from_utf8_lossy(&bytes).trim_end_matches(['\r', '\n']).to_owned();
-        if self.said.len() >= MOST_FOREIGN && !self.is_ours {
+        if self.lines.len() >= MOST_FOREIGN && !self.is_ours {
             return;
         }
         if !text.is_empty() {
             self.is_ours = self.is_ours || is_block(&text);
-            self.kept += text.len() + size_of::<Said>();
-            self.said.push(Said { number: message.number, time: message.time, by, text, is_cut });
+            self.kept += text.len() + size_of::<ReceivedLine>();
+            self.lines.push(ReceivedLine { number: message.number, time: message.time, end, text, is_cut });
         }
     }
 
     /// Which end is the controller: the one whose lines are answers.
-    fn controller(&self, place: Place) -> usize {
-        if let Place::Line(_) = place {
+    fn controller(&self, connection: Connection) -> usize {
+        if let Connection::Serial(_) = connection {
             return 1;
         }
-        let answers = |by: usize| {
-            let lines = self.said.iter().filter(|said| said.by == by);
-            lines.map(|said| if Sender::guess(&said.text) == Sender::Controller { 1i64 } else { -1 }).sum::<i64>()
+        let answers = |end: usize| {
+            let lines = self.lines.iter().filter(|line| line.end == end);
+            lines.map(|line| if Sender::guess(&line.text) == Sender::Controller { 1i64 } else { -1 }).sum::<i64>()
         };
         usize::from(answers(1) >= answers(0))
     }
 
-    fn tell(mut self, place: Place, told: &mut Told<FieldRow>) {
-        let controller = self.controller(place);
-        let link = match place {
-            Place::Line(_) => ("host".to_owned(), "serial line".to_owned()),
-            Place::Stream(first, second) if controller == 1 => (first.to_string(), second.to_string()),
-            Place::Stream(first, second) => (second.to_string(), first.to_string()),
+    fn decode(mut self, connection: Connection, decoded: &mut DecodedCapture<FieldRow>) {
+        let controller = self.controller(connection);
+        let link = match connection {
+            Connection::Serial(_) => ("host".to_owned(), "serial line".to_owned()),
+            Connection::Tcp(first, second) if controller == 1 => (first.to_string(), second.to_string()),
+            Connection::Tcp(first, second) => (second.to_string(), first.to_string()),
         };
-        told.notes.append(&mut self.notes);
-        for rest in self.coming.iter().filter(|rest| !rest.is_empty()) {
-            told.notes.push(format!("left out at the end, without a line end: '{}'", rest.escape_ascii()));
+        decoded.notes.append(&mut self.notes);
+        for rest in self.pending.iter().filter(|rest| !rest.is_empty()) {
+            decoded.notes.push(format!("left out at the end, without a line end: '{}'", rest.escape_ascii()));
         }
-        self.said.sort_by_key(|said| said.number);
+        self.lines.sort_by_key(|line| line.number);
         let mut asked: Option<(u64, Request)> = None;
-        for Said { number, time, by, text, is_cut } in self.said {
-            let is_answer = by == controller;
+        for ReceivedLine { number, time, end, text, is_cut } in self.lines {
+            let is_answer = end == controller;
             let (sender, direction) =
                 if is_answer { (Sender::Controller, Direction::Received) } else { (Sender::Host, Direction::Sent) };
             let before = asked.take().filter(|_| is_answer);
             let request = before.as_ref().map(|(_, request)| request);
             let description = describe(&text, sender, request);
-            told.messages.push(Heard {
+            decoded.messages.push(DecodedMessage {
                 number,
                 time,
                 direction,
@@ -201,10 +200,4 @@ impl Talk {
 /// Whether a line can only be of this communication: a verdict, or `@` and a word of the table.
 fn is_block(text: &str) -> bool {
     matches!(text.trim_end_matches(' '), "@OK" | "@NG") || Request::parse(text).is_ok()
-}
-
-impl Field for FieldRow {
-    fn table(fields: &[Self]) -> Table {
-        field_table(fields)
-    }
 }

@@ -1,19 +1,23 @@
 //! `armctl decode toyo`: lines of a conversation in words.
 
+mod capture;
+
+use std::path::Path;
+
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::capture::{self, Selection};
-use super::stdin;
+pub use self::capture::LineDecoder;
 use crate::command::Report;
-use crate::command::run::{Run, Stopped};
+use crate::command::decode::capture::{Selection, file_among};
+use crate::command::decode::{self, damage, field_table, in_parentheses, problem_lines, stdin};
 use crate::controller::toyo::describe::{Description, FieldNote, Sender, describe};
 use crate::controller::toyo::request::Request;
-use crate::failure::{Failure, Kind};
-use crate::output::view::{Section, Table, View};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Section, View};
 
-/// Lines to explain.
+/// Lines of the host communication, of either side
 #[derive(Debug, Args)]
 #[command(
     after_help = "Who sent a line is told by its form, or by -> or <- in front of it: `armctl decode toyo -` takes what \
@@ -22,7 +26,7 @@ use crate::output::view::{Section, Table, View};
                         listed in the words of --trace; NUMBER and TIME are those of Wireshark. Nothing found is no \
                         failure. A file that is damaged is told up to there, and the exit code is 1."
 )]
-pub struct Toyo {
+pub struct Decode {
     /// Such as '@STAS SNO=0' or '@STAS SNO=0 ST1=22 ST2=00', - for stdin with one a line, or FILE.pcap or FILE.pcapng
     #[arg(required = true, value_name = "LINE")]
     lines: Vec<String>,
@@ -34,18 +38,26 @@ pub struct Toyo {
 const MARKS: [(&str, Sender); 2] = [("->", Sender::Host), ("<-", Sender::Controller)];
 const REMARK: &str = "  # ";
 
-impl Toyo {
-    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
-        if let Some(path) = capture::named(&self.lines) {
-            return capture::tell(run, "decode.toyo.capture", &path, &self.selection, capture::toyo::Lines::default());
-        }
-        if self.selection.is_given() {
-            return Err(capture::without_file().into());
-        }
-        let lines = self.lines()?;
-        run.local("decode.toyo", &explained(&lines))
+impl decode::Decode for Decode {
+    const ID: &'static str = "decode.toyo";
+    const CAPTURE_ID: &'static str = "decode.toyo.capture";
+    type Report = DecodedLines;
+    type Capture = LineDecoder;
+
+    fn capture(&self) -> Option<(&Path, LineDecoder)> {
+        Some((file_among(&self.lines)?, LineDecoder::default()))
     }
 
+    fn selection(&self) -> &Selection {
+        &self.selection
+    }
+
+    fn decode(&self) -> Result<DecodedLines, Failure> {
+        Ok(explained(&self.lines()?))
+    }
+}
+
+impl Decode {
     fn lines(&self) -> Result<Vec<String>, Failure> {
         let lines =
             if self.lines == ["-"] { stdin()?.lines().map(str::to_owned).collect() } else { joined(&self.lines) };
@@ -80,7 +92,7 @@ fn joined(arguments: &[String]) -> Vec<String> {
 }
 
 /// Each line in words. An answer is explained by the request before it.
-fn explained(lines: &[String]) -> Lines {
+fn explained(lines: &[String]) -> DecodedLines {
     let mut asked: Option<Request> = None;
     let lines = lines.iter().map(|line| {
         let (marked, text) = unmarked(line);
@@ -91,9 +103,9 @@ fn explained(lines: &[String]) -> Lines {
         if sender == Sender::Host {
             asked = Request::parse(text).ok();
         }
-        Line::new(text, sender, description)
+        DecodedLine::new(text, sender, description)
     });
-    Lines { lines: lines.collect() }
+    DecodedLines { lines: lines.collect() }
 }
 
 /// A line without what a trace adds to it.
@@ -109,13 +121,13 @@ fn unmarked(line: &str) -> (Option<Sender>, &str) {
 
 /// Lines in words.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Lines {
-    lines: Vec<Line>,
+pub struct DecodedLines {
+    lines: Vec<DecodedLine>,
 }
 
 /// A line in words.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Line {
+struct DecodedLine {
     /// The line itself.
     text: String,
     /// What it is.
@@ -153,7 +165,7 @@ impl From<FieldNote> for FieldRow {
     }
 }
 
-impl Line {
+impl DecodedLine {
     fn new(text: &str, sender: Sender, description: Description) -> Self {
         let Description { title, section, fields, problem } = description;
         let sender = match sender {
@@ -165,49 +177,41 @@ impl Line {
     }
 }
 
-/// Fields as a table.
-pub fn field_table(fields: &[FieldRow]) -> Table {
-    let mut table = Table::new(&["column", "field", "raw", "meaning"], "no fields");
-    for field in fields {
-        let FieldRow { column, name, raw, meaning, .. } = field;
-        table.row([(*column).into(), (*name).into(), raw.as_str().into(), meaning.as_str().into()]);
+impl decode::Field for FieldRow {
+    const COLUMNS: &'static [&'static str] = &["column", "field", "raw", "meaning"];
+
+    fn cells(&self) -> Vec<Cell> {
+        let Self { column, name, raw, meaning, .. } = self;
+        vec![(*column).into(), (*name).into(), raw.as_str().into(), meaning.as_str().into()]
     }
-    table
 }
 
-impl Report for Lines {
+impl Report for DecodedLines {
     fn view(&self) -> View {
         let mut sections = Vec::new();
-        for line in &self.lines {
-            let section = line.section.as_ref().map(|section| format!(" ({section})")).unwrap_or_default();
-            let problem = line.problem.as_ref().map(|problem| format!("\nproblem: {problem}")).unwrap_or_default();
-            sections.push(Section::Text(format!("{}\n{}{section}{problem}", line.text, line.title)));
-            if !line.fields.is_empty() {
-                sections.push(Section::Table(field_table(&line.fields)));
+        for DecodedLine { text, title, section, fields, problem, .. } in &self.lines {
+            let (section, problem) = (in_parentheses(section.as_deref()), problem_lines(problem));
+            sections.push(Section::Text(format!("{text}\n{title}{section}{problem}")));
+            if !fields.is_empty() {
+                sections.push(field_table(fields));
             }
         }
         View { sections }
     }
 
     fn failure(&self) -> Option<Failure> {
-        let problem = self.lines.iter().find_map(|line| line.problem.as_ref())?;
-        let damaged = self.lines.iter().filter(|line| line.problem.is_some()).count();
-        let message = match self.lines.len() {
-            1 => format!("the line is damaged: {problem}"),
-            all => format!("{damaged} of {all} lines are damaged; the first: {problem}"),
-        };
-        let hint = "the fields before the damage are explained as far as they go";
-        Some(Failure::new(Kind::Malformed, message).hint(hint))
+        damage("line", self.lines.iter().map(|line| line.problem.as_ref()))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::failure::Kind;
 
     fn senders(lines: &[&str]) -> Vec<&'static str> {
         let lines = lines.iter().map(ToString::to_string).collect();
-        let toyo = Toyo { lines, selection: Selection::default() };
+        let toyo = Decode { lines, selection: Selection::default() };
         explained(&toyo.lines().unwrap()).lines.iter().map(|line| line.sender).collect()
     }
 
@@ -218,7 +222,7 @@ mod tests {
         assert_eq!(senders(&["->", "@TYPE", "AX1", "RTYP=000000", "<-", "@NG"]), ["host", "controller"]);
         assert_eq!(senders(&["@TYPE AX1 RTYP=000001", "@TYPE AX1 RTYP=000000"]), ["host", "controller"]);
         assert_eq!(senders(&["@HSON", "   40 48 53 4f 4e", "@HSOF"]), ["host", "host"]);
-        assert!(Toyo { lines: vec![" ".into()], selection: Selection::default() }.lines().is_err());
+        assert!(Decode { lines: vec![" ".into()], selection: Selection::default() }.lines().is_err());
     }
 
     #[test]

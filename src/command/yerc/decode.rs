@@ -1,21 +1,25 @@
 //! `armctl decode yerc`: frames in words.
 
+mod capture;
+
+use std::path::Path;
+
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::capture::{self, Selection};
-use super::stdin;
+pub use self::capture::FrameDecoder;
 use crate::command::Report;
-use crate::command::run::{Run, Stopped};
+use crate::command::decode::capture::{Selection, file_among};
+use crate::command::decode::{self, damage, field_table, in_parentheses, problem_lines, stdin};
 use crate::controller::yerc::describe::{Description, FieldNote, Sender, describe};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::table::service;
 use crate::controller::yerc::wire::{ANSWER_BIT, HEADER_LEN, RequestFrame};
-use crate::failure::{Failure, Kind};
-use crate::output::view::{Section, Table, View};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Section, View};
 
-/// Frames to explain.
+/// Frames of the high-speed Ethernet server, as from a packet capture
 #[derive(Debug, Args)]
 #[command(
     after_help = "An answer does not say what it answers: give the request before it, or --command. What is not a \
@@ -23,7 +27,7 @@ use crate::output::view::{Section, Table, View};
                         the frames are listed in the words of --trace; NUMBER and TIME are those of Wireshark. \
                         Nothing found is no failure. A file that is damaged is told up to there, and the exit code is 1."
 )]
-pub struct Yerc {
+pub struct Decode {
     /// Frames in hexadecimal (blanks, colons and 0x may stand between the bytes), - for stdin with a frame a line, or
     /// FILE.pcap or FILE.pcapng
     #[arg(required = true, value_name = "HEX")]
@@ -50,18 +54,26 @@ fn number(text: &str) -> Result<u16, String> {
     parsed.ok_or_else(|| "a number from 0 to 65535 (0x0000 to 0xFFFF) is expected".to_owned())
 }
 
-impl Yerc {
-    pub(super) fn run(self, run: &Run) -> Result<(), Stopped> {
-        if let Some(path) = capture::named(&self.hex) {
-            return capture::tell(run, "decode.yerc.capture", &path, &self.selection, capture::yerc::Frames::default());
-        }
-        if self.selection.is_given() {
-            return Err(capture::without_file().into());
-        }
-        let frames = self.frames()?;
-        run.local("decode.yerc", &self.explained(&frames))
+impl decode::Decode for Decode {
+    const ID: &'static str = "decode.yerc";
+    const CAPTURE_ID: &'static str = "decode.yerc.capture";
+    type Report = DecodedFrames;
+    type Capture = FrameDecoder;
+
+    fn capture(&self) -> Option<(&Path, FrameDecoder)> {
+        Some((file_among(&self.hex)?, FrameDecoder::default()))
     }
 
+    fn selection(&self) -> &Selection {
+        &self.selection
+    }
+
+    fn decode(&self) -> Result<DecodedFrames, Failure> {
+        Ok(self.explained(&self.frames()?))
+    }
+}
+
+impl Decode {
     /// The frames that were given, each as its bytes.
     fn frames(&self) -> Result<Vec<Vec<u8>>, Failure> {
         let wrong = |error| Failure::usage(error).hint("give bytes as 59455243… or 59 45 52 43 …");
@@ -79,7 +91,7 @@ impl Yerc {
     }
 
     /// Each frame in words. An answer is explained by the request of its id before it, or else by the flags.
-    fn explained(&self, frames: &[Vec<u8>]) -> Frames {
+    fn explained(&self, frames: &[Vec<u8>]) -> DecodedFrames {
         let mut asked: Vec<(u8, Request)> = Vec::new();
         let mut explained = Vec::new();
         for bytes in frames {
@@ -99,9 +111,9 @@ impl Yerc {
                     describe(bytes, sender, request.as_ref())
                 }
             };
-            explained.push(Frame::new(sender, bytes.len(), description));
+            explained.push(DecodedFrame::new(sender, bytes.len(), description));
         }
-        Frames { frames: explained }
+        DecodedFrames { frames: explained }
     }
 
     /// The request that the flags speak of; its service is in the answer.
@@ -173,13 +185,13 @@ fn split(mut bytes: &[u8]) -> Vec<Vec<u8>> {
 
 /// Frames in words.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Frames {
-    frames: Vec<Frame>,
+pub struct DecodedFrames {
+    frames: Vec<DecodedFrame>,
 }
 
 /// A frame in words.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Frame {
+struct DecodedFrame {
     /// What it is, in a line.
     title: String,
     /// Manual and section, where the command is known.
@@ -214,7 +226,7 @@ impl From<FieldNote> for FieldRow {
     }
 }
 
-impl Frame {
+impl DecodedFrame {
     fn new(sender: Sender, bytes: usize, description: Description) -> Self {
         let Description { title, section, fields, problem } = description;
         let sender = match sender {
@@ -225,20 +237,18 @@ impl Frame {
     }
 }
 
-/// Fields as a table; long ones are cut, JSON has them whole.
-pub fn field_table(fields: &[FieldRow]) -> Table {
-    const LONGEST: usize = 32;
-    let mut table = Table::new(&["offset", "size", "field", "raw", "meaning"], "no data");
-    for field in fields {
-        table.row([
-            field.offset.into(),
-            field.size.into(),
-            field.name.as_str().into(),
-            shortened(&field.raw_hex, LONGEST).into(),
-            field.meaning.as_str().into(),
-        ]);
+impl decode::Field for FieldRow {
+    const COLUMNS: &'static [&'static str] = &["offset", "size", "field", "raw", "meaning"];
+    const NONE: &'static str = "no data";
+
+    /// What is long is cut; JSON has it whole.
+    fn cells(&self) -> Vec<Cell> {
+        const LONGEST: usize = 32;
+
+        let Self { offset, size, name, raw_hex, meaning } = self;
+        let raw = shortened(raw_hex, LONGEST);
+        vec![(*offset).into(), (*size).into(), name.as_str().into(), raw.into(), meaning.as_str().into()]
     }
-    table
 }
 
 fn shortened(text: &str, longest: usize) -> String {
@@ -248,31 +258,19 @@ fn shortened(text: &str, longest: usize) -> String {
     text.chars().take(longest).chain(['…']).collect()
 }
 
-impl Report for Frames {
+impl Report for DecodedFrames {
     fn view(&self) -> View {
         let mut sections = Vec::new();
-        for frame in &self.frames {
-            let section = frame.section.as_ref().map(|section| format!(" ({section})")).unwrap_or_default();
-            let title = format!("{}{section}, {} bytes", frame.title, frame.bytes);
-            sections.push(Section::Text(match &frame.problem {
-                Some(problem) => format!("{title}\nproblem: {problem}"),
-                None => title,
-            }));
-            sections.push(Section::Table(field_table(&frame.fields)));
+        for DecodedFrame { title, section, bytes, fields, problem, .. } in &self.frames {
+            let (section, problem) = (in_parentheses(section.as_deref()), problem_lines(problem));
+            sections.push(Section::Text(format!("{title}{section}, {bytes} bytes{problem}")));
+            sections.push(field_table(fields));
         }
         View { sections }
     }
 
     fn failure(&self) -> Option<Failure> {
-        let damaged = self.frames.iter().filter(|frame| frame.problem.is_some()).count();
-        let problem = self.frames.iter().find_map(|frame| frame.problem.as_ref())?;
-        let message = match self.frames.len() {
-            1 => format!("the frame is damaged: {problem}"),
-            all => format!("{damaged} of {all} frames are damaged; the first: {problem}"),
-        };
-        Some(
-            Failure::new(Kind::Malformed, message).hint("the fields before the damage are explained as far as they go"),
-        )
+        damage("frame", self.frames.iter().map(|frame| frame.problem.as_ref()))
     }
 }
 
@@ -282,9 +280,9 @@ mod tests {
 
     const STATUS: &str = "5945524320000000030100000000000039393939393939397200010000010000";
 
-    fn yerc(hex: &[&str]) -> Yerc {
+    fn yerc(hex: &[&str]) -> Decode {
         let hex = hex.iter().map(ToString::to_string).collect();
-        Yerc { hex, command: None, instance: None, attribute: None, selection: Selection::default() }
+        Decode { hex, command: None, instance: None, attribute: None, selection: Selection::default() }
     }
 
     fn spaced(hex: &str, separator: &str) -> String {
@@ -318,10 +316,10 @@ mod tests {
     fn an_answer_is_explained_by_its_request() {
         let answer = "594552432000080003010100000000803939393939393939810000000000000012000000c0000000";
         let alone = yerc(&[answer]);
-        let title = |yerc: &Yerc, at: usize| yerc.explained(&yerc.frames().unwrap()).frames[at].title.clone();
+        let title = |yerc: &Decode, at: usize| yerc.explained(&yerc.frames().unwrap()).frames[at].title.clone();
         assert_eq!(title(&alone, 0), "answer");
         assert_eq!(title(&yerc(&[STATUS, answer]), 1), "answer: 0x72 status read");
-        assert_eq!(title(&Yerc { command: Some(0x72), ..alone }, 0), "answer: 0x72 status read");
+        assert_eq!(title(&Decode { command: Some(0x72), ..alone }, 0), "answer: 0x72 status read");
     }
 
     #[test]
