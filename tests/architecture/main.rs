@@ -9,6 +9,9 @@ mod source;
 
 use source::{Source, committed, has_word, root, sources};
 
+use armctl::settings::target::BUSES;
+use armctl::settings::target::bus::Scheme;
+
 /// A part of `src/` (a folder or a file) and the paths that must not occur in it.
 const BORDERS: [(&str, &[&str]); 6] = [
     // Bytes and meaning: no sockets, no clock, no command line, no files, no printing.

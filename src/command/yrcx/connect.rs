@@ -161,3 +161,33 @@ fn listed(options: &[&str]) -> String {
         [all @ .., last] => format!("{} and {last}", all.join(", ")),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transport::image::{Cause, Outputs};
+
+    #[test]
+    fn what_a_fieldbus_says_reaches_people_with_what_to_set() {
+        let scheme = target::bus::USUAL;
+        let cause = || Cause { code: Some("0x0106".to_owned()), ..Cause::new("asked, and refused") };
+        let outputs = Outputs::Released;
+        for (error, kind, hint) in [
+            (LinkError::Owned(cause()), Kind::Refused, "stop the owner's connection first"),
+            (LinkError::Owned(cause().advice("ask the PLC")), Kind::Refused, "ask the PLC"),
+            (LinkError::Size(cause().options(&["in", "in_size"])), Kind::Malformed, "check in and in_size of the URL"),
+            (LinkError::Refused(cause().options(&["a", "b", "c"])), Kind::Refused, "check a, b and c of the URL"),
+            (LinkError::Refused(cause().advice("set the ident")), Kind::Refused, "set the ident"),
+            (LinkError::Silent(cause()), Kind::NoAnswer, "check the link"),
+            (LinkError::Lost { cause: cause(), outputs }, Kind::NoAnswer, "check the link"),
+            (LinkError::Malformed(cause()), Kind::Malformed, "check the address"),
+            (LinkError::Settings(cause()), Kind::Usage, "what URLs of"),
+            (LinkError::Local(cause()), Kind::Local, "check the adapter"),
+        ] {
+            let failure = not_open("cell", &scheme, &error);
+            assert_eq!((failure.kind, failure.code.as_deref()), (kind, Some("0x0106")), "{error:?}");
+            assert!(failure.message.starts_with("cell: "), "{failure}");
+            assert!(failure.hint.as_ref().unwrap().contains(hint), "{failure:?}");
+        }
+    }
+}

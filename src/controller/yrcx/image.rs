@@ -168,6 +168,19 @@ mod tests {
     }
 
     #[test]
+    fn signals_alone_are_an_image_too() {
+        // DeviceNet, I/O size Compact: word 0 holds the dedicated signals, word 1 the first general-purpose ones.
+        let mut image = Image::default();
+        (image.0[0], image.0[DEDICATED_WORD], image.0[17], image.0[18]) = (1, 0x0041, 0x8001, 7);
+        assert_eq!(image.to_link(4), [0x41, 0, 0x01, 0x80]);
+        let read = Image::from_link(&[0x41, 0, 0x01, 0x80]).unwrap();
+        assert_eq!((read.0[0], read.0[DEDICATED_WORD], read.0[17], read.0[18]), (0, 0x0041, 0x8001, 0));
+        assert_eq!(Image::from_link(&image.to_link(50)), Some(image));
+        assert_eq!((image.to_link(50).len(), Image::from_link(&[0; 47])), (50, None));
+        assert!(Image::has_commands(48) && !Image::has_commands(4));
+    }
+
+    #[test]
     fn what_another_one_changes_is_not_undone() {
         let at = Duration::from_millis;
         let mut output = Output::default();

@@ -36,5 +36,7 @@ mod tests {
         let mut stopped = resting();
         input::STOP.set(&mut stopped, false);
         assert!(!only_stops(&stopped.to_bytes(), &resting().to_bytes()), "a stop is not taken back");
+        assert!(only_stops(&resting().to_link(4), &stopped.to_link(4)), "where signals are alone, too");
+        assert!(!only_stops(&stopped.to_link(4), &resting().to_link(4)));
     }
 }
