@@ -40,7 +40,11 @@ impl Trace {
         Self::open(access, screen, CaptureWriter::append_streams)
     }
 
-    fn open(access: &Access, screen: &Screen, begin: impl Fn(&Path) -> io::Result<CaptureWriter>) -> Result<Self, Failure> {
+    fn open(
+        access: &Access,
+        screen: &Screen,
+        begin: impl Fn(&Path) -> io::Result<CaptureWriter>,
+    ) -> Result<Self, Failure> {
         let mut level = screen.verbosity.saturating_sub(1);
         let capture = match access.trace.as_deref() {
             Some(path) if path == Path::new("-") => {

@@ -72,15 +72,20 @@ impl Decoder {
 
     /// What follows is decoded without what was before.
     fn forget_if_many(&mut self) {
-        let known =
-            [self.streams.len(), self.asked.len(), self.forth.len(), self.back.len(), self.flows.len()];
+        let known = [self.streams.len(), self.asked.len(), self.forth.len(), self.back.len(), self.flows.len()];
         if known.iter().any(|known| *known >= MOST) {
             *self = Self::default();
         }
     }
 
     /// A message of the encapsulation.
-    fn encapsulated(&mut self, message: &Message<'_>, ends: (SocketAddr, SocketAddr), bytes: &[u8], images: &mut Images) {
+    fn encapsulated(
+        &mut self,
+        message: &Message<'_>,
+        ends: (SocketAddr, SocketAddr),
+        bytes: &[u8],
+        images: &mut Images,
+    ) {
         let described = explain(bytes);
         let (direction, client, controller) =
             if described.is_answer { (Direction::Received, ends.1, ends.0) } else { (Direction::Sent, ends.0, ends.1) };
@@ -160,7 +165,6 @@ impl Decoder {
         }
         images.image(message, direction, &link, &image);
     }
-
 }
 
 impl BusDecoder for Decoder {
