@@ -299,6 +299,18 @@ mod tests {
     }
 
     #[test]
+    fn frames_of_a_link_keep_its_type() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let mut capture = CaptureWriter::append_packets(file.path(), 227).unwrap();
+        capture.frame(Duration::from_micros(7), &[0, 0, 4, 0x2C, 1, 0, 0, 0, 0x4B]).unwrap();
+        drop(capture);
+        let bytes = std::fs::read(file.path()).unwrap();
+        let blocks = blocks(&bytes);
+        assert_eq!((blocks[1].0, &blocks[1].1[..2]), (INTERFACE, &227u16.to_le_bytes()[..]));
+        assert_eq!(content(blocks[2]), (0, &[0, 0, 4, 0x2C, 1, 0, 0, 0, 0x4B][..]));
+    }
+
+    #[test]
     fn a_capture_has_the_blocks_of_the_format() {
         let mut out = Vec::new();
         let mut capture = CaptureWriter::new(&mut out).unwrap();

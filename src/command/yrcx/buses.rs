@@ -27,6 +27,7 @@ pub const BUSES: [&dyn Fieldbus; 1] = [&eip::EtherNetIp];
 
 /// How each is searched by `robots discover`: arguments of the command line.
 #[derive(Debug, Args)]
+#[group(skip)]
 pub struct Searches {
     #[command(flatten)]
     eip: eip::Search,
@@ -41,6 +42,7 @@ impl Searches {
 
 /// How each serves a simulated controller to others: arguments of `armctl sim yrcx`.
 #[derive(Debug, Args)]
+#[group(skip)]
 pub struct Servers {
     #[command(flatten)]
     eip: eip::ServeArgs,

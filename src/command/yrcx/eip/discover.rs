@@ -17,6 +17,7 @@ use crate::transport::image::tap::Tap;
 
 /// Whom to ask.
 #[derive(Debug, Args)]
+#[group(skip)]
 pub struct Search {
     /// Ask only these, each by its address
     #[arg(value_name = "ADDRESS[:PORT]", value_parser = address)]

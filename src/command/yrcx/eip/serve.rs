@@ -17,6 +17,7 @@ use crate::transport::fault::FaultSpec;
 
 /// Where to listen, and what to do wrong.
 #[derive(Debug, Args)]
+#[group(skip)]
 pub struct ServeArgs {
     /// Address to listen on, with the TCP port of sessions; port 0 lets the system choose
     #[arg(long, value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:44818", value_parser = listen)]
