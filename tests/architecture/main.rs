@@ -91,7 +91,7 @@ const BORDERS: [(&str, &[&str]); 6] = [
 
 /// Commands that touch a transport: the link of a family with its trace, what reads captures, sessions, the simulators'
 /// servers, the list of ports, and the peer of tests.
-const LINKS: [&str; 37] = [
+const LINKS: [&str; 38] = [
     "command/attach.rs",
     "command/holding.rs",
     "command/trace.rs",
@@ -105,9 +105,10 @@ const LINKS: [&str; 37] = [
     "command/toyo/simulated.rs",
     "command/toyo/testing.rs",
     "command/toyo/trace.rs",
-    "command/yrcx/buses.rs",
     "command/yrcx/decode/capture.rs",
-    "command/yrcx/discover.rs",
+    "command/yrcx/decode/images.rs",
+    "command/yrcx/fieldbus.rs",
+    "command/yrcx/link_error.rs",
     "command/yrcx/gate.rs",
     "command/yrcx/hold.rs",
     "command/yrcx/link.rs",

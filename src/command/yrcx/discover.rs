@@ -2,45 +2,22 @@
 
 use std::time::Duration;
 
-use futures_util::future::LocalBoxFuture;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::buses::{self, Searches};
+use super::fieldbus::{Found, Scope};
 use super::trace::Recorder;
 use crate::command::Access;
 use crate::failure::Failure;
 use crate::output::Screen;
-use crate::transport::image::tap::Tap;
-
-/// How one fieldbus is searched, as the command line wants it.
-pub trait Search {
-    /// What is to be searched.
-    fn scope(&self) -> Scope;
-
-    /// Asks who is there until `wait` is over.
-    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Found>, Failure>>;
-}
-
-/// What is to be searched of a fieldbus.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Scope {
-    /// Nothing, as it has to be told where.
-    Nothing,
-    /// What is usual. That it cannot be asked is only a warning.
-    Usual,
-    /// A network or an adapter that was named.
-    Network,
-    /// Certain devices, and nothing else.
-    Devices,
-}
 
 /// A device that answered. What it says of itself is untrusted.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Found {
+pub struct FoundDevice {
     /// Where the answer came from.
-    pub address: String,
+    address: String,
     /// The URL for `-t`.
     pub target: String,
     /// The family that it may be of, by the number of its maker; null for makers of other things.
@@ -54,18 +31,10 @@ pub struct Found {
     pub device: String,
 }
 
-impl Found {
-    /// What answered, where, whether it is one of the family, and what it says of itself: in a line, and as data.
-    pub fn new(
-        address: String,
-        target: String,
-        is_yrcx: bool,
-        device: String,
-        identity: &impl Serialize,
-    ) -> Result<Self, Failure> {
-        let identity = serde_json::to_value(identity).map_err(|error| Failure::local(error.to_string()))?;
-        let Value::Object(identity) = identity else { return Err(Failure::local("an identity has no fields")) };
-        Ok(Self { address, target, family: is_yrcx.then_some("yrcx"), identity, device })
+impl From<Found> for FoundDevice {
+    fn from(found: Found) -> Self {
+        let Found { address, target, is_yrcx, device, identity } = found;
+        Self { address, target, family: is_yrcx.then_some("yrcx"), identity, device }
     }
 }
 
@@ -87,7 +56,7 @@ pub async fn discover(
     wait: Duration,
     access: &Access,
     screen: &Screen,
-) -> Result<Vec<Found>, Failure> {
+) -> Result<Vec<FoundDevice>, Failure> {
     let narrowest = scope(searches);
     let mut all = Vec::new();
     for (fieldbus, search) in searches.each() {
@@ -100,7 +69,7 @@ pub async fn discover(
         let found = search.search(wait, tap.unwrap_or_default()).await;
         recorder.map_or(Ok(()), Recorder::finish)?;
         match found {
-            Ok(found) => all.extend(found),
+            Ok(found) => all.extend(found.into_iter().map(FoundDevice::from)),
             // A machine without a network still has ports.
             Err(failure) if scope == Scope::Usual => screen.note(&format!("warning: {failure}")),
             Err(failure) => return Err(failure),

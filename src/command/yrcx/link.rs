@@ -17,8 +17,8 @@ use std::time::Duration;
 use serde_json::json;
 use tokio::time::Instant;
 
-use super::buses::Board;
 use super::connect::{self, Endpoint};
+use super::fieldbus::Board;
 use super::hold;
 use super::io::named;
 use super::overwrite::Replaced;

@@ -27,12 +27,14 @@ pub mod decode;
 pub mod discover;
 pub mod eip;
 pub mod explain;
+pub mod fieldbus;
 #[cfg(test)]
 mod gate;
 mod hold;
 mod info;
 mod io;
 pub mod link;
+mod link_error;
 mod motion;
 mod numbers;
 mod overview;

@@ -1,16 +1,14 @@
 //! `armctl sim yrcx`: a controller on a fieldbus, for others.
 
-use std::fmt;
 use std::io;
-use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::buses::Servers;
+use super::fieldbus::Served;
 use super::simulated::start;
 use crate::command::serve::{self, Serving, Started};
-use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::settings::target::bus::simulators;
 
@@ -32,29 +30,6 @@ pub struct ServeArgs {
     /// Take lines on stdin; `help` lists them
     #[arg(long)]
     console: bool,
-}
-
-/// How one fieldbus serves a controller, as the command line wants it.
-pub trait Serve {
-    /// Begins to serve, with threads or tasks of its own. Where the fieldbus has several simulators, `simulator` is the
-    /// name of one.
-    fn serve(&self, simulator: Option<&str>, start: Start) -> Result<Served, Failure>;
-}
-
-/// A controller that is served as long as this lives.
-pub struct Served {
-    /// The URL to reach it by.
-    pub target: String,
-    /// Where others may come from, where it is a network.
-    pub address: Option<SocketAddr>,
-    /// Does what a line of the console says, and tells what was done, or why not.
-    pub console: Box<dyn FnMut(&str) -> Result<String, String>>,
-}
-
-impl fmt::Debug for Served {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.target)
-    }
 }
 
 impl serve::Serve for ServeArgs {

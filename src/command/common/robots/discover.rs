@@ -9,7 +9,8 @@ use serde::Serialize;
 use crate::command::run::{Run, Stopped};
 use crate::command::toyo::ports::{self, Port};
 use crate::command::yrcx::buses::Searches;
-use crate::command::yrcx::discover::{self, Found, Scope};
+use crate::command::yrcx::discover::{self, FoundDevice};
+use crate::command::yrcx::fieldbus::Scope;
 use crate::command::{Access, Need, Report};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, View};
@@ -66,7 +67,7 @@ fn serial_ports(run: &Run) -> Vec<Port> {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Discovered {
     /// Network boards that answered.
-    boards: Vec<Found>,
+    boards: Vec<FoundDevice>,
     /// Serial ports of this machine, where broadcasts were asked for.
     serial_ports: Vec<Port>,
     #[serde(skip)]
@@ -80,7 +81,7 @@ const NOTHING: &str = "nobody answered, and no serial port was found; is this ma
 impl Report for Discovered {
     fn view(&self) -> View {
         let mut table = Table::new(&["family", "target", "device"], self.nothing);
-        for Found { target, family, device, .. } in &self.boards {
+        for FoundDevice { target, family, device, .. } in &self.boards {
             table.row([Cell::maybe(*family), Cell::from(target.as_str()).whole(), device.as_str().into()]);
         }
         for port in &self.serial_ports {

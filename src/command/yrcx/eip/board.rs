@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use super::check;
 use crate::command::checks::Layers;
-use crate::command::yrcx::buses;
-use crate::command::yrcx::connect::not_open;
+use crate::command::yrcx::fieldbus;
+use crate::command::yrcx::link_error::not_open;
 use crate::controller::text;
 use crate::controller::yrcx::image::Image;
 use crate::failure::{Failure, Kind};
@@ -145,7 +145,7 @@ impl Board {
     }
 }
 
-impl buses::Board for Board {
+impl fieldbus::Board for Board {
     fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
         check::look(self, layers).boxed_local()
     }

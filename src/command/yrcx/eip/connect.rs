@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::command::yrcx::buses::{At, Purpose};
+use crate::command::yrcx::fieldbus::{At, Purpose};
 use crate::controller::yrcx::signal::resting;
 use crate::settings::target::eip::{Eip, EipRole};
 use crate::transport::eip::client::Client;

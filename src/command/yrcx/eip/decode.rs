@@ -5,7 +5,7 @@ use std::net::{IpAddr, SocketAddr};
 
 use super::cip::{explain, may_be_message};
 use crate::command::decode::capture::DecodedMessage;
-use crate::command::yrcx::decode::capture::{BusDecoder, Images, MOST, decoded};
+use crate::command::yrcx::decode::images::{BusDecoder, Images, MOST, decoded};
 use crate::controller::text::hex;
 use crate::controller::yrcx::image::Image;
 use crate::transport::capture::{Carrier, Message};

@@ -8,7 +8,7 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::board::{Identity, MAKER};
-use crate::command::yrcx::discover::{self, Found, Scope};
+use crate::command::yrcx::fieldbus::{self, Found, Scope, fields};
 use crate::failure::{Failure, Kind, plain};
 use crate::settings::target::eip::SCHEME;
 use crate::transport::eip::PORT;
@@ -35,7 +35,7 @@ fn address(text: &str) -> Result<SocketAddrV4, String> {
     parsed.map_err(|_| format!("'{text}' is no IPv4 address such as 192.168.0.2 or 192.168.0.2:{PORT}"))
 }
 
-impl discover::Search for Search {
+impl fieldbus::Search for Search {
     fn scope(&self) -> Scope {
         match (self.targets.is_empty(), self.broadcast.is_empty()) {
             (false, _) => Scope::Devices,
@@ -71,7 +71,7 @@ fn found_board(found: discovery::Found) -> Result<Found, Failure> {
     let owner = if *owned { ", owned by a master" } else { "" };
     let device = format!("{name}, vendor {vendor}, product {product}, revision {revision}, {serial}{owner}");
     let address = SocketAddr::from(found.address).to_string();
-    Found::new(address, target, is_yrcx, device, &identity)
+    Ok(Found { address, target, is_yrcx, device, identity: fields(&identity)? })
 }
 
 #[cfg(test)]

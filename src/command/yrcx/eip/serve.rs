@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::simulated::{self, Controller, faults, mischief};
 use crate::command::serve::{address, cannot_listen};
-use crate::command::yrcx::serve::{Serve, Served};
+use crate::command::yrcx::fieldbus::{Serve, Served};
 use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::settings::target::eip::SCHEME;

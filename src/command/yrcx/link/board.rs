@@ -6,7 +6,7 @@ use serde_json::Value as Json;
 
 use super::{Link, Transport};
 use crate::command::dry_run::{Reason, unknown};
-use crate::command::yrcx::buses::Board;
+use crate::command::yrcx::fieldbus::Board;
 use crate::failure::Failure;
 use crate::transport::tap::Direction;
 
