@@ -14,6 +14,7 @@ use crate::settings::Robot;
 use crate::settings::target::bus::simulators;
 use crate::settings::target::{self, Bus, Place};
 use crate::transport::image::ImageLink;
+use crate::transport::image::tap::Tap;
 
 /// What a target leads to.
 #[derive(Debug, Clone, Copy)]
@@ -68,7 +69,7 @@ impl Endpoint<'_> {
             // What goes wrong on a network takes one.
             Self::Sim(sim) if sim.bus.is_some() || simulated::has_faults(sim) => {
                 let (fieldbus, Simulation { bus, controller }) = simulate(sim)?;
-                let opened = fieldbus.open(At { robot, bus: &bus, tap: Default::default() }, Purpose::Command).await;
+                let opened = fieldbus.open(At { robot, bus: &bus, tap: Tap::default() }, Purpose::Command).await;
                 let link = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
                 Ok((link.keeping(controller), None))
             }
@@ -92,7 +93,7 @@ impl Endpoint<'_> {
             }
             Self::Sim(sim) => {
                 let (fieldbus, Simulation { bus, controller }) = simulate(sim)?;
-                let opened = fieldbus.board(At { robot, bus: &bus, tap: Default::default() }).await;
+                let opened = fieldbus.board(At { robot, bus: &bus, tap: Tap::default() }).await;
                 let board = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
                 Ok(((board, Some(controller)), None))
             }

@@ -7,7 +7,7 @@ use std::io::{self, Read};
 use serde::ser::{Serialize, SerializeSeq as _, Serializer};
 
 use super::report::{Capture, Link, Links, Problems, Row};
-use super::{CaptureDecoder, DecodedMessage, ReportEnvelope, Source};
+use super::{CaptureDecoder, DecodedCapture, DecodedMessage, ReportEnvelope, Source};
 use crate::command::Report as _;
 use crate::command::run::{Run, Stopped};
 use crate::failure::Failure;
@@ -39,8 +39,8 @@ pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
             true
         })?
     };
-    let decoded = std::mem::take(decoder.decoded());
-    let mut about: Capture<D::Field> = source.about(&summary, decoded.packets, decoded.notes);
+    let DecodedCapture { packets, notes, .. } = std::mem::take(decoder.decoded());
+    let mut about: Capture<D::Field> = source.about(&summary, packets, notes);
     (about.links, about.problems) = (links.list, problems);
     let failure = about.failure();
     let second_pass = SecondPass { source, summary: &summary, all: about.problems.all };
