@@ -7,7 +7,7 @@ use super::fieldbus::{At, Board, Fieldbus, Purpose, Simulation};
 use super::link_error::not_open;
 use super::simulated;
 use super::trace::Recorder;
-use crate::command::{Access, Need};
+use crate::command::{Access, ConnectMode};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
@@ -52,7 +52,7 @@ impl Endpoint<'_> {
         access: &Access,
         screen: &Screen,
     ) -> Result<(ImageLink, Option<Recorder>), Failure> {
-        let purpose = if access.need == Need::Sight { Purpose::Look } else { Purpose::Command };
+        let purpose = if access.mode == ConnectMode::Monitor { Purpose::Look } else { Purpose::Command };
         match *self {
             Self::Bus(bus, fieldbus) => {
                 let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type())?.unzip();

@@ -10,7 +10,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::decode::images::BusDecoder;
-use crate::command::checks::Layers;
+use crate::command::face::layers::Layers;
 use crate::controller::yrcx::alarm::Alarm;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::Start;
