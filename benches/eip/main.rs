@@ -12,8 +12,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, ensure};
+use armctl::command::yrcx::eip::simulated;
 use armctl::command::yrcx::link::Yrcx;
-use armctl::command::yrcx::simulated;
 use armctl::command::{Access, ConnectMode, Family as _};
 use armctl::controller::yrcx;
 use armctl::controller::yrcx::simulator::Start;

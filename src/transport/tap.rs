@@ -37,7 +37,7 @@ impl Direction {
 }
 
 /// `LINKTYPE_RAW`: packets begin with an IP header.
-const LINKTYPE_RAW: u16 = 101;
+pub const LINKTYPE_RAW: u16 = 101;
 /// `LINKTYPE_USER0`: for private use.
 const LINKTYPE_USER0: u16 = 147;
 /// Numbers of the interfaces, in the order of their blocks.
@@ -63,6 +63,12 @@ impl CaptureWriter {
     /// Starts a section at the end of a file, which is made if it is not there. A file may have any number of them.
     pub fn append(path: &Path) -> io::Result<Self> {
         Self::new(open(path)?)
+    }
+
+    /// Starts a section of packets of this kind: of [`LINKTYPE_RAW`] as [`append`](Self::append) does, or whole frames of a
+    /// link.
+    pub fn append_packets(path: &Path, link_type: u16) -> io::Result<Self> {
+        Self::start(open(path)?, &[link_type])
     }
 
     /// Starts a section for byte streams: TCP and serial lines. tcpdump reads no file with such a section, because it
@@ -125,6 +131,11 @@ impl<W: Write> CaptureWriter<W> {
             self.packet(NETWORK, time, &packet)?;
         }
         Ok(())
+    }
+
+    /// Records a whole frame of the link type that the section began with. `time` counts from 1970.
+    pub fn frame(&mut self, time: Duration, frame: &[u8]) -> io::Result<()> {
+        self.packet(NETWORK, time, frame)
     }
 
     /// Records bytes of a serial line, of a capture of [`streams`](Self::streams). `time` counts from 1970.
@@ -210,6 +221,18 @@ mod tests {
 
     fn addresses() -> (SocketAddr, SocketAddr) {
         ("10.0.0.1:40000".parse().unwrap(), "10.0.0.2:10040".parse().unwrap())
+    }
+
+    #[test]
+    fn frames_of_a_link_keep_its_type() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let mut capture = CaptureWriter::append_packets(file.path(), 227).unwrap();
+        capture.frame(Duration::from_micros(7), &[0, 0, 4, 0x2C, 1, 0, 0, 0, 0x4B]).unwrap();
+        drop(capture);
+        let bytes = std::fs::read(file.path()).unwrap();
+        let blocks = blocks(&bytes);
+        assert_eq!((blocks[1].0, &blocks[1].1[..2]), (INTERFACE, &227u16.to_le_bytes()[..]));
+        assert_eq!(content(blocks[2]), (0, &[0, 0, 4, 0x2C, 1, 0, 0, 0, 0x4B][..]));
     }
 
     #[test]

@@ -141,8 +141,8 @@ fn tags(context: &Context) -> Vec<Candidate> {
 
 /// How target URLs begin. What follows is nobody's guess.
 fn urls() -> Vec<Candidate> {
-    let simulator = ("sim:", "the built-in simulator");
-    let urls = FAMILIES.iter().flat_map(|face| face.urls().iter().copied());
+    let simulator = ("sim:".to_owned(), "the built-in simulator");
+    let urls = FAMILIES.iter().flat_map(|face| face.urls());
     std::iter::once(simulator).chain(urls).map(|(url, about)| Candidate::new(url, about).begun()).collect()
 }
 

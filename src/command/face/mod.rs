@@ -33,7 +33,7 @@ pub trait Face: Sync {
     /// Makers and models, as a completion shows them.
     fn title(&self) -> &'static str;
     /// How its target URLs begin, with what follows.
-    fn urls(&self) -> &'static [(&'static str, &'static str)];
+    fn urls(&self) -> Vec<(String, &'static str)>;
     /// Codes that `explain` explains, with their names.
     fn codes(&self) -> Vec<(String, String)>;
     /// The topic `NAME-setup` of `help`: a line about it, and its text.

@@ -59,7 +59,7 @@ pub enum Entry {
     /// Nothing, as a session holds it; another way would not be harmless.
     ThroughSession,
     /// It stops the robot when it ends; completes "This will …".
-    Stops(&'static str),
+    Stops(String),
 }
 
 /// A controller family as its commands see it.

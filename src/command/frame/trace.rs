@@ -30,12 +30,21 @@ impl Trace {
         Self::open(access, screen, CaptureWriter::append)
     }
 
+    /// The same of whole packets of a kind, by its number in capture files.
+    pub fn of_packets(access: &Access, screen: &Screen, link_type: u16) -> Result<Self, Failure> {
+        Self::open(access, screen, |path| CaptureWriter::append_packets(path, link_type))
+    }
+
     /// The same of lines without addresses.
     pub fn of_lines(access: &Access, screen: &Screen) -> Result<Self, Failure> {
         Self::open(access, screen, CaptureWriter::append_streams)
     }
 
-    fn open(access: &Access, screen: &Screen, begin: fn(&Path) -> io::Result<CaptureWriter>) -> Result<Self, Failure> {
+    fn open(
+        access: &Access,
+        screen: &Screen,
+        begin: impl Fn(&Path) -> io::Result<CaptureWriter>,
+    ) -> Result<Self, Failure> {
         let mut level = screen.verbosity.saturating_sub(1);
         let capture = match access.trace.as_deref() {
             Some(path) if path == Path::new("-") => {

@@ -11,7 +11,7 @@ use super::decode::Decode;
 use super::explain::Explain;
 use super::serve::Serve;
 use super::top::Eye;
-use super::{check, link, overview, reach};
+use super::{check, connect, link, overview};
 use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
@@ -44,10 +44,10 @@ impl Face for Toyo {
         "Toyo"
     }
 
-    fn urls(&self) -> &'static [(&'static str, &'static str)] {
-        &[
-            ("serial://", "toyo: a port of this machine, as in serial:///dev/ttyUSB0 or serial://COM3"),
-            ("tcp://", "toyo: HOST:PORT of a serial device server"),
+    fn urls(&self) -> Vec<(String, &'static str)> {
+        vec![
+            ("serial://".to_owned(), "toyo: a port of this machine, as in serial:///dev/ttyUSB0 or serial://COM3"),
+            ("tcp://".to_owned(), "toyo: HOST:PORT of a serial device server"),
         ]
     }
 
@@ -134,7 +134,7 @@ impl Face for Toyo {
         access: &'a Access,
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>> {
-        async move { Ok(Held::Stream(reach::hold(robot, access, screen).await?).into()) }.boxed_local()
+        async move { Ok(Held::Stream(connect::hold(robot, access, screen).await?).into()) }.boxed_local()
     }
 
     fn guard(&self) -> Guard {

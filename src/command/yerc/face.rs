@@ -11,7 +11,7 @@ use super::explain::Explain;
 use super::file::{Backup, Restore};
 use super::serve::Serve;
 use super::top::Eye;
-use super::{check, link, overview, reach};
+use super::{check, connect, link, overview};
 use crate::command::backup::{BackedUp, Items, Making, Restored, Restoring};
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
@@ -44,8 +44,8 @@ impl Face for Yerc {
         "Yaskawa FS100 / DX200"
     }
 
-    fn urls(&self) -> &'static [(&'static str, &'static str)] {
-        &[("udp://", "yerc: name or address of the controller")]
+    fn urls(&self) -> Vec<(String, &'static str)> {
+        vec![("udp://".to_owned(), "yerc: name or address of the controller")]
     }
 
     fn codes(&self) -> Vec<(String, String)> {
@@ -130,7 +130,7 @@ impl Face for Yerc {
         access: &'a Access,
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>> {
-        async move { Ok(Held::Datagrams(reach::hold(robot, access, screen).await?).into()) }.boxed_local()
+        async move { Ok(Held::Datagrams(connect::hold(robot, access, screen).await?).into()) }.boxed_local()
     }
 
     fn guard(&self) -> Guard {

@@ -1,7 +1,7 @@
 //! `armctl decode yrcx`: words of a remote command and its answer, in words.
 
 mod capture;
-mod cip;
+pub mod images;
 
 use std::path::{Path, PathBuf};
 
@@ -10,22 +10,22 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use self::capture::ImageDecoder;
+pub use self::images::FieldRow;
 use super::raw::words;
 use crate::command::Report;
 use crate::command::decode::capture::Selection;
 use crate::command::decode::{self, field_table, in_parentheses, problem_lines};
-use crate::controller::yrcx::describe::{Description, FieldNote, answer, command};
+use crate::controller::yrcx::describe::{Description, answer, command};
 use crate::controller::yrcx::image::Words;
-use crate::controller::yrcx::value::Key;
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Section, View};
+use crate::output::view::{Section, View};
 
 /// Words of remote commands and their answers
 #[derive(Debug, Args)]
 #[command(
     after_help = "Words that are left away are 0. An answer is explained by its command, where that is given. Words that \
     must not be sent are explained as far as they go, and the exit code is 5.\n\nOf a capture file, what the images \
-    say is listed in the words of --trace when it is new, with the EtherNet/IP messages around it; NUMBER and TIME are \
+    say is listed in the words of --trace when it is new, with the messages of the fieldbus around it; NUMBER and TIME are \
     those of Wireshark. Nothing found is no failure. A file that is damaged is told up to there, and the exit code is 1."
 )]
 pub struct Decode {
@@ -94,44 +94,6 @@ impl Part {
     fn new(kind: &'static str, description: Description) -> Self {
         let Description { title, section, fields, problems } = description;
         Self { kind, title, section, fields: fields.into_iter().map(FieldRow::from).collect(), problems }
-    }
-}
-
-/// A field of words.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct FieldRow {
-    /// Word and bits, as in `WI1 bits 2-1`; `-` outside words.
-    place: String,
-    /// Its name for programs; null for the code, the status and what is not used.
-    key: Option<&'static str>,
-    /// What it is called.
-    name: String,
-    /// As it travels.
-    raw: String,
-    /// What it says.
-    meaning: String,
-}
-
-impl FieldRow {
-    /// A part of a message that is no field of a command.
-    pub fn of_message(place: &str, name: &str, raw: String, meaning: &str) -> Self {
-        Self { place: place.to_owned(), key: None, name: name.to_owned(), raw, meaning: meaning.to_owned() }
-    }
-}
-
-impl From<FieldNote> for FieldRow {
-    fn from(note: FieldNote) -> Self {
-        let FieldNote { place, key, name, raw, meaning } = note;
-        Self { place, key: key.map(Key::name), name, raw, meaning }
-    }
-}
-
-impl decode::Field for FieldRow {
-    const COLUMNS: &'static [&'static str] = &["word", "field", "raw", "meaning"];
-
-    fn cells(&self) -> Vec<Cell> {
-        let Self { place, name, raw, meaning, .. } = self;
-        [place, name, raw, meaning].map(|text| text.as_str().into()).into()
     }
 }
 

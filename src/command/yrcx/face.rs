@@ -9,7 +9,7 @@ use super::backup::{Backup, Restore};
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
-use super::serve::Serve;
+use super::serve::ServeArgs;
 use super::top::Eye;
 use super::trace::Recorder;
 use super::unit::Unit;
@@ -30,7 +30,7 @@ use crate::controller::yrcx::{alarm, passing, simulator};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
-use crate::settings::target::Family;
+use crate::settings::target::{BUSES, Family};
 use crate::transport::session::host::Guard;
 use crate::transport::session::host::held::Held;
 
@@ -46,8 +46,8 @@ impl Face for Yrcx {
         "OMRON / Yamaha YRCX"
     }
 
-    fn urls(&self) -> &'static [(&'static str, &'static str)] {
-        &[("eip://", "yrcx: name or address of the network board")]
+    fn urls(&self) -> Vec<(String, &'static str)> {
+        BUSES.iter().map(|bus| (format!("{}://", bus.name), bus.about)).collect()
     }
 
     fn codes(&self) -> Vec<(String, String)> {
@@ -63,7 +63,7 @@ impl Face for Yrcx {
     }
 
     fn augment(&self, command: clap::Command) -> clap::Command {
-        words::augment::<Commands>(Unit::augment_args(command), "OMRON / Yamaha YRCX over EtherNet/IP")
+        words::augment::<Commands>(Unit::augment_args(command), "OMRON / Yamaha YRCX over a fieldbus")
             .after_help("Settings and first contact: `armctl help yrcx-setup`.")
     }
 
@@ -88,7 +88,7 @@ impl Face for Yrcx {
         Some(match kind {
             ToolKind::Decode => Tool::decode::<Decode>(),
             ToolKind::Explain => Tool::explain::<Explain>(),
-            ToolKind::Simulate => Tool::simulate::<Serve>(),
+            ToolKind::Simulate => Tool::simulate::<ServeArgs>(),
         })
     }
 

@@ -1,4 +1,4 @@
-//! `yrcx`: OMRON / Yamaha YRCX over EtherNet/IP.
+//! `yrcx`: OMRON / Yamaha YRCX over a fieldbus, see `buses.rs`.
 //!
 //! A command that gives one remote command implements `single::Single`: which row of the table, its fields, the report.
 //! `servo.rs` is the model of one that changes something, `info.rs` of those that read. What gives several implements
@@ -16,22 +16,27 @@
 mod alarm;
 mod arguments;
 pub mod backup;
+pub mod buses;
 mod check;
 mod clock;
 pub mod commands;
+mod connect;
 #[cfg(test)]
 mod coverage;
 mod data;
 pub mod decode;
+pub mod discover;
 pub mod eip;
 mod explain;
 pub mod face;
+pub mod fieldbus;
 #[cfg(test)]
 mod gate;
 mod hold;
 mod info;
 mod io;
 pub mod link;
+mod link_error;
 mod motion;
 mod numbers;
 mod overview;
@@ -43,7 +48,6 @@ mod position;
 mod procedures;
 mod program;
 mod raw;
-mod reach;
 mod refusal;
 mod select;
 mod serve;

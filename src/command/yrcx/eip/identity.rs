@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::NO_UNIT;
 use super::board;
+use super::{NO_UNIT, board_of};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::{Failure, Kind};
@@ -27,7 +27,7 @@ impl Command for Identify {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Identified, Failure> {
         context.link.no_unit(NO_UNIT)?;
         context.link.then("messages that ask the board who it is, and what it can do");
-        let board = context.link.board()?;
+        let board = board_of(context.link)?;
         let address = board.address().to_string();
         let Some(identity) = board.identity().await? else {
             return Err(Failure::new(Kind::Malformed, format!("{}: it does not say who it is", context.robot.label()))

@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::NO_UNIT;
 use super::board::{self, Probed, warned};
+use super::{NO_UNIT, board_of};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::{Failure, Kind};
@@ -34,7 +34,7 @@ impl Command for Probe {
         context
             .link
             .then("messages that ask the board who it is, for its assemblies, and for connections that it refuses");
-        let board = context.link.board()?;
+        let board = board_of(context.link)?;
         let identity = board.identity().await?;
         let probed = board.probe(identity.as_ref()).await?;
         Ok(Found { identity, probed })

@@ -4,7 +4,7 @@ use super::super::wire::Cyclic;
 
 /// A thing to do wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Mischief {
+pub enum AdapterFault {
     /// Sends every other image only.
     Drop,
     /// Sends no images.
@@ -38,7 +38,7 @@ pub enum Mischief {
 /// An item of a socket address, 0.0.0.0:2222.
 pub(super) const TRAILING: [u8; 20] = [0x01, 0x80, 16, 0, 0, 2, 0x08, 0xAE, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 
-impl Mischief {
+impl AdapterFault {
     /// All there are, with the names they are asked for by.
     pub const ALL: [(&'static str, Self); 14] = [
         ("drop", Self::Drop),
@@ -59,7 +59,7 @@ impl Mischief {
 }
 
 /// What is sent in place of an image, which is the `number`th.
-pub(super) fn images(mischief: Option<Mischief>, number: u64, bytes: Vec<u8>) -> Vec<Vec<u8>> {
+pub(super) fn images(mischief: Option<AdapterFault>, number: u64, bytes: Vec<u8>) -> Vec<Vec<u8>> {
     let Some(mischief) = mischief else { return vec![bytes] };
     let changed = |change: fn(&mut Cyclic<'_>)| {
         let Ok(mut datagram) = Cyclic::parse(&bytes) else { return Vec::new() };
@@ -67,26 +67,26 @@ pub(super) fn images(mischief: Option<Mischief>, number: u64, bytes: Vec<u8>) ->
         vec![datagram.emit(None)]
     };
     match mischief {
-        Mischief::Drop if number.is_multiple_of(2) => Vec::new(),
-        Mischief::Stall => Vec::new(),
-        Mischief::Stale => changed(|datagram| {
+        AdapterFault::Drop if number.is_multiple_of(2) => Vec::new(),
+        AdapterFault::Stall => Vec::new(),
+        AdapterFault::Stale => changed(|datagram| {
             // The first is as it should be: there is none before.
             datagram.sequence = datagram.sequence.min(1);
             datagram.count = datagram.count.min(1);
         }),
-        Mischief::Double => vec![bytes.clone(), bytes],
-        Mischief::WrongSequence => changed(|datagram| datagram.sequence = u32::MAX - datagram.sequence),
-        Mischief::WrongId => changed(|datagram| datagram.id = !datagram.id),
-        Mischief::WrongSize => {
+        AdapterFault::Double => vec![bytes.clone(), bytes],
+        AdapterFault::WrongSequence => changed(|datagram| datagram.sequence = u32::MAX - datagram.sequence),
+        AdapterFault::WrongId => changed(|datagram| datagram.id = !datagram.id),
+        AdapterFault::WrongSize => {
             changed(|datagram| datagram.body = &datagram.body[..datagram.body.len().saturating_sub(1)])
         }
-        Mischief::Drop
-        | Mischief::Frozen
-        | Mischief::Unreadable
-        | Mischief::Reset
-        | Mischief::Mute
-        | Mischief::Garbage
-        | Mischief::Trailing
-        | Mischief::Unowned => vec![bytes],
+        AdapterFault::Drop
+        | AdapterFault::Frozen
+        | AdapterFault::Unreadable
+        | AdapterFault::Reset
+        | AdapterFault::Mute
+        | AdapterFault::Garbage
+        | AdapterFault::Trailing
+        | AdapterFault::Unowned => vec![bytes],
     }
 }

@@ -1,6 +1,6 @@
 //! EtherNet/IP messages in words: what passes before images flow, and when they end.
 
-use super::FieldRow;
+use crate::command::yrcx::decode::images::FieldRow;
 use crate::transport::eip::status::{describe, encapsulation};
 use crate::transport::eip::wire::{
     Close, Command, Flow, Frame, HEADER_LEN, Identity, Net, Open, Opened, Path, Reply, Request, RrData, Segment,

@@ -10,7 +10,19 @@ use super::wire::{Status, WireError};
 
 /// Why something did not come about.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum Trouble {
+pub enum EipError {
+    /// No address belongs to the name.
+    #[error("cannot find host '{host}'")]
+    NotFound {
+        /// The name.
+        host: String,
+    },
+    /// The addresses are not IPv4.
+    #[error("'{host}' has no IPv4 address, as EtherNet/IP needs")]
+    NotIpv4 {
+        /// The name.
+        host: String,
+    },
     /// Nobody listens there, or nobody is there.
     #[error("no TCP connection: {text}")]
     Unreachable {
@@ -76,7 +88,7 @@ pub enum Trouble {
     Outdated,
     /// An assembly that was read has another size than was expected.
     #[error("the input assembly has {found} bytes, not {expected}")]
-    Misfit {
+    WrongSize {
         /// Its bytes.
         found: usize,
         /// What was expected.
@@ -103,7 +115,7 @@ pub enum Trouble {
     ),
 }
 
-impl Trouble {
+impl EipError {
     pub(super) fn unreachable(error: &io::Error) -> Self {
         Self::Unreachable { kind: error.kind(), text: plain(error) }
     }

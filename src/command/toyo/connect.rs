@@ -1,4 +1,4 @@
-//! The ways to a controller: a serial port, a device server, the simulator.
+//! How a controller is connected to: a serial port, a device server, the simulator.
 
 use std::time::Duration;
 
@@ -26,7 +26,7 @@ const BITS: u32 = 11;
 
 /// How a robot is reached.
 #[derive(Debug)]
-pub enum Way<'a> {
+pub enum Endpoint<'a> {
     /// A serial port of this machine.
     Serial(Line),
     /// A serial line behind a device server.
@@ -35,26 +35,26 @@ pub enum Way<'a> {
     Sim(&'a target::Sim),
 }
 
-/// The way that a robot's target names.
-pub fn way(robot: &Robot) -> Result<Way<'_>, Failure> {
+/// What a robot's target names.
+pub fn endpoint(robot: &Robot) -> Result<Endpoint<'_>, Failure> {
     match &robot.target.value.place {
-        Place::Serial(target::Serial { path, baud, data_bits, parity, stop_bits }) => Ok(Way::Serial(Line {
+        Place::Serial(target::Serial { path, baud, data_bits, parity, stop_bits }) => Ok(Endpoint::Serial(Line {
             path: path.clone(),
             baud: *baud,
             data_bits: *data_bits,
             parity: *parity,
             stop_bits: *stop_bits,
         })),
-        Place::Tcp(tcp) => Ok(Way::Tcp(tcp)),
-        Place::Sim(sim) => Ok(Way::Sim(sim)),
-        Place::Udp(_) | Place::Eip(_) => {
+        Place::Tcp(tcp) => Ok(Endpoint::Tcp(tcp)),
+        Place::Sim(sim) => Ok(Endpoint::Sim(sim)),
+        Place::Udp(_) | Place::Bus(_) => {
             Err(Failure::usage(format!("toyo is not reached over {}:", robot.target.value.scheme()))
                 .hint("use serial://, tcp:// or sim:"))
         }
     }
 }
 
-impl Way<'_> {
+impl Endpoint<'_> {
     /// How long one character is on the line.
     pub fn character(&self) -> Duration {
         match self {
@@ -95,7 +95,7 @@ impl Way<'_> {
 pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Stream<Box<dyn Peer>>, Failure> {
     match Box::pin(attach(robot, access, screen)).await? {
         Some(attached) => Ok(Stream::Session(attached)),
-        None => way(robot)?.open(robot).await,
+        None => endpoint(robot)?.open(robot).await,
     }
 }
 
@@ -110,8 +110,8 @@ pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<hel
     Ok(held::Line::new(stream, move || {
         let robot = robot.clone();
         Box::pin(async move {
-            let opened = match way(&robot) {
-                Ok(way) => way.open(&robot).await,
+            let opened = match endpoint(&robot) {
+                Ok(endpoint) => endpoint.open(&robot).await,
                 Err(failure) => Err(failure),
             };
             opened.map_err(|failure| failure.message)

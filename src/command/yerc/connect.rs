@@ -1,4 +1,4 @@
-//! The ways to a controller: UDP, the simulator, a session that holds one of both.
+//! How a controller is connected to: UDP, the simulator, a session that holds one of both.
 
 use std::io;
 use std::net::SocketAddr;
@@ -37,39 +37,39 @@ pub enum Transport {
 }
 
 /// How a robot is reached.
-enum Way<'a> {
+enum Endpoint<'a> {
     Udp(&'a target::Udp),
     Sim(Box<Start>, Option<FaultSpec>),
 }
 
-fn way(robot: &Robot) -> Result<Way<'_>, Failure> {
+fn endpoint(robot: &Robot) -> Result<Endpoint<'_>, Failure> {
     match &robot.target.value.place {
-        Place::Udp(udp) => Ok(Way::Udp(udp)),
+        Place::Udp(udp) => Ok(Endpoint::Udp(udp)),
         Place::Sim(sim) => {
             let faults = sim.fault.as_deref().map(str::parse::<FaultSpec>).transpose().map_err(|error| {
                 Failure::usage(format!("{}: {error}", robot.target.value)).hint("write % as %25 in a URL")
             })?;
             let start = simulated::start(sim.state.as_deref(), robot.model.value, faults.as_ref())?;
-            Ok(Way::Sim(Box::new(start), faults))
+            Ok(Endpoint::Sim(Box::new(start), faults))
         }
-        Place::Serial(_) | Place::Tcp(_) | Place::Eip(_) => {
+        Place::Serial(_) | Place::Tcp(_) | Place::Bus(_) => {
             let message = format!("yerc is not reached over {}:", robot.target.value.scheme());
             Err(Failure::usage(message).hint("use udp:// or sim:"))
         }
     }
 }
 
-/// Opens the way that a robot's target names, and says which model is there.
+/// Opens what a robot's target names, and says which model is there.
 pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<(Transport, Model), Failure> {
     if access.dry_run {
         return Ok((Transport::Notes(Plan::default()), robot.model.value));
     }
-    let way = way(robot)?;
-    let model = if let Way::Sim(start, _) = &way { start.model() } else { robot.model.value };
-    let transport = match (Box::pin(attach(robot, access, screen)).await?, way) {
+    let endpoint = endpoint(robot)?;
+    let model = if let Endpoint::Sim(start, _) = &endpoint { start.model() } else { robot.model.value };
+    let transport = match (Box::pin(attach(robot, access, screen)).await?, endpoint) {
         (Some(attached), _) => Transport::Session(attached),
-        (None, Way::Udp(udp)) => Transport::Udp(connect(robot, udp).await?),
-        (None, Way::Sim(start, faults)) => {
+        (None, Endpoint::Udp(udp)) => Transport::Udp(connect(robot, udp).await?),
+        (None, Endpoint::Sim(start, faults)) => {
             let controller = Simulated(Simulator::new(*start));
             Transport::Sim(Box::new(InProcess::new(controller, faults.map(Faults::pair))))
         }
@@ -83,9 +83,9 @@ pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<Dat
     let mut link = Yerc::connect(robot, access.clone(), screen).await?;
     overview(&mut link).await?;
     Yerc::close(link, screen).await?;
-    match way(robot)? {
-        Way::Udp(udp) => Ok(Datagrams::udp(connect(robot, udp).await?)),
-        Way::Sim(start, faults) => {
+    match endpoint(robot)? {
+        Endpoint::Udp(udp) => Ok(Datagrams::udp(connect(robot, udp).await?)),
+        Endpoint::Sim(start, faults) => {
             let controller: Box<dyn Peer> = Box::new(Simulated(Simulator::new(*start)));
             Ok(Datagrams::in_process(InProcess::new(controller, faults.map(Faults::pair))))
         }
