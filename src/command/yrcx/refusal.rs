@@ -146,8 +146,10 @@ pub fn unanswered(label: &str, row: &Row, outcome: &Outcome, stop: Option<bool>)
 
 /// A remote command where the fieldbus carries signals alone.
 pub fn no_commands(label: &str, row: &Row) -> Failure {
-    let message =
-        format!("{label}: the fieldbus unit carries signals alone (I/O size \"Compact\"), and {} is words", row.id);
+    let message = format!(
+        "{label}: the fieldbus unit carries signals alone (I/O size \"Compact\"), and {} is a remote command",
+        row.id
+    );
     Failure::new(Kind::RefusedHere, message).hint(
         "set the unit's I/O size to Normal for remote commands; signals work: `yrcx status`, `yrcx io`, `yrcx run`, \
          `yrcx stop`, `yrcx recover`",
