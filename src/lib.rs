@@ -26,6 +26,7 @@ pub mod gate;
 pub mod output;
 pub mod settings;
 
+pub use armctl_client as client;
 pub use armctl_controller as controller;
 pub use armctl_files as files;
 pub use armctl_transport as transport;

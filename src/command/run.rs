@@ -15,7 +15,7 @@ pub use self::rounds::Repeat;
 use self::rounds::Rounds;
 use super::authority::{self, Authority};
 use super::common::session::open_for;
-use super::dry_run::{Plan, is_end};
+use super::dry_run::{DryRun, Plan, is_end};
 use super::interrupt::{catch_interrupts, interruptible};
 use super::line::Line;
 use super::{Access, AnyCommand, Context, Entry, Family, Outcome};
@@ -333,7 +333,7 @@ impl Run {
     /// One connection, one run.
     async fn once<F: Family>(&self, command: &dyn AnyCommand<F>, robot: &Robot) -> Outcome {
         if self.gate.dry_run {
-            return Ok(Box::new(self.plan(command, robot, &self.screen).await?.into_report()));
+            return Ok(Box::new(DryRun::from(self.plan(command, robot, &self.screen).await?)));
         }
         let (mut link, grant) = self.connect(command, robot).await?;
         let outcome = self.attempt(command, robot, &mut link, &grant).await;

@@ -4,7 +4,7 @@ use futures_util::FutureExt as _;
 use serde_json::Value;
 
 use super::authority::Authority;
-use super::dry_run::is_end;
+use super::dry_run::{DryRun, is_end};
 use super::{Access, AnyCommand, Context, Family, Need};
 use crate::controller::Risk;
 use crate::failure::Failure;
@@ -43,7 +43,7 @@ pub fn planned<F: Family>(
     let context = Context { robot, link: &mut link, screen: &QUIET, several: false, authority };
     match command.run(context).now_or_never().expect("a dry run waits for nothing") {
         Err(failure) if !is_end(&failure) => Err(failure),
-        _ => super::AnyReport::data(&F::rehearsed(&mut link).into_report()),
+        _ => super::AnyReport::data(&DryRun::from(F::rehearsed(&mut link))),
     }
 }
 

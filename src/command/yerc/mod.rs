@@ -5,8 +5,8 @@ mod axes;
 mod check;
 mod chosen;
 mod each;
+mod failure;
 pub mod file;
-mod fitted;
 #[cfg(test)]
 mod gated;
 mod hours;
@@ -23,7 +23,6 @@ mod parts;
 mod position;
 mod raw;
 mod reach;
-mod refusal;
 mod register;
 pub mod simulated;
 mod status;

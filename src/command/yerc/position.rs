@@ -7,9 +7,9 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Serialize, Serializer};
 
 use super::Family;
-use super::fitted::Fitted;
 use super::link::Link;
 use super::orders::usage;
+use crate::client::yerc::Fitted;
 use crate::command::dry_run::{Known as _, unknown};
 use crate::command::items::{self, ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report};
