@@ -24,7 +24,7 @@ async fn main() -> Result<(), Box<dyn Error>> {
     println!("servo on: {}, alarm: {}", status.servo_on(), status.alarm());
 
     let job = robot.read_file(&FileName::new("TESTJOB.JBI")?).await?;
-    println!("TESTJOB.JBI: {} lines", job.split(|byte| *byte == b'\n').count());
+    println!("TESTJOB.JBI: {} bytes", job.len());
 
     robot.ask(&Servo(true)).await?;
     let (class, speed) = (SpeedClass::Percent, 1_000);
