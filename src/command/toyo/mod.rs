@@ -5,6 +5,7 @@ mod bus;
 mod card;
 mod cells;
 mod check;
+mod chosen;
 mod coordinate;
 mod copies;
 mod counter;

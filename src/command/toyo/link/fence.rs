@@ -17,7 +17,7 @@ pub const FENCE: &str = "whether the line is at peace";
 
 impl Link {
     /// Asks something harmless before an order, unless an answered question was the last on the line.
-    pub(super) async fn fence(&mut self) -> Result<(), Failure> {
+    pub(in crate::command::toyo) async fn fence(&mut self) -> Result<(), Failure> {
         if self.is_fenced {
             return Ok(());
         }
