@@ -5,6 +5,8 @@ mod each;
 mod error;
 mod plan;
 mod simulated;
+#[cfg(test)]
+mod tests;
 mod transport;
 
 use std::convert::Infallible;
