@@ -3,8 +3,8 @@
 use std::io;
 
 use crate::client::yerc::{Error, Refusal};
-use crate::command::attach::hindered;
-use crate::command::dry_run::unknown;
+use crate::command::frame::attach::hindered;
+use crate::command::frame::dry_run::unknown;
 use crate::controller::Risk;
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::status;

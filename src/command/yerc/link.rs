@@ -11,7 +11,7 @@ use super::trace::Trace;
 use crate::client::Watcher;
 pub use crate::client::yerc::{Asked, Error, Refusal};
 use crate::client::yerc::{Cause, Client, Event, TransferError};
-use crate::command::dry_run::Plan;
+use crate::command::frame::dry_run::Plan;
 use crate::command::{Access, Family};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::query::Query;
@@ -77,7 +77,7 @@ impl Family for Yerc {
         Ok("the robot was stopped: HOLD is on; `yerc hold off` releases it".to_owned())
     }
 
-    fn rehearsed(link: &mut Link) -> Plan {
+    fn planned(link: &mut Link) -> Plan {
         link.take_plan()
     }
 

@@ -5,7 +5,7 @@ use super::link::Yerc;
 use super::overview::overview;
 use super::simulated;
 use crate::client::yerc::{Client, Endpoint, Options};
-use crate::command::attach::attach;
+use crate::command::frame::attach::attach;
 use crate::command::{Access, Family as _};
 use crate::failure::Failure;
 use crate::output::Screen;

@@ -1,9 +1,9 @@
 //! The layers of a controller for `armctl robots check`. No connection for images is opened.
 
-use super::Family;
 use super::eip::board::{Board, MAKER, Probed};
 use super::link::Link;
-use crate::command::checks::{Layer, Layers};
+use super::link::Yrcx;
+use crate::command::face::layers::{Layer, Layers};
 use crate::command::{Access, Family as _};
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::image::Image;
@@ -31,11 +31,11 @@ const LAYERS: &[&str] = &[
 /// Looks at them; reads only.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
     let mut layers = Layers::new(robot.label(), LAYERS);
-    match Family::connect(robot, access, screen).await {
+    match Yrcx::connect(robot, access, screen).await {
         Err(failure) => layers.fail("name", &failure),
         Ok(mut link) => {
             look(&mut link, &mut layers).await?;
-            Family::close(link, screen).await?;
+            Yrcx::close(link, screen).await?;
         }
     }
     Ok(layers.finish())

@@ -23,9 +23,9 @@ use super::overwrite::Replaced;
 use super::reach;
 use super::refusal;
 use super::trace::{Recorder, Trace};
-use crate::command::attach::{attach, is_held};
-use crate::command::dry_run::{Plan, Reason, unknown};
-use crate::command::{Access, Entry, Family, Need};
+use crate::command::frame::attach::{attach, is_held};
+use crate::command::frame::dry_run::{Plan, Reason, unknown};
+use crate::command::{Access, ConnectMode, Entry, Family};
 use crate::controller::Risk;
 use crate::controller::yrcx::alarm::STOP_INPUT;
 use crate::controller::yrcx::answer::Answer;
@@ -168,11 +168,11 @@ impl Family for Yrcx {
         let way = reach::way(robot)?;
         if access.dry_run {
             let mut link = Link::new(robot, &access, screen, Transport::Notes(Plan::default()), None)?;
-            let opens_session = access.need == Need::Command && robot.hold.value && !robot.read_only.value;
+            let opens_session = access.mode == ConnectMode::Control && robot.hold.value && !robot.read_only.value;
             link.is_held |= opens_session || is_held(robot);
             return Ok(link);
         }
-        if access.need == Need::Messages {
+        if access.mode == ConnectMode::Explicit {
             let (board, recorder) = way.board(robot, &access, screen).await?;
             return Link::new(robot, &access, screen, Transport::Board(Box::new(board)), recorder);
         }
@@ -233,18 +233,18 @@ impl Family for Yrcx {
         link.is_jogging()
     }
 
-    fn rehearsed(link: &mut Link) -> Plan {
+    fn planned(link: &mut Link) -> Plan {
         match &mut link.transport {
             Transport::Notes(plan) => std::mem::take(plan),
             Transport::Image(_) | Transport::Board(_) => Plan::default(),
         }
     }
 
-    fn entry(robot: &Robot, need: Need) -> Entry {
+    fn entry(robot: &Robot, need: ConnectMode) -> Entry {
         let takes_control = match &robot.target.value.place {
             Place::Sim(_) => false,
-            Place::Eip(eip) => eip.role == EipRole::Owner && need == Need::Command,
-            Place::Udp(_) | Place::Serial(_) | Place::Tcp(_) => need == Need::Command,
+            Place::Eip(eip) => eip.role == EipRole::Owner && need == ConnectMode::Control,
+            Place::Udp(_) | Place::Serial(_) | Place::Tcp(_) => need == ConnectMode::Control,
         };
         if !takes_control {
             Entry::Harmless
@@ -309,8 +309,8 @@ impl Link {
     ) -> Result<Self, Failure> {
         let timeout = robot.timeout.value;
         let is_owner = match &robot.target.value.place {
-            Place::Eip(eip) => eip.role == EipRole::Owner && access.need == Need::Command,
-            _ => access.need != Need::Messages,
+            Place::Eip(eip) => eip.role == EipRole::Owner && access.mode == ConnectMode::Control,
+            _ => access.mode != ConnectMode::Explicit,
         };
         let is_simulated = robot.target.value.is_simulated();
         let is_network = !is_simulated

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::eip::board::Board;
 use super::simulated;
 use super::trace::Recorder;
-use crate::command::{Access, Need};
+use crate::command::{Access, ConnectMode};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::resting;
 use crate::failure::{Failure, Kind};
@@ -88,7 +88,9 @@ impl Way<'_> {
 
     async fn connect(&self, robot: &Robot, access: &Access, tap: Tap) -> Result<ImageLink, Failure> {
         match self {
-            Self::Eip(eip) if access.need == Need::Sight && eip.role == EipRole::Owner => see(robot, eip, tap).await,
+            Self::Eip(eip) if access.mode == ConnectMode::Monitor && eip.role == EipRole::Owner => {
+                see(robot, eip, tap).await
+            }
             Self::Eip(eip) => open(robot, eip, tap).await,
             // What goes wrong on a network takes one.
             Self::Sim(sim) if simulated::has_faults(sim) => {

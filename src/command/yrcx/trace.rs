@@ -6,9 +6,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, SyncSender};
 use std::thread::JoinHandle;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
-use crate::command::{Access, trace};
+use crate::command::Access;
+use crate::command::frame::trace;
 use crate::controller::text::hex;
 use crate::controller::yrcx::changes::changes;
 use crate::controller::yrcx::image::Image;
@@ -41,23 +42,20 @@ impl Trace {
 
     /// An image was shown to the controller.
     pub fn sent(&mut self, image: &Image) {
-        self.text.capture(|capture, time| capture.line(time, Direction::Sent, &image.to_bytes()));
         let before = self.sent.replace(*image);
-        self.changes("->", Side::Input, before.as_ref(), image);
+        self.image(Direction::Sent, Side::Input, before.as_ref(), image);
     }
 
     /// The controller showed an image.
     pub fn received(&mut self, image: &Image) {
-        self.text.capture(|capture, time| capture.line(time, Direction::Received, &image.to_bytes()));
         let before = self.received.replace(*image);
-        self.changes("<-", Side::Output, before.as_ref(), image);
+        self.image(Direction::Received, Side::Output, before.as_ref(), image);
     }
 
     /// A message went to the network board, or came from it.
-    pub fn message(&self, direction: Direction, bytes: &[u8], about: &str) {
+    pub fn message(&mut self, direction: Direction, bytes: &[u8], about: &str) {
         if self.text.level() > 0 {
-            let arrow = if direction == Direction::Sent { "->" } else { "<-" };
-            self.text.line(&format!("{arrow} {}  # {about}", hex(bytes)));
+            self.text.line(direction, &format!("{}  # {about}", hex(bytes)));
         }
     }
 
@@ -66,10 +64,11 @@ impl Trace {
         self.text.finish()
     }
 
-    fn changes(&self, arrow: &str, side: Side, before: Option<&Image>, image: &Image) {
+    fn image(&mut self, direction: Direction, side: Side, before: Option<&Image>, image: &Image) {
+        self.text.piece(direction, None, &image.to_bytes());
         if self.text.level() > 0 {
             for change in changes(side, before, image) {
-                self.text.line(&format!("{arrow} {}", change.line(self.text.level() > 1)));
+                self.text.line(direction, &change.line(self.text.level() > 1));
             }
         }
     }
@@ -123,7 +122,7 @@ impl Recorder {
         let (counted, sender) = (Arc::clone(&lost), packets.clone());
         let tap = Tap::new(move |passed: &Passed<'_>| {
             let packet = Packet {
-                time: SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default(),
+                time: trace::now(),
                 is_tcp: passed.is_tcp,
                 from: passed.from.into(),
                 to: passed.to.into(),
@@ -141,11 +140,10 @@ impl Recorder {
     pub fn finish(self) -> Result<(), Failure> {
         // A writer that is gone says so when it is joined.
         let _ = self.packets.send(None);
-        let not_whole = |why: String| Failure::local(format!("the record of --trace is not whole: {why}"));
-        self.writer.join().unwrap_or_else(|_| Err(not_whole("its writer broke down".to_owned())))?;
+        self.writer.join().unwrap_or_else(|_| Err(trace::not_whole("its writer broke down")))?;
         match self.lost.load(Ordering::Relaxed) {
             0 => Ok(()),
-            lost => Err(not_whole(format!("the disk was too slow for {lost} packets"))),
+            lost => Err(trace::not_whole(&format!("the disk was too slow for {lost} packets"))),
         }
     }
 }

@@ -6,7 +6,6 @@ mod identity;
 mod message;
 mod probe;
 
-use super::Family;
 use crate::command::commands;
 
 /// Why `--unit` means nothing here.
@@ -14,7 +13,7 @@ const NO_UNIT: &str = "the board is that of the whole controller";
 
 commands! {
     /// What the network board can be asked.
-    pub enum Eip of Family {
+    pub enum Eip {
         /// Who the board is
         Identity(identity::Identify),
         /// Find the assemblies of the board, their sizes, and what makes a connection

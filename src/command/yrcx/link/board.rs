@@ -3,7 +3,7 @@
 use serde_json::Value as Json;
 
 use super::{Board, Link, Transport};
-use crate::command::dry_run::{Reason, unknown};
+use crate::command::frame::dry_run::{Reason, unknown};
 use crate::failure::Failure;
 use crate::transport::tap::Direction;
 
@@ -18,7 +18,7 @@ impl Link {
     }
 
     /// Tells at `-vv` what was asked of the board, and what it answered.
-    pub fn tell_message(&self, sent: &[u8], received: &[u8], about: &str) {
+    pub fn tell_message(&mut self, sent: &[u8], received: &[u8], about: &str) {
         self.trace.message(Direction::Sent, sent, about);
         self.trace.message(Direction::Received, received, "done");
     }

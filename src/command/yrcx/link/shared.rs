@@ -3,7 +3,7 @@
 use tokio::time::Instant;
 
 use super::{Link, Transport};
-use crate::command::attach::hindered;
+use crate::command::frame::attach::hindered;
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::describe::{answer_summary, command_summary};
 use crate::controller::yrcx::image::{Image, Output};
