@@ -16,5 +16,5 @@ fn run(example: &str) -> String {
 
 #[test]
 fn yerc_reads_fetches_and_moves() {
-    assert_eq!(run("yerc"), "servo on: true, alarm: false\nTESTJOB.JBI: 9 lines\nS stands at 5000 pulses\n");
+    assert_eq!(run("yerc"), "servo on: true, alarm: false\nTESTJOB.JBI: 487 bytes\nS stands at 5000 pulses\n");
 }
