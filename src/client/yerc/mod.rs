@@ -131,11 +131,6 @@ enum Want<'a, S> {
     Feed(&'a mut S),
 }
 
-/// Who has no file to read or write.
-fn nothing<S>(_: Want<'_, S>) -> Result<(), Infallible> {
-    Ok(())
-}
-
 impl Client {
     /// Connects to a controller. Nothing is sent: datagrams go out to nobody, too, so that only an answer shows that it is
     /// there.
@@ -232,7 +227,7 @@ impl Client {
         self.has_moved
     }
 
-    /// A file as a whole; `.to_vec()` of its name is what the controller lists it by. It has at most a gigabyte.
+    /// A file as a whole, in the controller's encoding; at most a gigabyte.
     ///
     /// # Errors
     /// [`Error::Refused`] if there is none, [`Error::Incomplete`] if it came in part: nothing is kept of it then.
@@ -377,7 +372,7 @@ impl Client {
     async fn transact(&mut self, request: &Request, is_repeatable: bool) -> Result<Reply, Error> {
         let mut session = Exchange::new(&request.into(), is_repeatable, self.policy, &self.ids);
         let before = self.totals.sent;
-        let driven = self.drive(request.division(), &mut session, nothing).await;
+        let driven = self.drive(request.division(), &mut session, |_| Ok::<(), Infallible>(())).await;
         let ended = driven.map_err(|cause| self.cut_short(cause.into(), request, self.totals.sent > before))?;
         self.exchanged(session.counters());
         match ended {
