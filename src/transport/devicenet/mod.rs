@@ -1,0 +1,15 @@
+//! DeviceNet: images to and from a slave of the predefined master/slave set, over a CAN adapter.
+//!
+//! Knows bytes of connections and no robot.
+
+use std::time::Duration;
+
+pub mod can;
+pub mod device;
+pub mod error;
+pub mod scanner;
+pub mod settings;
+pub mod wire;
+
+/// A moment, as time passed since an origin of the driver's choice. It never runs backwards.
+pub type Now = Duration;
