@@ -13,3 +13,6 @@ pub mod wire;
 
 /// A moment, as time passed since an origin of the driver's choice. It never runs backwards.
 pub type Now = Duration;
+
+#[cfg(test)]
+mod tests;

@@ -264,6 +264,8 @@ impl Scanner {
         match self.phase {
             Phase::New => Some(Now::ZERO),
             Phase::Checking(_, due) => Some(due),
+            // Until the adapter is back on the bus.
+            Phase::OnLine if self.bus.health.state == BusState::Off => None,
             Phase::OnLine => {
                 let connections = self.connections.values().filter_map(Connection::wake);
                 connections.chain(self.finder.as_ref().map(Finder::wake)).min()

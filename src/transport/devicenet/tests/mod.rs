@@ -1,0 +1,5 @@
+//! Master and slave together, in virtual time.
+
+mod faults;
+mod link;
+mod world;
