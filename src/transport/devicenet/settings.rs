@@ -81,7 +81,10 @@ impl Settings {
             return wrong(format!("the cycle must be 1 ms to 10 s, not {:?}", images.cycle));
         }
         if !RATES.contains(&images.rate) || images.rate < images.cycle {
-            return wrong(format!("the rate must be {:?} (the cycle) to 65535 ms, not {:?}", images.cycle, images.rate));
+            return wrong(format!(
+                "the rate must be {:?} (the cycle) to 65535 ms, not {:?}",
+                images.cycle, images.rate
+            ));
         }
         if images.profiles.iter().any(|profile| profile.resting.is_empty()) {
             return wrong("an image has one byte at least".to_owned());

@@ -6,12 +6,13 @@ use std::pin::Pin;
 use std::time::Duration;
 
 pub mod bus;
-//pub mod slcan;
-//pub mod slcan_port;
-//LINUX
-//pub mod socketcan;
+pub mod pipe;
+pub mod slcan;
+pub mod slcan_port;
+#[cfg(target_os = "linux")]
+pub mod socketcan;
 
-//pub use self::slcan_port::SlcanPort;
+pub use self::slcan_port::SlcanPort;
 
 /// Most bytes of a frame.
 pub const MOST_DATA: usize = 8;
@@ -329,7 +330,8 @@ mod tests {
         let time = Duration::from_millis(1500);
         assert_eq!(Frame::from_candump("(1.500000) can0 42D#000102"), Some((Some(time), frame)));
         assert_eq!(Frame::from_candump("  can0  42D   [3]  00 01 02"), Some((None, frame)));
-        for wrong in ["", "can0", "can0 42D", "can0 42D#0", "can0 0000042D#00", "can0 42D#R", "can0 42D [x]", "can0 é#"] {
+        for wrong in ["", "can0", "can0 42D", "can0 42D#0", "can0 0000042D#00", "can0 42D#R", "can0 42D [x]", "can0 é#"]
+        {
             assert_eq!(Frame::from_candump(wrong), None, "{wrong}");
         }
     }

@@ -101,7 +101,8 @@ impl Messages {
         if status != 0 {
             self.arriving = None;
         }
-        let is_whole = kind == Kind::Last && self.arriving.as_ref().is_some_and(|arriving| (count + 1) % 64 == arriving.count);
+        let is_whole =
+            kind == Kind::Last && self.arriving.as_ref().is_some_and(|arriving| (count + 1) % 64 == arriving.count);
         let arriving = self.arriving.take_if(|_| is_whole)?;
         Some(Whole { header: Header { is_fragment: false, ..header }, body: arriving.body })
     }

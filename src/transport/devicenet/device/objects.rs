@@ -47,7 +47,9 @@ impl<A: Application> Device<A> {
         }
         let done = match Request::parse(Format::Byte8Byte8, &whole.body) {
             None => Err((general::TOO_SHORT, owner::NONE)),
-            Some(request) => self.serve(now, whole.header.mac, &request, is_explicit).map(|data| (request.service, data)),
+            Some(request) => {
+                self.serve(now, whole.header.mac, &request, is_explicit).map(|data| (request.service, data))
+            }
         };
         Some(match done {
             Ok((service, data)) => Answer::Done { service, data },

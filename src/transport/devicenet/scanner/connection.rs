@@ -270,7 +270,9 @@ impl Connection {
             Outcome::Answer(Answer::Refused { general, additional }) => {
                 Err(Error::Refused { what, mac, general: *general, additional: *additional })
             }
-            Outcome::Silent => Err(Error::Silent { mac, what, is_bus_alive: bus.is_alive_without(mac, Now::ZERO), state }),
+            Outcome::Silent => {
+                Err(Error::Silent { mac, what, is_bus_alive: bus.is_alive_without(mac, Now::ZERO), state })
+            }
             Outcome::Senseless(why) => Err(Error::Senseless { mac, what, why }),
         };
         match self.phase {
@@ -282,7 +284,11 @@ impl Connection {
             },
             Phase::AskingProduced => match answer(PRODUCED).and_then(|data| word(&data, mac, PRODUCED)) {
                 Ok(produced) => {
-                    self.request(now, Phase::AskingConsumed(produced), &Request::get(class::CONNECTION, 2, CONSUMED_SIZE));
+                    self.request(
+                        now,
+                        Phase::AskingConsumed(produced),
+                        &Request::get(class::CONNECTION, 2, CONSUMED_SIZE),
+                    );
                 }
                 Err(error) => self.give_up(now, error, true),
             },

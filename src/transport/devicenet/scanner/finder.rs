@@ -130,7 +130,8 @@ mod tests {
         let times = |number| asked.iter().filter(|id| **id == Id::Duplicate(mac(number)).emit()).count();
         // 7 answered at once, 5 was about to go on line, the own MAC is nobody else's.
         assert_eq!((times(0), times(5), times(7), times(8)), (0, 0, 1, 2));
-        let found: Vec<(u8, bool)> = finder.found().iter().map(|found| (found.mac.number(), found.is_on_line)).collect();
+        let found: Vec<(u8, bool)> =
+            finder.found().iter().map(|found| (found.mac.number(), found.is_on_line)).collect();
         assert_eq!(found, [(5, false), (7, true)]);
     }
 }

@@ -146,7 +146,10 @@ impl Scanner {
 
     /// The connections that have something new to see since this was last asked.
     pub fn changed(&mut self) -> Vec<u64> {
-        self.connections.iter_mut().filter_map(|(number, connection)| connection.take_changed().then_some(*number)).collect()
+        self.connections
+            .iter_mut()
+            .filter_map(|(number, connection)| connection.take_changed().then_some(*number))
+            .collect()
     }
 
     /// Shows this image from the next poll on, and says which change it was: the slave has taken it when the view's

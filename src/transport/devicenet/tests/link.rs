@@ -37,11 +37,13 @@ fn a_connection_begins_with_the_known_frames() {
     ];
     let got = frames(&world);
     assert_eq!(got[..10], expected[..10]);
-    assert_eq!(got[10], "42C#4110050209" .to_owned() + "6400");
+    assert_eq!(got[10], "42C#4110050209".to_owned() + "6400");
     assert_eq!(got[11], "42B#41906400");
     assert_eq!(got[12], expected[11]);
-    assert_eq!(got[13..19].iter().map(|frame| &frame[..6]).collect::<Vec<_>>(),
-        ["42D#41", "42D#42", "42D#43", "42D#44", "42D#45", "42D#86"]);
+    assert_eq!(
+        got[13..19].iter().map(|frame| &frame[..6]).collect::<Vec<_>>(),
+        ["42D#41", "42D#42", "42D#43", "42D#44", "42D#45", "42D#86"]
+    );
     assert_eq!(got[19], "3C5#0041000000000000");
     let view = world.view();
     assert_eq!((view.size, view.rate, view.generation), (Some(48), Some(MS * 100), 1));
@@ -277,8 +279,20 @@ fn settings_that_cannot_be_are_refused_before_a_frame_leaves() {
     let Purpose::Images(usual) = images(5).purpose else { panic!() };
     for (settings, part) in [
         (images(1), "this master's own"),
-        (Settings { purpose: Purpose::Images(crate::devicenet::settings::Images { cycle: Duration::ZERO, ..usual.clone() }), ..images(5) }, "cycle"),
-        (Settings { purpose: Purpose::Images(crate::devicenet::settings::Images { rate: MS, ..usual }), ..images(5) }, "rate"),
+        (
+            Settings {
+                purpose: Purpose::Images(crate::devicenet::settings::Images { cycle: Duration::ZERO, ..usual.clone() }),
+                ..images(5)
+            },
+            "cycle",
+        ),
+        (
+            Settings {
+                purpose: Purpose::Images(crate::devicenet::settings::Images { rate: MS, ..usual }),
+                ..images(5)
+            },
+            "rate",
+        ),
     ] {
         let error = world.scanner.open(LINK, settings).unwrap_err().to_string();
         assert!(error.contains(part), "{error}");

@@ -2,4 +2,5 @@
 
 mod faults;
 mod link;
+mod sockets;
 mod world;

@@ -76,11 +76,7 @@ pub fn resting(size: usize) -> Vec<u8> {
 
 pub fn images(number: u8) -> Settings {
     let profiles = [("Normal", 48), ("Compact", 4)].map(|(name, size)| Profile { name, resting: resting(size) });
-    Settings {
-        slave: mac(number),
-        purpose: Purpose::Images(Images::usual(profiles.to_vec(), None)),
-        timeout: SECOND,
-    }
+    Settings { slave: mac(number), purpose: Purpose::Images(Images::usual(profiles.to_vec(), None)), timeout: SECOND }
 }
 
 /// Shares of frames, of 10,000, to which something happens on their way to one receiver.

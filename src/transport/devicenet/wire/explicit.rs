@@ -318,8 +318,7 @@ mod tests {
 
     use super::*;
 
-    const FORMATS: [Format; 4] =
-        [Format::Byte8Byte8, Format::Byte8Word16, Format::Word16Word16, Format::Word16Byte8];
+    const FORMATS: [Format; 4] = [Format::Byte8Byte8, Format::Byte8Word16, Format::Word16Word16, Format::Word16Byte8];
 
     fn mac(number: u8) -> Mac {
         Mac::new(number).unwrap()
