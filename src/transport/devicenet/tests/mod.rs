@@ -3,4 +3,5 @@
 mod faults;
 mod link;
 mod sockets;
+mod tshark;
 mod world;
