@@ -25,6 +25,7 @@ mod coverage;
 mod data;
 pub mod decode;
 pub mod discover;
+pub mod devicenet;
 pub mod eip;
 pub mod explain;
 pub mod fieldbus;
@@ -173,5 +174,7 @@ commands! {
         Raw(raw::Raw),
         /// The network board itself: who it is, which assemblies it has (diagnosis)
         Eip(Verbs<eip::Eip>),
+        /// The bus of a controller on DeviceNet, by messages
+        Devicenet(Verbs<devicenet::DeviceNet>),
     }
 }

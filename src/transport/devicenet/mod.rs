@@ -8,6 +8,7 @@ pub mod can;
 pub mod device;
 pub mod error;
 pub mod hub;
+pub mod link;
 pub mod monitor;
 pub mod network;
 pub mod scanner;

@@ -16,12 +16,14 @@ use tokio::time::{Instant, sleep, sleep_until, timeout};
 
 use super::Now;
 use super::can::pipe::Pipe;
-use super::can::{Bitrate, CanPort, Frame, Health, Heard, PortError, SlcanPort};
+use super::can::{Bitrate, CanPort, Health, Heard, PortError, SlcanPort};
 use super::error::Error;
 use super::monitor::{Monitor, Sight};
 use super::scanner::{Found, Identity, Reply, Scanner, State, Token, View};
 use super::settings::Settings;
 use super::wire::{Answer, Mac, Request};
+use crate::image::tap::Passed;
+pub use crate::image::tap::Tap;
 use crate::serial::{self, Line};
 
 /// Between tries to open an adapter again.
@@ -78,31 +80,6 @@ pub struct Adapter {
     pub identity: Option<Identity>,
 }
 
-type Look = dyn Fn(&Frame) + Send + Sync;
-
-/// Called with every frame that passes, from the thread that moves it; it must not block.
-#[derive(Clone, Default)]
-pub struct Tap(Option<Arc<Look>>);
-
-impl Tap {
-    /// Calls this.
-    pub fn new(look: impl Fn(&Frame) + Send + Sync + 'static) -> Self {
-        Self(Some(Arc::new(look)))
-    }
-
-    fn pass(&self, frame: &Frame) {
-        if let Some(look) = &self.0 {
-            look(frame);
-        }
-    }
-}
-
-impl fmt::Debug for Tap {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if self.0.is_some() { "Tap" } else { "no Tap" })
-    }
-}
-
 /// An adapter that is open. It is cheap to clone; it is closed with the last clone and the last connection.
 #[derive(Debug, Clone)]
 pub struct Network {
@@ -156,7 +133,10 @@ impl Network {
             shared.retain(|owner| owner.strong_count() > 0);
             let same = |owner: &Arc<Owner>| owner.inner.adapter.place == adapter.place;
             if let Some(owner) = shared.iter().filter_map(Weak::upgrade).find(same) {
-                if owner.inner.adapter != *adapter {
+                let other = &owner.inner.adapter;
+                // Who only listens can do so beside a master.
+                let fits = adapter.identity.is_none() || adapter.identity == other.identity;
+                if !fits || adapter.bitrate != other.bitrate {
                     let place = &adapter.place;
                     return Err(Error::Settings(format!(
                         "{place} is in use with another bit rate or master MAC; one adapter has one of each"
@@ -506,7 +486,7 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
                 scanner.handle_health(now, port.health());
                 while let Some(frame) = scanner.poll(now) {
                     // First, so that no record has an answer before what it answers.
-                    taps.iter().for_each(|(_, tap)| tap.pass(&frame));
+                    taps.iter().for_each(|(_, tap)| tap.pass(|| Passed::Frame(frame.to_capture())));
                     port.send(&frame)?;
                 }
             }
@@ -535,7 +515,7 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
             match heard {
                 Heard::Frame(frame) => {
                     *frames += 1;
-                    taps.iter().for_each(|(_, tap)| tap.pass(&frame));
+                    taps.iter().for_each(|(_, tap)| tap.pass(|| Passed::Frame(frame.to_capture())));
                     monitor.hear(now, &frame);
                     if let Some(scanner) = scanner {
                         scanner.handle(now, &frame);

@@ -70,7 +70,9 @@ fn name(id: Id) -> Option<&'static str> {
 #[test]
 fn every_identifier_has_the_name_that_tshark_gives_it() {
     let frames: Vec<Frame> = (0..0x800).map(|id| Frame::new(id, &[0; 8]).unwrap()).collect();
-    let Some(told) = fields(&frames, &["devicenet.src_mac_id", "devicenet.grp_msg3.id", "_ws.col.Info"]) else { return };
+    let Some(told) = fields(&frames, &["devicenet.src_mac_id", "devicenet.grp_msg3.id", "_ws.col.Info"]) else {
+        return;
+    };
     assert_eq!(told.len(), frames.len());
     for (frame, told) in frames.iter().zip(&told) {
         let [source, message3, info] = told.as_slice() else { panic!("{told:?}") };

@@ -1,0 +1,44 @@
+//! `yrcx devicenet identity`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::board;
+use super::{Family, NO_UNIT, board_of};
+use crate::command::{Command, Context, Need, Report};
+use crate::failure::Failure;
+use crate::output::view::{Section, View};
+
+/// Asks the node who it is. Its connections are allocated for that, and released; nothing is polled.
+#[derive(Debug, Args)]
+pub struct Identify {}
+
+impl Command for Identify {
+    type Family = Family;
+    type Report = Identified;
+    const ID: &'static str = "yrcx.devicenet.identity";
+
+    fn need(&self) -> Need {
+        Need::Messages
+    }
+
+    async fn run(&self, context: Context<'_, Family>) -> Result<Identified, Failure> {
+        context.link.no_unit(NO_UNIT)?;
+        context.link.then("messages that ask the node who it is");
+        Ok(Identified { identity: board_of(context.link)?.identity().await? })
+    }
+}
+
+/// Who answers.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Identified {
+    #[serde(flatten)]
+    identity: board::Identity,
+}
+
+impl Report for Identified {
+    fn view(&self) -> View {
+        View::default().and(Section::Fields(self.identity.fields()))
+    }
+}
