@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::{Desk, Report, ValueKind};
+use crate::command::{OfflineCommand, Report, ValueKind};
 use crate::controller::toyo::errors;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -27,7 +27,7 @@ fn code(text: &str) -> Result<u8, String> {
     code.ok_or_else(|| "a code is two hexadecimal digits, as in 28; `toyo status` shows it".to_owned())
 }
 
-impl Desk for Explain {
+impl OfflineCommand for Explain {
     type Report = ToyoCode;
     const ID: &'static str = "explain.toyo";
 

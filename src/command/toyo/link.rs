@@ -22,8 +22,8 @@ use super::position::Place;
 use super::refusal;
 use super::trace::Trace;
 use super::wear::Wear;
-use crate::command::attach::session_busy;
-use crate::command::dry_run::{Plan, Reason, unknown};
+use crate::command::frame::attach::session_busy;
+use crate::command::frame::dry_run::{Plan, Reason, unknown};
 use crate::command::{Access, Family};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
@@ -165,7 +165,7 @@ impl Family for Toyo {
         link.moving == Some(Moving::Jog)
     }
 
-    fn rehearsed(link: &mut Link) -> Plan {
+    fn planned(link: &mut Link) -> Plan {
         link.plan_end();
         match &mut link.transport {
             Transport::Notes(plan) => std::mem::take(plan),

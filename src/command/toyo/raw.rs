@@ -4,11 +4,11 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::decode::FieldRow;
 use super::link::Link;
 use super::numbers::small;
 use crate::command::decode::{field_table, problem_lines};
+use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::describe::{Sender, describe};
@@ -66,7 +66,7 @@ impl Block {
 }
 
 impl Command for Raw {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Exchange;
     const ID: &'static str = "toyo.raw";
 
@@ -79,7 +79,7 @@ impl Command for Raw {
         format!("send {} ({about})", self.block.text())
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Exchange, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Exchange, Failure> {
         let link = context.link;
         let answer = match &self.block {
             Block::Known(request) => {

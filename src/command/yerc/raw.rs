@@ -7,12 +7,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::Instant;
 
-use super::Family;
 use super::decode::{FieldRow, parse_hex};
 use super::file::download_failed;
 use super::link::{self, Link, Refusal};
 use super::register::unsigned;
 use crate::command::decode::field_table;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::hex;
@@ -93,7 +93,7 @@ impl Raw {
 }
 
 impl Command for Raw {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Answer;
     const ID: &'static str = "yerc.raw";
 
@@ -114,7 +114,7 @@ impl Command for Raw {
         )
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Answer, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Answer, Failure> {
         let Context { link, screen, .. } = context;
         let request = self.request();
         if !self.file && request.division() == Division::File {

@@ -2,7 +2,7 @@
 
 use super::link::Link;
 use super::status::position_mm;
-use crate::command::overview::{OverviewReport, PositionMm};
+use crate::command::face::overview::{OverviewReport, PositionMm};
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::{input, output};

@@ -6,8 +6,9 @@ use serde::Serialize;
 
 use super::decode::FieldRow;
 use super::refusal::refused;
-use super::{Family, link, overwrite};
+use super::{link, overwrite};
 use crate::command::decode::{field_table, problem_lines};
+use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::answer::Answer;
@@ -57,7 +58,7 @@ pub fn words(text: &str) -> Result<Words, String> {
 }
 
 impl Command for Raw {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Exchange;
     const ID: &'static str = "yrcx.raw";
 
@@ -73,7 +74,7 @@ impl Command for Raw {
         overwrite::confirmation(self.wi.command())
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Exchange, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Exchange, Failure> {
         context.link.no_unit("the words name the robot")?;
         if self.confirmation() == Confirmation::WhenKnown {
             overwrite::confirm(context.link, &context.authority, &self.wi).await?;

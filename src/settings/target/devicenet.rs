@@ -36,7 +36,8 @@ pub const CAN: Scheme = Scheme {
     about: "yrcx on DeviceNet: CAN interface of Linux",
     parse: |place, query| {
         let interface = authority("can", place)?;
-        let is_name = (1..16).contains(&interface.len()) && !interface.contains(|c: char| c.is_whitespace() || "/:".contains(c));
+        let is_name =
+            (1..16).contains(&interface.len()) && !interface.contains(|c: char| c.is_whitespace() || "/:".contains(c));
         if !is_name {
             return Err(format!("'{interface}' is not the name of an interface such as can0"));
         }
@@ -71,7 +72,8 @@ fn slcan(place: &str, query: &mut Query) -> Result<network::Place, String> {
         return Ok(network::Place::Serial { path: rest.to_owned(), baud });
     }
     let (host, own_port) = host_and_port(rest)?;
-    let own_port = own_port.ok_or("the port is missing, as in slcan://HOST:PORT?mac=5; a serial port has three slashes")?;
+    let own_port =
+        own_port.ok_or("the port is missing, as in slcan://HOST:PORT?mac=5; a serial port has three slashes")?;
     Ok(network::Place::Tcp { host, port: port("port", own_port)? })
 }
 

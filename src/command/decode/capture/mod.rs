@@ -19,7 +19,7 @@ pub use self::report::Capture;
 use self::report::{FULL, Links, Problems, counted};
 use super::Field;
 use crate::command::Report as _;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::files;
 use crate::output::Format;
@@ -202,7 +202,7 @@ pub fn print<D: CaptureDecoder>(
     path: &Path,
     selection: &Selection,
     decoder: D,
-) -> Result<(), Stopped> {
+) -> Result<(), RunError> {
     let name = path.display().to_string();
     let source = Source { name: &name, open: || files::open(path), selection };
     let (is_streamed, without_fields) = (run.filter.is_none() && run.line.is_none(), run.is_for_people());
@@ -217,7 +217,7 @@ pub fn print<D: CaptureDecoder>(
         let failure = capture.failure();
         let whole = ReportEnvelope::new(run, id, &capture, failure.as_ref());
         run.screen.json(&whole)?;
-        return failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: true }));
+        return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: true }));
     }
     run.local(id, &capture)
 }

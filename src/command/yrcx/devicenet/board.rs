@@ -7,12 +7,11 @@ use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::connect::{adapter, options, request_timeout};
 use super::check;
-use crate::command::checks::Layers;
+use super::connect::{adapter, options, request_timeout};
+use crate::command::face::layers::Layers;
 use crate::command::yrcx::fieldbus::{self, At};
 use crate::command::yrcx::link_error::not_open;
-use crate::controller::text;
 use crate::controller::yrcx::image::Image;
 use crate::failure::{Failure, Kind};
 use crate::output::view::Cell;
@@ -123,7 +122,7 @@ impl Board {
             product,
             revision: revision.map(|[major, minor]: [u8; 2]| format!("{major}.{minor}")),
             serial: serial.map(|bytes| format!("0x{:08X}", u32::from_le_bytes(bytes))),
-            name: name.map(|name| text::printable(name.get(1..).unwrap_or_default())),
+            name: name.map(|name| String::from_utf8_lossy(name.get(1..).unwrap_or_default()).into_owned()),
         })
     }
 

@@ -1,7 +1,7 @@
 //! The layers of a node for `armctl robots check`: from the adapter to what the controller shows.
 
 use super::board::{Board, MAKER};
-use crate::command::checks::Layers;
+use crate::command::face::layers::Layers;
 use crate::controller::yrcx::image::Image;
 use crate::failure::Kind;
 use crate::transport::devicenet::can::BusState;

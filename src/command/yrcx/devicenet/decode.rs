@@ -90,7 +90,12 @@ fn is_taken(frame: &Frame) -> bool {
 fn explicit(body: &[u8]) -> Option<String> {
     if let Some(request) = Request::parse(Format::Byte8Byte8, body) {
         let what = service_name(request.service);
-        return Some(format!("{what}, class {}, instance {}, {}", request.class, request.instance, data(&request.data)));
+        return Some(format!(
+            "{what}, class {}, instance {}, {}",
+            request.class,
+            request.instance,
+            data(&request.data)
+        ));
     }
     Some(match Answer::parse(body)? {
         Answer::Done { service, data: done } => format!("answer to {}, {}", service_name(service), data(&done)),

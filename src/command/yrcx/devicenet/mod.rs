@@ -14,7 +14,6 @@ mod serve;
 pub mod simulated;
 
 use self::board::Board;
-use super::Family;
 use super::link::Link;
 use crate::command::commands;
 use crate::failure::Failure;
@@ -30,7 +29,7 @@ const NO_UNIT: &str = "the node is that of the whole controller";
 
 commands! {
     /// What can be asked on the bus.
-    pub enum DeviceNet of Family {
+    pub enum DeviceNet {
         /// Who is on the bus, without owning anybody
         Scan(scan::Scan),
         /// Who the controller's node is

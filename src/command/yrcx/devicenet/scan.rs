@@ -5,8 +5,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::board::Node;
-use super::{Family, NO_UNIT, board_of};
-use crate::command::{Command, Context, Need, Report};
+use super::{NO_UNIT, board_of};
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, Table, View};
 
@@ -15,15 +16,15 @@ use crate::output::view::{Section, Table, View};
 pub struct Scan {}
 
 impl Command for Scan {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Scanned;
     const ID: &'static str = "yrcx.devicenet.scan";
 
-    fn need(&self) -> Need {
-        Need::Messages
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Scanned, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Scanned, Failure> {
         context.link.no_unit(NO_UNIT)?;
         context.link.then("the question to every MAC ID whether it is free");
         Ok(Scanned { nodes: board_of(context.link)?.nodes().await? })

@@ -82,7 +82,11 @@ pub fn faults(text: &str) -> Result<FaultSpec, String> {
         return Err("busy is not for yrcx".to_owned());
     }
     // A damaged frame is not one that arrives damaged: its checksum has it sent again.
-    if spec.corrupt.per_10_000() > 0 { Err("corrupt is not for CAN, whose frames have a checksum".to_owned()) } else { Ok(spec) }
+    if spec.corrupt.per_10_000() > 0 {
+        Err("corrupt is not for CAN, whose frames have a checksum".to_owned())
+    } else {
+        Ok(spec)
+    }
 }
 
 /// What a slave does wrong, by its name.

@@ -6,9 +6,10 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::board::{Object, shown};
-use super::{Family, NO_UNIT, board_of};
-use crate::command::orders::Done;
-use crate::command::{Command, Context, Need, Report};
+use super::{NO_UNIT, board_of};
+use crate::command::frame::orders::Done;
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text;
 use crate::failure::Failure;
@@ -34,15 +35,15 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Value;
     const ID: &'static str = "yrcx.eip.get";
 
-    fn need(&self) -> Need {
-        Need::Messages
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Value, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Value, Failure> {
         context.link.no_unit(NO_UNIT)?;
         let object = Object { class: self.class, instance: self.instance, attribute: self.attribute };
         let about = format!("{} of {object}", object.reading());
@@ -82,7 +83,7 @@ impl Set {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Done;
     const ID: &'static str = "yrcx.eip.set";
 
@@ -94,11 +95,11 @@ impl Command for Set {
         format!("set {} to {}", self.object(), shown(&self.data.0))
     }
 
-    fn need(&self) -> Need {
-        Need::Messages
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
         context.link.no_unit(NO_UNIT)?;
         let object = self.object();
         let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));

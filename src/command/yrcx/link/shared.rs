@@ -3,7 +3,7 @@
 use tokio::time::Instant;
 
 use super::{Link, Transport};
-use crate::command::attach::session_busy;
+use crate::command::frame::attach::session_busy;
 use crate::command::yrcx::connect::endpoint;
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::describe::{answer_summary, command_summary};
