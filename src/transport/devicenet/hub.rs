@@ -315,7 +315,7 @@ impl<A: Application> Inside<A> {
             Command::Send(frame) => {
                 if is_right {
                     self.spread(Some(number), &frame, bitrate);
-                    self.to_device(now, frame);
+                    self.deliver(now, frame);
                 }
                 b"z\r".to_vec()
             }
@@ -342,7 +342,7 @@ impl<A: Application> Inside<A> {
         }
     }
 
-    fn to_device(&mut self, now: Now, frame: Frame) {
+    fn deliver(&mut self, now: Now, frame: Frame) {
         match &mut self.faults {
             None => {
                 if let Some(device) = &mut self.device {

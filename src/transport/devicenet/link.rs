@@ -10,7 +10,7 @@ use tokio::time::{Instant, sleep_until};
 
 use super::can::PortError;
 use super::error::Error;
-use super::network::{Connection, Network, Tap};
+use super::network::{Connection, Network};
 use super::scanner::State;
 use super::settings::{Purpose, Settings};
 use super::wire::{Answer, Mac, Request, class, connection};
@@ -35,8 +35,8 @@ impl Polled {
     ///
     /// # Errors
     /// When the slave does not answer, refuses, or has images of other sizes.
-    pub async fn open(network: &Network, settings: Settings, tap: Tap) -> Result<Self, Error> {
-        let connection = network.connect(settings, tap).await?;
+    pub async fn open(network: &Network, settings: Settings) -> Result<Self, Error> {
+        let connection = network.connect(settings).await?;
         let view = connection.view();
         let size = view.size.ok_or_else(|| Error::Settings("the connection is for messages".to_owned()))?;
         Ok(Self { connection, size, generation: view.generation, pending: None })
@@ -208,7 +208,7 @@ impl Reading {
     /// When the slave does not answer, or cannot be read.
     pub async fn open(network: &Network, slave: Mac, timeout: Duration, pause: Duration) -> Result<Self, Error> {
         let purpose = Purpose::Messages { with_poll: true };
-        let connection = network.connect(Settings { slave, purpose, timeout }, Tap::default()).await?;
+        let connection = network.connect(Settings { slave, purpose, timeout }).await?;
         let request = produced(&connection, slave).await?;
         let image = read(&connection, slave, &request).await?.into();
         Ok(Self { connection, slave, request, image, pause, due: Instant::now() + pause })

@@ -16,7 +16,7 @@ use tokio::time::{Instant, sleep, sleep_until, timeout};
 
 use super::Now;
 use super::can::pipe::Pipe;
-use super::can::{Bitrate, CanPort, Health, Heard, PortError, SlcanPort};
+use super::can::{Bitrate, CanPort, Frame, Health, Heard, PortError, SlcanPort};
 use super::error::Error;
 use super::monitor::{Monitor, Sight};
 use super::scanner::{Found, Identity, Reply, Scanner, State, Token, View};
@@ -113,7 +113,7 @@ struct Inside {
     views: BTreeMap<u64, watch::Sender<View>>,
     asked: HashMap<Token, oneshot::Sender<Result<Answer, Error>>>,
     found: Option<oneshot::Sender<Vec<Found>>>,
-    taps: Vec<(u64, Tap)>,
+    taps: Vec<Tap>,
     /// Why the adapter is not there at present.
     trouble: Option<Error>,
     frames: u64,
@@ -121,11 +121,12 @@ struct Inside {
 }
 
 impl Network {
-    /// Opens an adapter, or shares one that this process has open already.
+    /// Opens an adapter, or shares one that this process has open already. What passes goes to the tap, too, as long as the
+    /// adapter is open.
     ///
     /// # Errors
     /// When it cannot be opened, or is used otherwise already.
-    pub async fn open(adapter: &Adapter) -> Result<Self, Error> {
+    pub async fn open(adapter: &Adapter, tap: Tap) -> Result<Self, Error> {
         // Held while one is opened, so that who wants the same meanwhile shares it.
         static SHARED: tokio::sync::Mutex<Vec<Weak<Owner>>> = tokio::sync::Mutex::const_new(Vec::new());
         let mut shared = SHARED.lock().await;
@@ -142,16 +143,19 @@ impl Network {
                         "{place} is in use with another bit rate or master MAC; one adapter has one of each"
                     )));
                 }
+                if tap.is_open() {
+                    owner.inner.lock().taps.push(tap);
+                }
                 return Ok(Self { owner });
             }
         }
-        let network = Self::start(adapter.clone()).await?;
+        let network = Self::start(adapter.clone(), tap).await?;
         shared.push(Arc::downgrade(&network.owner));
         Ok(network)
     }
 
     /// Opens an adapter for this caller alone.
-    async fn start(adapter: Adapter) -> Result<Self, Error> {
+    async fn start(adapter: Adapter, tap: Tap) -> Result<Self, Error> {
         let inside = Inside {
             scanner: adapter.identity.map(Scanner::new),
             monitor: Monitor::default(),
@@ -159,7 +163,7 @@ impl Network {
             views: BTreeMap::new(),
             asked: HashMap::new(),
             found: None,
-            taps: Vec::new(),
+            taps: vec![tap],
             trouble: None,
             frames: 0,
             is_over: false,
@@ -188,7 +192,7 @@ impl Network {
     /// # Errors
     /// When the slave does not answer or refuses: nothing is tried twice. Later losses are not errors but states of the
     /// view.
-    pub async fn connect(&self, settings: Settings, tap: Tap) -> Result<Connection, Error> {
+    pub async fn connect(&self, settings: Settings) -> Result<Connection, Error> {
         let inner = &self.owner.inner;
         let number = inner.last.fetch_add(1, Ordering::Relaxed);
         let views = {
@@ -201,12 +205,12 @@ impl Network {
             let view = scanner.view(number).cloned().ok_or(Error::Ended)?;
             let (sender, views) = watch::channel(view);
             state.views.insert(number, sender);
-            state.taps.push((number, tap));
             views
         };
         inner.wake.notify_one();
         let mut connection = Connection { network: self.clone(), number, views };
-        let view = connection.until(|view| view.state != State::Opening).await;
+        // What does not come about is released first.
+        let view = connection.until(|view| !matches!(view.state, State::Opening | State::Closing)).await;
         match (view.state, view.error) {
             (State::Closed, Some(error)) => Err(error),
             (State::Closed, None) => Err(Error::Ended),
@@ -218,9 +222,8 @@ impl Network {
     ///
     /// # Errors
     /// When the own MAC is taken, or the adapter fails.
-    pub async fn find(&self, tap: Tap) -> Result<Vec<Found>, Error> {
+    pub async fn find(&self) -> Result<Vec<Found>, Error> {
         let inner = &self.owner.inner;
-        let number = inner.last.fetch_add(1, Ordering::Relaxed);
         let (sender, found) = oneshot::channel();
         {
             let now = inner.now();
@@ -228,13 +231,10 @@ impl Network {
             let scanner = state.scanner.as_mut().ok_or_else(|| Error::Settings(ONLY_LISTENS.to_owned()))?;
             scanner.find(now);
             state.found = Some(sender);
-            state.taps.push((number, tap));
         }
         inner.wake.notify_one();
         let found = found.await;
-        let mut state = inner.lock();
-        state.taps.retain(|(other, _)| *other != number);
-        let trouble = state.trouble.clone();
+        let trouble = inner.lock().trouble.clone();
         found.map_err(|_| trouble.unwrap_or(Error::Ended))
     }
 
@@ -266,12 +266,6 @@ impl Network {
         // The sender lives as long as this.
         let now = news.wait_for(|count| count != seen).await.map_or(*seen, |count| *count);
         *seen = now;
-    }
-
-    /// Has every frame passed to this, too.
-    pub fn watch(&self, tap: Tap) {
-        let number = self.owner.inner.last.fetch_add(1, Ordering::Relaxed);
-        self.owner.inner.lock().taps.push((number, tap));
     }
 
     /// Why the adapter is not there at present.
@@ -417,12 +411,18 @@ impl Inside {
         }
         for number in scanner.clear() {
             self.views.remove(&number);
-            self.taps.retain(|(other, _)| *other != number);
         }
     }
 
     fn is_finished(&self) -> bool {
         self.is_over && self.scanner.as_ref().is_none_or(Scanner::is_idle)
+    }
+}
+
+/// Has a frame recorded.
+fn pass(taps: &[Tap], frame: &Frame) {
+    for tap in taps {
+        tap.pass(|| Passed::Frame(frame.to_capture()));
     }
 }
 
@@ -486,7 +486,7 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
                 scanner.handle_health(now, port.health());
                 while let Some(frame) = scanner.poll(now) {
                     // First, so that no record has an answer before what it answers.
-                    taps.iter().for_each(|(_, tap)| tap.pass(|| Passed::Frame(frame.to_capture())));
+                    pass(taps, &frame);
                     port.send(&frame)?;
                 }
             }
@@ -515,7 +515,7 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
             match heard {
                 Heard::Frame(frame) => {
                     *frames += 1;
-                    taps.iter().for_each(|(_, tap)| tap.pass(|| Passed::Frame(frame.to_capture())));
+                    pass(taps, &frame);
                     monitor.hear(now, &frame);
                     if let Some(scanner) = scanner {
                         scanner.handle(now, &frame);

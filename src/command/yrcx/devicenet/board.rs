@@ -19,7 +19,7 @@ use crate::settings::target::bus::Scheme;
 use crate::settings::target::devicenet::DeviceNet;
 use crate::transport::devicenet::error::Error;
 use crate::transport::devicenet::link::{produced, read};
-use crate::transport::devicenet::network::{Adapter, Connection, Network, Tap};
+use crate::transport::devicenet::network::{Connection, Network, Tap};
 use crate::transport::devicenet::scanner::Found;
 use crate::transport::devicenet::settings::{Purpose, Settings};
 use crate::transport::devicenet::wire::{Request, class, connection};
@@ -66,16 +66,15 @@ impl Board {
         if let Some(network) = &self.network {
             return Ok(network.clone());
         }
-        let opened = Network::open(&adapter(&self.node)).await;
+        let opened = Network::open(&adapter(&self.node), self.tap.clone()).await;
         let network = opened.map_err(|error| self.failure(error))?;
-        network.watch(self.tap.clone());
         self.network = Some(network.clone());
         Ok(network)
     }
 
     /// Every node that answers.
     pub async fn nodes(&mut self) -> Result<Vec<Node>, Failure> {
-        let found = self.network().await?.find(Tap::default()).await;
+        let found = self.network().await?.find().await;
         Ok(found.map_err(|error| self.failure(error))?.into_iter().map(Node::from).collect())
     }
 
@@ -85,7 +84,7 @@ impl Board {
             let network = self.network().await?;
             let purpose = Purpose::Messages { with_poll: true };
             let settings = Settings { slave: self.node.mac, purpose, timeout: self.timeout };
-            let opened = network.connect(settings, Tap::default()).await;
+            let opened = network.connect(settings).await;
             self.connection = Some(opened.map_err(|error| self.failure(error))?);
         }
         self.connection.as_ref().ok_or_else(|| Failure::local("there is no connection"))
@@ -156,11 +155,6 @@ impl Board {
             // A node that does not answer lets go by itself.
             let _ = connection.close().await;
         }
-    }
-
-    /// The adapter, for messages.
-    pub fn adapter(&self) -> Adapter {
-        adapter(&self.node)
     }
 
     fn failure(&self, error: Error) -> Failure {

@@ -34,7 +34,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         BusState::Off => layers.wrong("bus", "the adapter is bus-off", advice),
         BusState::Passive => layers.wrong("bus", "nobody acknowledges what is sent (adapter error passive)", advice),
         _ if nodes.is_empty() && frames == 0 => layers.wrong("bus", "not a frame was heard", advice),
-        _ => layers.ok("bus", format!("{} answer", count(nodes.len()))),
+        _ => layers.ok("bus", count(nodes.len())),
     }
     if !nodes.iter().any(|found| found.mac == node.mac.number()) {
         layers.fail("MAC ID", &board.absent(&nodes));
@@ -102,5 +102,5 @@ pub(super) fn profile(sizes: (Option<u16>, Option<u16>)) -> Option<&'static str>
 }
 
 fn count(nodes: usize) -> String {
-    if nodes == 1 { "1 node".to_owned() } else { format!("{nodes} nodes") }
+    if nodes == 1 { "1 node answers".to_owned() } else { format!("{nodes} nodes answer") }
 }

@@ -34,25 +34,23 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
     if purpose == Purpose::Look {
         return look(&at, node).await;
     }
-    let network = Network::open(&adapter(node)).await?;
+    let network = Network::open(&adapter(node), at.tap.clone()).await?;
     let images = Images { profiles: profiles(), cycle: node.cycle.max(at.bus.calm), rate: node.rate };
     let rate = images.rate.max(images.cycle);
     let settings =
         Settings { slave: node.mac, purpose: For::Images(Images { rate, ..images }), timeout: request_timeout(&at) };
-    Ok(ImageLink::over(Polled::open(&network, settings, at.tap).await?))
+    Ok(ImageLink::over(Polled::open(&network, settings).await?))
 }
 
 /// Sees what the controller shows without owning it: what passes between it and its master; where it has none, by messages,
 /// which begin no polls.
 async fn look(at: &At<'_>, node: &DeviceNet) -> Result<ImageLink, LinkError> {
-    let silent = Network::open(&Adapter { identity: None, ..adapter(node) }).await?;
-    silent.watch(at.tap.clone());
+    let silent = Network::open(&Adapter { identity: None, ..adapter(node) }, at.tap.clone()).await?;
     if let Some(listened) = Listened::open(silent.clone(), node.mac, LISTEN, PATIENCE).await {
         return Ok(ImageLink::over(listened));
     }
     drop(silent);
-    let network = Network::open(&adapter(node)).await?;
-    network.watch(at.tap.clone());
+    let network = Network::open(&adapter(node), at.tap.clone()).await?;
     let reading = Reading::open(&network, node.mac, request_timeout(at), PAUSE.max(at.bus.calm)).await;
     match reading {
         Ok(reading) => Ok(ImageLink::over(reading)),

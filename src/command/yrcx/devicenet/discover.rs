@@ -47,8 +47,8 @@ impl fieldbus::Search for Search {
             for (url, bus) in &self.adapters {
                 let Some(node) = bus.options::<DeviceNet>() else { continue };
                 let failed = |error| not_open(url, bus.scheme, &LinkError::from(error));
-                let network = Network::open(&adapter(node)).await.map_err(failed)?;
-                let found = network.find(tap.clone()).await.map_err(failed)?;
+                let network = Network::open(&adapter(node), tap.clone()).await.map_err(failed)?;
+                let found = network.find().await.map_err(failed)?;
                 for node in found.into_iter().map(Node::from) {
                     all.push(found_node(url, &node)?);
                 }

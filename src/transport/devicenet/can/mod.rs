@@ -94,12 +94,11 @@ impl Frame {
         });
         let _interface = words.next()?;
         let word = words.next()?;
-        let (id, data) = match word.split_once('#') {
-            Some((id, data)) => (id, data.to_owned()),
-            None => {
-                let len: usize = words.next()?.strip_prefix('[')?.strip_suffix(']')?.parse().ok()?;
-                (word, words.take(len.min(MOST_DATA)).collect())
-            }
+        let (id, data) = if let Some((id, data)) = word.split_once('#') {
+            (id, data.to_owned())
+        } else {
+            let len: usize = words.next()?.strip_prefix('[')?.strip_suffix(']')?.parse().ok()?;
+            (word, words.take(len.min(MOST_DATA)).collect())
         };
         if id.len() != 3 || data.len() % 2 == 1 {
             return None;

@@ -44,7 +44,9 @@ pub(super) fn spoil(fault: Option<DeviceFault>, mut frames: Vec<Vec<u8>>) -> Vec
         Some(DeviceFault::LostFragment) if frames.len() > 2 => drop(frames.remove(2)),
         // A bare image has no fragments; one that is a byte short comes to the same.
         Some(DeviceFault::LostFragment) => {
-            frames.iter_mut().for_each(|frame| frame.truncate(frame.len().saturating_sub(1)))
+            for frame in &mut frames {
+                frame.truncate(frame.len().saturating_sub(1));
+            }
         }
         Some(DeviceFault::WrongCount) if frames.len() > 1 => {
             for frame in &mut frames {
@@ -54,7 +56,11 @@ pub(super) fn spoil(fault: Option<DeviceFault>, mut frames: Vec<Vec<u8>>) -> Vec
                 }
             }
         }
-        Some(DeviceFault::WrongCount) => frames.iter_mut().for_each(|frame| frame.resize(MOST_DATA, 0)),
+        Some(DeviceFault::WrongCount) => {
+            for frame in &mut frames {
+                frame.resize(MOST_DATA, 0);
+            }
+        }
         _ => {}
     }
     frames

@@ -69,7 +69,7 @@ impl<A: Application> Device<A> {
         match (request.service, request.data.as_slice()) {
             (service::GET, [attribute]) => self.attribute(now, object, *attribute),
             (service::SET, [attribute, value @ ..]) => self.set(now, object, *attribute, value),
-            (service::GET, []) | (service::SET, []) => Err((general::TOO_SHORT, owner::NONE)),
+            (service::GET | service::SET, []) => Err((general::TOO_SHORT, owner::NONE)),
             (service::GET, _) => Err((general::TOO_LONG, owner::NONE)),
             _ => Err(NO_SERVICE),
         }
@@ -155,9 +155,8 @@ impl<A: Application> Device<A> {
             7 | 8 => word(64),
             9 => word(EXPLICIT_RATE),
             12 => vec![1],
-            13 | 15 => word(0),
+            13 | 15 | 17 => word(0),
             14 | 16 => Vec::new(),
-            17 => word(0),
             _ => return Err(NO_ATTRIBUTE),
         })
     }
@@ -169,11 +168,10 @@ impl<A: Application> Device<A> {
         let size = self.setup.size + if self.fault == Some(DeviceFault::OtherSize) { 2 } else { 0 };
         Ok(match attribute {
             1 => vec![polled.state as u8],
-            2 => vec![1],
+            2 | 6 => vec![1],
             3 => vec![0x82],
             4 => word(Id::PollAnswer(mac).emit()),
             5 => word(Id::Poll(mac).emit()),
-            6 => vec![0x01],
             7 | 8 => word(size),
             9 => word(polled.rate),
             12 => vec![0],

@@ -24,6 +24,13 @@ pub(super) enum State {
     TimedOut = 4,
 }
 
+/// A poll that is whole.
+enum Poll {
+    /// Its master idles.
+    Idle,
+    Image(Vec<u8>),
+}
+
 /// The connection.
 #[derive(Debug)]
 pub(super) struct Polled {
@@ -71,14 +78,14 @@ impl Polled {
         (self.rate > 0).then(|| Duration::from_millis(self.rate.into()) * 4)
     }
 
-    /// Takes a frame of a poll: the image that is whole with it, or nothing of an idle master; `None` for all else.
-    fn take(&mut self, bytes: &[u8], size: usize) -> Option<Option<Vec<u8>>> {
+    /// Takes a frame of a poll: what is whole with it.
+    fn take(&mut self, bytes: &[u8], size: usize) -> Option<Poll> {
         let Some((first, part)) = bytes.split_first() else {
             self.count = 0;
-            return Some(None);
+            return Some(Poll::Idle);
         };
         if size <= MOST_DATA {
-            return (bytes.len() == size).then(|| Some(bytes.to_vec()));
+            return (bytes.len() == size).then(|| Poll::Image(bytes.to_vec()));
         }
         let (kind, count) = (first >> 6, first & 0x3F);
         let is_next = count == self.count && self.count > 0;
@@ -92,7 +99,7 @@ impl Polled {
             2 if is_next && part.len() == missing => {
                 self.parts.extend(part);
                 self.count = 0;
-                return Some(Some(std::mem::take(&mut self.parts)));
+                return Some(Poll::Image(std::mem::take(&mut self.parts)));
             }
             _ => self.count = 0,
         }
@@ -107,7 +114,7 @@ impl<A: Application> Device<A> {
         let Some(polled) = self.polled.as_mut().filter(|polled| polled.is_established()) else { return };
         let Some(taken) = polled.take(bytes, size) else { return };
         polled.until = polled.patience().map(|patience| now + patience);
-        if let Some(image) = taken {
+        if let Poll::Image(image) = taken {
             self.application.image_out(now, &image);
         }
         self.application.image_in(now, &mut self.image_in);

@@ -277,7 +277,7 @@ impl Connection {
         };
         match self.phase {
             Phase::Allocating { again } => self.allocated(now, again, answer(ALLOCATION)),
-            Phase::AskingOwner => self.owned(now, answer(OWNER)),
+            Phase::AskingOwner => self.owned(now, &answer(OWNER)),
             Phase::Freeing => match answer(RELEASE) {
                 Ok(_) => self.allocate(now, true),
                 Err(error) => self.give_up(now, error, false),
@@ -357,7 +357,7 @@ impl Connection {
     }
 
     /// Who has the connections: {choice, master}.
-    fn owned(&mut self, now: Now, answer: Result<Vec<u8>, Error>) {
+    fn owned(&mut self, now: Now, answer: &Result<Vec<u8>, Error>) {
         let mac = self.settings.slave;
         match answer.as_deref() {
             Ok([choice, master, ..]) if *master == self.own.number() && *choice != 0 => {

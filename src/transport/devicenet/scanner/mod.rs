@@ -279,8 +279,10 @@ impl Scanner {
 
     /// Forgets connections that have ended and were seen to.
     pub fn clear(&mut self) -> Vec<u64> {
-        let ended = self.connections.extract_if(.., |_, connection| connection.is_finished());
-        ended.map(|(number, _)| number).collect()
+        let is_ended = |(number, connection): (&u64, &Connection)| connection.is_finished().then_some(*number);
+        let ended: Vec<u64> = self.connections.iter().filter_map(is_ended).collect();
+        self.connections.retain(|number, _| !ended.contains(number));
+        ended
     }
 
     /// Whether there is no connection and no search.

@@ -155,12 +155,11 @@ impl Requester {
             return None;
         }
         self.taken = Some(count);
-        match Answer::parse(answer) {
-            Some(answer) => self.answered(answer),
-            None => {
-                self.current = None;
-                Some(Outcome::Senseless("it is no answer"))
-            }
+        if let Some(answer) = Answer::parse(answer) {
+            self.answered(answer)
+        } else {
+            self.current = None;
+            Some(Outcome::Senseless("it is no answer"))
         }
     }
 

@@ -46,8 +46,8 @@ async fn images_travel_over_tcp_and_over_a_pseudo_terminal() {
             0 => place(&hub),
             _ => Place::Serial { path: hub.places()[1].clone(), baud: 115_200 },
         };
-        let network = Network::open(&adapter(place, 1)).await.unwrap();
-        let mut connection = network.connect(images(5), Tap::default()).await.unwrap();
+        let network = Network::open(&adapter(place, 1), Tap::default()).await.unwrap();
+        let mut connection = network.connect(images(5)).await.unwrap();
         let view = connection.view();
         assert_eq!((view.size, view.generation), (Some(48), 1));
         let mut image = resting(48);
@@ -66,28 +66,28 @@ async fn images_travel_over_tcp_and_over_a_pseudo_terminal() {
 #[tokio::test]
 async fn several_adapters_share_a_hub_and_one_of_them_listens() {
     let hub = hub(4, &[anywhere()]);
-    let master = Network::open(&adapter(place(&hub), 1)).await.unwrap();
+    let master = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
     // Another process would have another adapter; here it has another name for the same place.
     let Place::Tcp { port, .. } = place(&hub) else { panic!() };
     let elsewhere = Place::Tcp { host: "localhost".to_owned(), port };
-    let listener = Network::open(&Adapter { identity: None, ..adapter(elsewhere, 0) }).await.unwrap();
-    assert!(matches!(listener.connect(images(5), Tap::default()).await, Err(Error::Settings(_))));
-    let connection = master.connect(images(5), Tap::default()).await.unwrap();
+    let listener = Network::open(&Adapter { identity: None, ..adapter(elsewhere, 0) }, Tap::default()).await.unwrap();
+    assert!(matches!(listener.connect(images(5)).await, Err(Error::Settings(_))));
+    let connection = master.connect(images(5)).await.unwrap();
     let sight = listener.listen(mac(5), SECOND * 20).await;
     assert_eq!(sight.output.map(|seen| seen.image), Some(resting(4)));
     assert!(sight.input.is_some());
     // One adapter has one master.
-    assert!(matches!(Network::open(&adapter(place(&hub), 2)).await, Err(Error::Settings(_))));
-    let same = Network::open(&adapter(place(&hub), 1)).await.unwrap();
-    assert!(matches!(same.connect(images(5), Tap::default()).await, Err(Error::Settings(_))));
+    assert!(matches!(Network::open(&adapter(place(&hub), 2), Tap::default()).await, Err(Error::Settings(_))));
+    let same = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
+    assert!(matches!(same.connect(images(5)).await, Err(Error::Settings(_))));
     connection.close().await.unwrap();
 }
 
 #[tokio::test]
 async fn nodes_are_found() {
     let hub = hub(4, &[anywhere()]);
-    let network = Network::open(&adapter(place(&hub), 1)).await.unwrap();
-    let found = network.find(Tap::default()).await.unwrap();
+    let network = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
+    let found = network.find().await.unwrap();
     assert_eq!(found.iter().map(|found| (found.mac, found.vendor)).collect::<Vec<_>>(), [(mac(5), 636)]);
     assert_eq!(hub.with(|device, _| device.master()), Some(None));
 }
@@ -96,8 +96,8 @@ async fn nodes_are_found() {
 async fn an_adapter_that_goes_is_a_loss_and_one_that_comes_back_is_used() {
     let first = hub(48, &[anywhere()]);
     let address: SocketAddr = first.places()[0].parse().unwrap();
-    let network = Network::open(&adapter(place(&first), 1)).await.unwrap();
-    let mut connection = network.connect(images(5), Tap::default()).await.unwrap();
+    let network = Network::open(&adapter(place(&first), 1), Tap::default()).await.unwrap();
+    let mut connection = network.connect(images(5)).await.unwrap();
     drop(first);
     let view = connection.until(|view| view.state == State::Lost).await;
     assert!(matches!(view.error, Some(Error::Port(PortError::Gone { .. }))), "{:?}", view.error);
@@ -125,7 +125,7 @@ async fn what_is_no_adapter_is_told() {
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);
-    let open = |place| async { Network::open(&adapter(place, 1)).await.map(|_| ()).unwrap_err() };
+    let open = |place| async { Network::open(&adapter(place, 1), Tap::default()).await.map(|_| ()).unwrap_err() };
     let place = |port| Place::Tcp { host: "127.0.0.1".to_owned(), port };
     assert!(matches!(open(place(port)).await, Error::Port(PortError::Open { .. })));
     let absent = Place::Serial { path: "/dev/there-is-none".to_owned(), baud: 115_200 };
@@ -149,12 +149,12 @@ async fn what_is_no_adapter_is_told() {
 async fn a_wrong_bit_rate_and_bus_off_are_told() {
     let hub = hub(48, &[anywhere()]);
     let slow = Adapter { bitrate: Bitrate::K125, ..adapter(place(&hub), 1) };
-    let network = Network::open(&slow).await.unwrap();
-    let error = network.connect(images(5), Tap::default()).await.unwrap_err().to_string();
+    let network = Network::open(&slow, Tap::default()).await.unwrap();
+    let error = network.connect(images(5)).await.unwrap_err().to_string();
     assert!(error.contains("nobody acknowledges"), "{error}");
     drop(network);
-    let network = Network::open(&adapter(place(&hub), 1)).await.unwrap();
-    let mut connection = network.connect(images(5), Tap::default()).await.unwrap();
+    let network = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
+    let mut connection = network.connect(images(5)).await.unwrap();
     hub.with(|device, _| device.misbehave(Some(DeviceFault::BusOff)));
     let view = connection.until(|view| view.state == State::Lost).await;
     assert!(matches!(view.error, Some(Error::BusOff | Error::Lost { .. })), "{:?}", view.error);
@@ -177,9 +177,9 @@ async fn the_lines_of_python_can_are_borne() {
 #[tokio::test]
 async fn a_forgotten_connection_is_released() {
     let hub = hub(48, &[anywhere()]);
-    let network = Network::open(&adapter(place(&hub), 1)).await.unwrap();
+    let network = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
     let settings = Settings { purpose: Purpose::Messages { with_poll: false }, ..images(5) };
-    let connection = network.connect(settings, Tap::default()).await.unwrap();
+    let connection = network.connect(settings).await.unwrap();
     assert_eq!(hub.with(|device, _| device.master()), Some(Some(mac(1))));
     drop((connection, network));
     // Dropping waits until the adapter is closed.

@@ -82,7 +82,7 @@ fn every_identifier_has_the_name_that_tshark_gives_it() {
         };
         match name(id) {
             Some(name) => assert!(info.starts_with(name), "{frame}: {info}, not {name}"),
-            None => assert_eq!(message3.parse::<u16>().unwrap(), frame.id() - 0x600 >> 6, "{frame}"),
+            None => assert_eq!(message3.parse::<u16>().unwrap(), (frame.id() - 0x600) >> 6, "{frame}"),
         }
         if let Some(mac) = id.sender() {
             // The MAC of a multicast poll is a group, that of the others a node's.

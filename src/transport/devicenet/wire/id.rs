@@ -111,7 +111,7 @@ impl Id {
                 6 => Self::Unconnected(high),
                 _ => Self::Duplicate(high),
             },
-            0x600..0x740 => Self::Group3((id - 0x600 >> 6).to_le_bytes()[0], low),
+            0x600..0x740 => Self::Group3(((id - 0x600) >> 6).to_le_bytes()[0], low),
             0x740..0x780 => Self::UnconnectedAnswer(low),
             0x780..0x7C0 => Self::UnconnectedRequest(low),
             0x7C0..0x7F0 => Self::Group4((id & 0x3F).to_le_bytes()[0]),

@@ -141,8 +141,8 @@ mod tests {
                         Piece::Idle => panic!("no frame was empty"),
                     }
                 }
-                let last = frames.iter().map(|frame| assembler.take(frame)).last();
-                assert_eq!(last, Some(Piece::Whole(image.clone())), "{at} {frames_in:?}");
+                let whole = frames.iter().map(|frame| assembler.take(frame)).last();
+                assert_eq!(whole, Some(Piece::Whole(image.clone())), "{at} {frames_in:?}");
             }
         }
     }
