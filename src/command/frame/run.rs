@@ -83,6 +83,9 @@ const EVERY: Duration = Duration::from_secs(1);
 /// no more than the files that a process may have open where that is least, 256.
 const PARALLEL: usize = 128;
 
+/// A connection, and what may pass.
+type Granted = (Box<dyn Connection>, Grant);
+
 impl Run {
     /// Runs `command` on the robots it is for, and reports.
     pub async fn robots(&self, command: &dyn AnyCommand) -> Result<(), RunError> {
@@ -289,7 +292,7 @@ impl Run {
         &self,
         command: &dyn AnyCommand,
         robots: &[Robot],
-        links: &mut [Result<(Box<dyn Connection>, Grant), Failure>],
+        links: &mut [Result<Granted, Failure>],
     ) -> Result<(), RunError> {
         let mut rounds = Rounds::new(&self.repeat, EVERY);
         loop {
@@ -341,7 +344,7 @@ impl Run {
         Ok(report)
     }
 
-    async fn connect(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(Box<dyn Connection>, Grant), Failure> {
+    async fn connect(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Granted, Failure> {
         let access = self.access(command, robot);
         let grant = access.granted.clone();
         let access = match &self.line {

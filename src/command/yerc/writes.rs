@@ -71,19 +71,6 @@ fn account<O: Order>(failure: Failure, orders: &[O], done: usize) -> Failure {
     Failure { kind, message, ..failure }.hint(hint)
 }
 
-/// Numbers in the order given, runs as `5..9`.
-pub fn runs(numbers: &[u16]) -> String {
-    let mut runs: Vec<(u16, u16)> = Vec::new();
-    for &number in numbers {
-        match runs.last_mut() {
-            Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
-            _ => runs.push((number, number)),
-        }
-    }
-    let run = |&(first, last): &(u16, u16)| if first == last { first.to_string() } else { format!("{first}..{last}") };
-    runs.iter().map(run).collect::<Vec<_>>().join(", ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

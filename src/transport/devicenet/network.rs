@@ -549,7 +549,10 @@ async fn open(adapter: &Adapter) -> Result<Box<dyn CanPort>, PortError> {
             let advice = "check host and port, and that the SLCAN server runs";
             let connected = timeout(CONNECT, TcpStream::connect((host.as_str(), *port))).await;
             let stream = connected.map_err(|_| failed("no answer".to_owned(), advice))?;
-            let stream = stream.map_err(|error| failed(error.to_string(), advice))?;
+            let stream = stream.map_err(|error| match error.kind() {
+                std::io::ErrorKind::ConnectionRefused => failed("nobody listens there".to_owned(), advice),
+                _ => failed(error.to_string(), advice),
+            })?;
             Pipe::tcp(stream).map_err(|error| failed(error.to_string(), advice))?
         }
         Place::SocketCan { interface } => return socket_can(interface),

@@ -122,7 +122,7 @@ impl Command for Backup {
             work.iter().map(|(_, name)| FileResult::pending(Shown::new(link.encoding, name), None)).collect();
         let mut names = LocalNames::new(link.encoding);
         for (number, ((kind, name), result)) in work.iter().zip(&mut results).enumerate() {
-            let file_type = type_word(FileType::of(name).unwrap_or(*kind)).to_owned();
+            let file_type = type_word(FileType::from_name(name).unwrap_or(*kind)).to_owned();
             let mut entry = Entry {
                 name: result.name.name.clone(),
                 name_hex: Some(hex(name)),

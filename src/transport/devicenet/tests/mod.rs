@@ -2,6 +2,7 @@
 
 mod faults;
 mod link;
+mod peers;
 mod sockets;
 mod tshark;
 mod world;
