@@ -59,6 +59,9 @@ const READS: &[&str] = &[
     "eip identity",
     "eip probe",
     "eip get 1 1 7",
+    "devicenet scan",
+    "devicenet identity",
+    "devicenet probe",
 ];
 
 const WRITES: &[&str] = &[

@@ -28,6 +28,8 @@ pub enum PacketContent<'a> {
         /// The bytes.
         bytes: &'a [u8],
     },
+    /// A frame of a link with frames of its own.
+    Frame,
     /// A part of an IP packet.
     Fragment,
     /// Anything else.
@@ -66,6 +68,7 @@ pub fn content_of(link_type: u16, packet: &[u8]) -> PacketContent<'_> {
         113 => ethernet(packet, 14..16),
         276 => of_type(packet.get(..2), packet.get(20..)),
         147 => serial(packet),
+        super::LINKTYPE_CAN => Some(PacketContent::Frame),
         _ => None,
     };
     content.unwrap_or(PacketContent::Other)
