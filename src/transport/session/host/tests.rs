@@ -252,7 +252,7 @@ async fn who_does_not_say_who_he_is_takes_up_no_place() {
         let silent: Vec<_> = (0..MOST_CLIENTS).map(|_| told(&spot, &[])).collect();
         let asking = told(&spot, &[Control::Ask]);
         // The first ones are let in, and let go again; then there is room.
-        let (all, _) = futures_util::join!(join_all(silent), async {
+        let (all, _) = tokio::join!(join_all(silent), async {
             tokio::time::sleep(Duration::from_secs(1)).await;
             asking.await
         });

@@ -1,0 +1,10 @@
+//! PROFIBUS DP: images to and from one slave, as the only master on a line of two wires.
+//!
+//! Knows bytes of images and no robot.
+
+use std::time::Duration;
+
+pub mod wire;
+
+/// A moment, as time passed since an origin of the driver's choice. It never runs backwards.
+pub type Now = Duration;
