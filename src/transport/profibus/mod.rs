@@ -4,6 +4,14 @@
 
 use std::time::Duration;
 
+pub mod error;
+pub mod master;
+pub mod rates;
+pub mod request;
+pub mod settings;
+pub mod slave;
+#[cfg(test)]
+mod tests;
 pub mod wire;
 
 /// A moment, as time passed since an origin of the driver's choice. It never runs backwards.

@@ -1,7 +1,7 @@
 //! Telegrams out of a stream of characters, with noise between them.
 
-use super::telegram::Parsed;
-use super::{Telegram, WireError};
+
+use super::{Parsed, Telegram, WireError};
 
 /// Most bytes that are kept: more than the longest telegram has.
 const MOST_KEPT: usize = 512;

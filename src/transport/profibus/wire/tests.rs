@@ -5,7 +5,7 @@ use std::time::Duration;
 use profirust::fdl;
 use proptest::prelude::*;
 
-use super::telegram::Parsed;
+
 use super::testing::hex;
 use super::*;
 
