@@ -24,10 +24,8 @@ pub enum ProfibusError {
         text: String,
     },
     /// The adapter was there, and is gone.
-    #[error("{port} is gone: {text}")]
+    #[error("the adapter is gone: {text}")]
     Gone {
-        /// Its name.
-        port: String,
         /// The system's reason.
         text: String,
     },

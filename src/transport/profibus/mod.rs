@@ -4,8 +4,10 @@
 
 use std::time::Duration;
 
+pub mod driver;
 pub mod error;
 pub mod master;
+pub mod port;
 pub mod rates;
 pub mod request;
 pub mod settings;

@@ -201,19 +201,33 @@ impl Master {
         }
     }
 
-    /// The port is gone, or does not do what it should: all is over.
-    pub fn port_failed(&mut self, error: ProfibusError) {
-        if self.view.state != State::Closed {
-            self.view.error = Some(error);
-            self.end();
+    /// The port does not work, and nothing can be sent. [`Master::port_is_back`] goes on.
+    pub fn port_failed(&mut self, now: Now, error: ProfibusError) {
+        match self.view.state {
+            State::Closed => {}
+            State::Open | State::Lost => {
+                self.failed(now, error);
+                self.step = Step::Listen(Now::MAX);
+            }
+            State::Opening | State::Closing => {
+                self.view.error = Some(error);
+                self.end();
+            }
         }
     }
 
-    /// When [`Master::poll`] has something to do; `None` when all is over.
+    /// Listens again, and goes on.
+    pub fn port_is_back(&mut self, now: Now) {
+        if self.view.state == State::Lost {
+            self.step = Step::Listen(now + self.timing.listen);
+        }
+    }
+
+    /// When [`Master::poll`] has something to do; `None` when all is over, or while there is no port.
     pub fn due(&self) -> Option<Now> {
         match self.step {
             Step::Over => None,
-            Step::Listen(until) => Some(until),
+            Step::Listen(until) => Some(until).filter(|until| *until < Now::MAX),
             _ if self.requester.is_busy() => Some(self.requester.due()),
             Step::Data if self.jobs.is_empty() => Some(self.next_cycle.max(self.requester.due())),
             _ => Some(self.not_before.max(self.requester.due())),
