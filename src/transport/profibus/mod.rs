@@ -6,6 +6,8 @@ use std::time::Duration;
 
 pub mod driver;
 pub mod error;
+pub mod gsd;
+pub mod listener;
 pub mod master;
 pub mod port;
 pub mod rates;

@@ -1,5 +1,9 @@
 //! Master and slave on a line in virtual time that is as slow and as faulty as asked for.
 
+mod peers;
+#[cfg(unix)]
+mod terminal;
+
 use std::time::Duration;
 
 use proptest::prelude::*;
