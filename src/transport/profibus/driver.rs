@@ -57,8 +57,10 @@ impl Connection {
         });
         let on_thread = Arc::clone(&shared);
         let thread = thread::Builder::new().name("profibus".to_owned());
-        let thread = thread.spawn(move || Driver { shared: on_thread, port: Some(port), opener, tap: tap.map(Record::new) }.run());
-        let thread = thread.map_err(|error| ProfibusError::Port { port: "thread".to_owned(), text: error.to_string() })?;
+        let thread = thread
+            .spawn(move || Driver { shared: on_thread, port: Some(port), opener, tap: tap.map(Record::new) }.run());
+        let thread =
+            thread.map_err(|error| ProfibusError::Port { port: "thread".to_owned(), text: error.to_string() })?;
         let mut connection = Self { shared, views, thread: Some(thread) };
         let view = connection.until(|view| !matches!(view.state, State::Opening | State::Closing)).await;
         match (view.state, view.error) {

@@ -94,7 +94,10 @@ pub enum ProfibusError {
         expected: u16,
     },
     /// The configuration adds up to other images.
-    #[error("the configuration {} has {input} bytes from station {station} and {output} to it, not {expected_input} and {expected_output}", hex(configuration))]
+    #[error(
+        "the configuration {} has {input} bytes from station {station} and {output} to it, not {expected_input} and {expected_output}",
+        hex(configuration)
+    )]
     Size {
         /// The slave.
         station: u8,

@@ -84,8 +84,11 @@ impl Entry<'_> {
     }
 
     fn bytes(&self, text: &str) -> Result<Vec<u8>, GsdError> {
-        let bytes: Vec<u8> =
-            text.split(',').filter(|part| !part.trim().is_empty()).map(|part| self.byte(part)).collect::<Result<_, _>>()?;
+        let bytes: Vec<u8> = text
+            .split(',')
+            .filter(|part| !part.trim().is_empty())
+            .map(|part| self.byte(part))
+            .collect::<Result<_, _>>()?;
         if bytes.len() > MAX_DATA { Err(self.error(format!("{} bytes are too many", bytes.len()))) } else { Ok(bytes) }
     }
 
@@ -347,11 +350,23 @@ EndModule
             ("0x1234", "0x12345", "line 6: Ident_Number: it has two bytes"),
             ("Ident_Number = 0x1234", "", "line 1: Ident_Number: it is missing"),
             ("0x10, 0x20", "0x10, 0x200", "line 18: Ext_User_Prm_Data_Const(3): '0x200' does not fit a byte"),
-            ("Const(3)", "Const(300)", "line 18: Ext_User_Prm_Data_Const(300): there are 237 bytes of user parameters at most"),
-            ("0xC0, 0xD7, \\\n  0xD7", "0xC0", "line 19: Module: length of an identifier at offset 1: needs 1 bytes, 0 are there"),
+            (
+                "Const(3)",
+                "Const(300)",
+                "line 18: Ext_User_Prm_Data_Const(300): there are 237 bytes of user parameters at most",
+            ),
+            (
+                "0xC0, 0xD7, \\\n  0xD7",
+                "0xC0",
+                "line 19: Module: length of an identifier at offset 1: needs 1 bytes, 0 are there",
+            ),
             ("\"2 words\"", "2 words", "line 25: Module: a name in quotation marks belongs here"),
             ("0x71\nEndModule", "0x71", "line 25: Module: it has no EndModule"),
-            ("#Profibus_DP", "", "line 3: GSD_Revision: #Profibus_DP belongs before it; this may be another kind of file"),
+            (
+                "#Profibus_DP",
+                "",
+                "line 3: GSD_Revision: #Profibus_DP belongs before it; this may be another kind of file",
+            ),
             ("User_Prm_Data_Len = 5", "User_Prm_Data_Len = five", "line 15: User_Prm_Data_Len: 'five' is not a number"),
         ] {
             assert!(FILE.contains(from), "{from}");

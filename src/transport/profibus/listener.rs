@@ -105,11 +105,10 @@ mod tests {
         let news = line.iter().filter(|byte| listener.handle(&[**byte])).count();
         let heard = listener.heard();
         assert_eq!((news, heard.exchanges, heard.telegrams, heard.noise), (1, 1, 6, 1));
-        assert_eq!((heard.master, heard.output.as_deref(), heard.input.as_deref()), (
-            Some(2),
-            Some(&[1, 2, 3][..]),
-            Some(&[0xAA, 0xBB][..]),
-        ));
+        assert_eq!(
+            (heard.master, heard.output.as_deref(), heard.input.as_deref()),
+            (Some(2), Some(&[1, 2, 3][..]), Some(&[0xAA, 0xBB][..]),)
+        );
     }
 
     #[test]

@@ -10,10 +10,12 @@ pub mod gsd;
 pub mod listener;
 pub mod master;
 pub mod port;
+mod quiet;
 pub mod rates;
 pub mod request;
 pub mod settings;
 pub mod slave;
+pub mod survey;
 #[cfg(test)]
 mod tests;
 pub mod wire;

@@ -107,7 +107,10 @@ impl Settings {
         let slot = self.slot.unwrap_or_else(|| self.usual_slot());
         if slot < self.rate.bits(self.rate.slot) || slot > LONGEST {
             let least = self.rate.bits(self.rate.slot);
-            return wrong(format!("the slot time at {} must be {least:?} to {LONGEST:?}, not {slot:?}", self.rate.name));
+            return wrong(format!(
+                "the slot time at {} must be {least:?} to {LONGEST:?}, not {slot:?}",
+                self.rate.name
+            ));
         }
         let usual = Duration::from_millis(self.rate.cycle_ms);
         let cycle = self.cycle.unwrap_or(usual);

@@ -8,11 +8,12 @@ use std::time::Duration;
 
 use super::Now;
 use super::error::ProfibusError;
+use super::quiet::Quiet;
 use super::request::{Answer, Outcome, Requester};
 use super::settings::{Settings, Timing};
 use super::wire::{
-    Configuration, Control, Diagnosis, Flag, Frame, GlobalControl, Lock, Parameters, Piece, Service, Station, Status,
-    Stream, Telegram, sap,
+    Configuration, Control, Diagnosis, Flag, Frame, GlobalControl, Lock, Parameters, Service, Station, Status,
+    Telegram, sap,
 };
 
 mod view;
@@ -25,16 +26,14 @@ const READY: Duration = Duration::from_secs(5);
 const PATIENCE: Duration = Duration::from_millis(10);
 /// Pause before a link is opened again.
 const AGAIN: Duration = Duration::from_secs(1);
-/// Characters without meaning that may be heard before the first word, as when a port is opened.
-const GLITCH: usize = 2;
 /// User parameters that are tried unless others are set: none, and the three bytes of slaves with acyclic services.
 const USUAL_PARAMETERS: [&[u8]; 2] = [&[], &[0, 0, 0]];
 
 /// The next thing to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Step {
-    /// Hear whether anybody speaks, up to this moment.
-    Listen(Now),
+    /// Does anybody else speak?
+    Listen,
     /// Is there a station?
     Find,
     /// How is it doing, and whose is it?
@@ -70,11 +69,7 @@ pub struct Master {
     settings: Settings,
     timing: Timing,
     requester: Requester,
-    /// What is heard before the first word.
-    heard: Stream,
-    unreadable: usize,
-    /// Who passed a token meanwhile.
-    tokens: Vec<u8>,
+    quiet: Quiet,
     step: Step,
     /// Nothing is asked before.
     not_before: Now,
@@ -123,10 +118,8 @@ impl Master {
         };
         Ok(Self {
             requester: Requester::new(settings.master, settings.rate, timing.slot, settings.retries),
-            heard: Stream::default(),
-            unreadable: 0,
-            tokens: Vec::new(),
-            step: Step::Listen(now + timing.listen),
+            quiet: Quiet::until(now + timing.listen),
+            step: Step::Listen,
             not_before: now,
             asked_since: None,
             ident: settings.ident.unwrap_or_default(),
@@ -207,7 +200,7 @@ impl Master {
             State::Closed => {}
             State::Open | State::Lost => {
                 self.failed(now, error);
-                self.step = Step::Listen(Now::MAX);
+                self.listen_until(Now::MAX);
             }
             State::Opening | State::Closing => {
                 self.view.error = Some(error);
@@ -219,7 +212,7 @@ impl Master {
     /// Listens again, and goes on.
     pub fn port_is_back(&mut self, now: Now) {
         if self.view.state == State::Lost {
-            self.step = Step::Listen(now + self.timing.listen);
+            self.listen_until(now + self.timing.listen);
         }
     }
 
@@ -227,7 +220,7 @@ impl Master {
     pub fn due(&self) -> Option<Now> {
         match self.step {
             Step::Over => None,
-            Step::Listen(until) => Some(until).filter(|until| *until < Now::MAX),
+            Step::Listen => self.quiet.due(),
             _ if self.requester.is_busy() => Some(self.requester.due()),
             Step::Data if self.jobs.is_empty() => Some(self.next_cycle.max(self.requester.due())),
             _ => Some(self.not_before.max(self.requester.due())),
@@ -241,11 +234,11 @@ impl Master {
             Some(Err(outcome)) => self.outcome(now, outcome),
             None => {}
         }
-        if let Step::Listen(until) = self.step {
-            if now < until {
-                return None;
+        if self.step == Step::Listen {
+            match self.quiet.poll(now)? {
+                Ok(()) => self.go(now, Step::Find),
+                Err(error) => self.failed(now, error),
             }
-            self.listened(now);
         }
         if self.requester.is_busy() || self.due().is_none_or(|due| now < due) {
             return None;
@@ -268,7 +261,7 @@ impl Master {
             }
             Step::Data => return self.work(now),
             Step::Release => request(self, sap::SET_PRM, Parameters::unlock(self.ident).emit()),
-            Step::Listen(_) | Step::Over => return None,
+            Step::Listen | Step::Over => return None,
         };
         Some(self.requester.ask(now, frame))
     }
@@ -277,7 +270,11 @@ impl Master {
     pub fn handle(&mut self, now: Now, bytes: &[u8]) {
         match self.step {
             Step::Over => {}
-            Step::Listen(_) => self.listen(now, bytes),
+            Step::Listen => {
+                if let Err(error) = self.quiet.handle(bytes) {
+                    self.failed(now, error);
+                }
+            }
             _ => {
                 let mut bytes = bytes;
                 while let Some(outcome) = self.requester.handle(now, std::mem::take(&mut bytes)) {
@@ -285,40 +282,6 @@ impl Master {
                 }
             }
         }
-    }
-
-    fn listen(&mut self, now: Now, bytes: &[u8]) {
-        self.heard.push(bytes);
-        while let Some(piece) = self.heard.next_piece() {
-            match piece {
-                // Three bytes without a check sum: noise may look so.
-                Piece::Telegram(Telegram::Token { from, .. }, _) => self.tokens.push(from),
-                Piece::Telegram(Telegram::Frame(frame), _) => {
-                    if matches!(frame.control, Control::Request(..)) {
-                        let heard = "it sent a request";
-                        return self.failed(now, ProfibusError::OtherMaster { master: frame.from, heard });
-                    }
-                    let heard = "it was answered by a station";
-                    return self.failed(now, ProfibusError::OtherMaster { master: frame.to, heard });
-                }
-                // One byte that may be anything.
-                Piece::Telegram(Telegram::ShortAcknowledge, _) | Piece::Noise(..) => self.unreadable += 1,
-            }
-        }
-    }
-
-    /// Nobody has spoken, or nobody who can be understood.
-    fn listened(&mut self, now: Now) {
-        let bytes = std::mem::take(&mut self.unreadable);
-        let tokens = std::mem::take(&mut self.tokens);
-        self.heard.clear();
-        if bytes > GLITCH + 3 * tokens.len() {
-            return self.failed(now, ProfibusError::Unreadable { bytes });
-        }
-        if let Some(&master) = tokens.first() {
-            return self.failed(now, ProfibusError::OtherMaster { master, heard: "it passed the token" });
-        }
-        self.go(now, Step::Find);
     }
 
     /// The next job of a cycle.
@@ -414,7 +377,7 @@ impl Master {
             Step::Check => sap::name(Some(sap::CHK_CFG)),
             Step::Release => "the release (Set_Prm)",
             Step::Data if self.is_diagnosing => sap::name(Some(sap::SLAVE_DIAG)),
-            Step::Data | Step::Listen(_) | Step::Over => sap::name(None),
+            Step::Data | Step::Listen | Step::Over => sap::name(None),
         }
     }
 
@@ -453,7 +416,7 @@ impl Master {
                 self.end();
             }
             Step::Data => self.exchanged(now, answer)?,
-            Step::Listen(_) | Step::Over => {}
+            Step::Listen | Step::Over => {}
         }
         Ok(())
     }
@@ -463,8 +426,11 @@ impl Master {
         let station = self.settings.station;
         let asked = sap::name(Some(sap::SLAVE_DIAG));
         let data = data(station, asked, answer)?.1;
-        let diagnosis = Diagnosis::parse(&data)
-            .map_err(|error| ProfibusError::Malformed { station, asked, why: error.to_string() })?;
+        let diagnosis = Diagnosis::parse(&data).map_err(|error| ProfibusError::Malformed {
+            station,
+            asked,
+            why: error.to_string(),
+        })?;
         if self.view.diagnosis.as_ref() != Some(&diagnosis) {
             self.view.diagnosis = Some(diagnosis.clone());
             self.has_changed = true;
@@ -497,8 +463,11 @@ impl Master {
             (Some(set), _) => Some(set.clone()),
             (None, wanted) => {
                 let bytes = wanted?.1;
-                let configuration = Configuration::parse(&bytes)
-                    .map_err(|error| ProfibusError::Malformed { station, asked, why: error.to_string() })?;
+                let configuration = Configuration::parse(&bytes).map_err(|error| ProfibusError::Malformed {
+                    station,
+                    asked,
+                    why: error.to_string(),
+                })?;
                 self.settings.fits(&configuration)?;
                 Some(bytes)
             }
@@ -591,7 +560,6 @@ impl Master {
         self.jobs.clear();
         self.pending = None;
         self.asked_since = None;
-        self.heard.clear();
         let was_closing = self.view.state == State::Closing;
         let must_be_quiet = matches!(error, ProfibusError::OtherMaster { .. } | ProfibusError::Unreadable { .. });
         // Who has just left may come back at once; who leaves again and again is given time.
@@ -613,8 +581,7 @@ impl Master {
         self.set_state(State::Lost);
         self.image.clone_from(&self.settings.resting);
         if must_be_quiet {
-            self.step = Step::Listen(now + self.timing.listen.max(AGAIN));
-            return;
+            return self.listen_until(now + self.timing.listen.max(AGAIN));
         }
         self.step = Step::Find;
         self.not_before = if has_left { now } else { now + AGAIN };
@@ -623,6 +590,11 @@ impl Master {
     fn go(&mut self, now: Now, step: Step) {
         self.step = step;
         self.not_before = now;
+    }
+
+    fn listen_until(&mut self, until: Now) {
+        self.quiet = Quiet::until(until);
+        self.step = Step::Listen;
     }
 
     fn set_state(&mut self, state: State) {

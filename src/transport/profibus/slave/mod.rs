@@ -261,7 +261,8 @@ impl<P: ImagePeer> Slave<P> {
             Lock::Lock => {
                 self.leave(now);
                 let is_other = self.fault == Some(SlaveFault::OtherIdent);
-                let takes = self.setup.parameters.contains(&parameters.user) && self.fault != Some(SlaveFault::NoParameters);
+                let takes =
+                    self.setup.parameters.contains(&parameters.user) && self.fault != Some(SlaveFault::NoParameters);
                 if parameters.ident != self.setup.ident ^ u16::from(is_other) || !takes {
                     return self.faults.push(Flag::ParameterFault);
                 }

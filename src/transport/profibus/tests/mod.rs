@@ -1,6 +1,7 @@
 //! Master and slave on a line in virtual time that is as slow and as faulty as asked for.
 
 mod peers;
+mod survey;
 #[cfg(unix)]
 mod terminal;
 
@@ -171,7 +172,8 @@ fn nothing_but_the_resting_image_comes_first_and_images_go_both_ways() {
     let view = world.open();
     assert_eq!(view.input.unwrap().image[..], resting());
     let change = world.master.set_image(view.generation, &image(7)).unwrap();
-    let view = world.run(SEC, |view| view.sent >= change && view.input.as_ref().is_some_and(|input| input.image[0] == 7));
+    let view =
+        world.run(SEC, |view| view.sent >= change && view.input.as_ref().is_some_and(|input| input.image[0] == 7));
     assert_eq!(view.input.unwrap().image[..], image(7));
     assert_eq!(world.slave.peer().history, [Some(resting()), Some(image(7))]);
     world.master.close(world.now);
@@ -374,7 +376,8 @@ fn commands(seed: u64, faults: &str) -> (Vec<u8>, Vec<u8>, View) {
             };
             // What is seen comes from the slave, in this generation.
             let view = world.run(5 * SEC, |view| {
-                let is_shown = |input: &super::master::Input| input.generation == generation && input.image[0] == number;
+                let is_shown =
+                    |input: &super::master::Input| input.generation == generation && input.image[0] == number;
                 view.generation != generation || view.state != State::Open || view.input.as_ref().is_some_and(is_shown)
             });
             is_done &= view.state == State::Open && view.generation == generation;
@@ -430,7 +433,8 @@ fn what_the_master_sends_is_all_telegrams() {
         assert!(matches!(stream.next_piece(), Some(Piece::Telegram(..))), "{bytes:02X?}");
         assert!(stream.is_empty());
     }
-    let begins = |bytes: &[u8]| matches!(Telegram::parse(bytes), Ok(super::wire::Parsed::Whole(Telegram::Token { .. }, _)));
+    let begins =
+        |bytes: &[u8]| matches!(Telegram::parse(bytes), Ok(super::wire::Parsed::Whole(Telegram::Token { .. }, _)));
     assert!(world.sent.iter().any(|(_, bytes)| begins(bytes)), "no token");
 }
 

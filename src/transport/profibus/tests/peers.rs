@@ -75,7 +75,8 @@ fn drive(time: Duration, ident: u16, fault: Option<SlaveFault>) -> (Option<Vec<u
         max_tsdr: 100,
         ..Default::default()
     };
-    let peripheral = dp::Peripheral::new(5, options, &mut inputs[..], &mut outputs[..]).with_diag_buffer(&mut diagnosis[..]);
+    let peripheral =
+        dp::Peripheral::new(5, options, &mut inputs[..], &mut outputs[..]).with_diag_buffer(&mut diagnosis[..]);
     let handle = master.add(peripheral);
     let parameters = fdl::ParametersBuilder::new(2, Baudrate::B500000)
         .slot_bits(4000)

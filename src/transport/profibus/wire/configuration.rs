@@ -27,8 +27,7 @@ impl Configuration {
         let mut modules = Vec::new();
         let (mut at, mut input, mut output) = (0, 0, 0);
         while let Some(&identifier) = bytes.get(at) {
-            let (module, len) =
-                if identifier & 0x30 == 0 { special(bytes, at)? } else { (general(identifier), 1) };
+            let (module, len) = if identifier & 0x30 == 0 { special(bytes, at)? } else { (general(identifier), 1) };
             input += module.input;
             output += module.output;
             if input > MAX_DATA || output > MAX_DATA {

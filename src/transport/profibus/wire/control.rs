@@ -110,8 +110,7 @@ pub enum Station {
     MasterInRing,
 }
 
-const STATIONS: [Station; 4] =
-    [Station::Slave, Station::MasterNotReady, Station::MasterReady, Station::MasterInRing];
+const STATIONS: [Station; 4] = [Station::Slave, Station::MasterNotReady, Station::MasterReady, Station::MasterInRing];
 
 /// What an answer says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

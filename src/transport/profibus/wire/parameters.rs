@@ -127,8 +127,7 @@ impl Parameters {
             Lock::Unlock => 0x40,
         };
         let flag = |is_set: bool, bit: u8| if is_set { bit } else { 0 };
-        let station =
-            lock | flag(self.sync, 0x20) | flag(self.freeze, 0x10) | flag(self.watchdog.is_some(), 0x08);
+        let station = lock | flag(self.sync, 0x20) | flag(self.freeze, 0x10) | flag(self.watchdog.is_some(), 0x08);
         let [first, second] = self.watchdog.map_or([0, 0], |watchdog| watchdog.factors);
         let [high, low] = self.ident.to_be_bytes();
         let mut data = vec![station, first, second, self.min_tsdr, high, low, self.groups];

@@ -1,6 +1,5 @@
 //! Telegrams out of a stream of characters, with noise between them.
 
-
 use super::{Parsed, Telegram, WireError};
 
 /// Most bytes that are kept: more than the longest telegram has.

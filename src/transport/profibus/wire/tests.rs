@@ -5,7 +5,6 @@ use std::time::Duration;
 use profirust::fdl;
 use proptest::prelude::*;
 
-
 use super::testing::hex;
 use super::*;
 
@@ -34,7 +33,8 @@ const START: [(u8, &str, Option<u8>, &str); 21] = [
     (2, "DC 02 02", None, ""),
     (2, "68 05 05 68 85 82 7D 3C 3E FE 16", Some(60), ""),
 ];
-const IMAGE: &str = "0000000000000000000000000000000000000000000000000000000000000000 41 000000000000000000000000000000";
+const IMAGE: &str =
+    "0000000000000000000000000000000000000000000000000000000000000000 41 000000000000000000000000000000";
 const EXCHANGE: &str = "68 33 33 68 05 02 7D
     0000000000000000000000000000000000000000000000000000000000000000 41 000000000000000000000000000000 C5 16";
 const ANSWER: &str = "68 33 33 68 02 05 08
@@ -179,9 +179,8 @@ fn frames() -> impl Strategy<Value = Frame> {
         Just(Control::Answer(Station::Slave, Status::DataHigh)),
     ];
     let sap = || proptest::option::of(0_u8..64);
-    (0_u8..=127, 0_u8..=127, control, sap(), sap(), proptest::collection::vec(any::<u8>(), 0..=MAX_DATA)).prop_map(
-        |(to, from, control, to_sap, from_sap, data)| Frame { to, from, control, to_sap, from_sap, data },
-    )
+    (0_u8..=127, 0_u8..=127, control, sap(), sap(), proptest::collection::vec(any::<u8>(), 0..=MAX_DATA))
+        .prop_map(|(to, from, control, to_sap, from_sap, data)| Frame { to, from, control, to_sap, from_sap, data })
 }
 
 proptest! {
