@@ -136,12 +136,11 @@ struct Driver {
 impl Driver {
     fn run(mut self) {
         loop {
-            let turned = match self.port.take() {
-                Some(mut port) => self.turn(port.as_mut()).map(|()| self.port = Some(port)),
-                None => {
-                    self.reopen();
-                    Ok(())
-                }
+            let turned = if let Some(mut port) = self.port.take() {
+                self.turn(port.as_mut()).map(|()| self.port = Some(port))
+            } else {
+                self.reopen();
+                Ok(())
             };
             if let Err(error) = turned {
                 let now = self.shared.start.elapsed();

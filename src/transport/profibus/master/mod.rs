@@ -16,8 +16,10 @@ use super::wire::{
     Telegram, sap,
 };
 
+mod answer;
 mod view;
 
+use answer::{acknowledged, data};
 pub use view::{Input, State, Statistics, View};
 
 /// How long a slave may take to get ready.
@@ -605,32 +607,5 @@ impl Master {
     fn end(&mut self) {
         self.step = Step::Over;
         self.set_state(State::Closed);
-    }
-}
-
-/// Data of an answer that has some.
-fn data(station: u8, asked: &'static str, answer: Answer) -> Result<(Status, Vec<u8>), ProfibusError> {
-    let why = match answer {
-        Answer::Short => "no more than an acknowledgement came".to_owned(),
-        Answer::Frame(Frame { control: Control::Answer(_, status), data, .. }) => match status {
-            Status::Data | Status::DataHigh | Status::DataNoResource | Status::DataHighNoResource => {
-                return Ok((status, data));
-            }
-            status => return Err(ProfibusError::Refused { station, asked, status }),
-        },
-        Answer::Frame(_) => "a request came".to_owned(),
-    };
-    Err(ProfibusError::Malformed { station, asked, why })
-}
-
-/// Whether all is well.
-fn acknowledged(station: u8, asked: &'static str, answer: &Answer) -> Result<(), ProfibusError> {
-    match answer {
-        Answer::Short => Ok(()),
-        Answer::Frame(Frame { control: Control::Answer(_, status), .. }) => match status {
-            Status::Ok | Status::NoData | Status::Data | Status::DataHigh => Ok(()),
-            status => Err(ProfibusError::Refused { station, asked, status: *status }),
-        },
-        Answer::Frame(_) => Ok(()),
     }
 }

@@ -174,13 +174,12 @@ impl<P: ImagePeer> Slave<P> {
             (Service::SendRequestHigh | Service::SendRequestLow, FrameCount::First | FrameCount::Counted(_)) => {
                 let bit = count.bit();
                 let repeated = self.last.get(&frame.from).filter(|last| count != FrameCount::First && last.0 == bit);
-                match repeated {
-                    Some((_, answer)) => answer.clone(),
-                    None => {
-                        let answer = self.serve(now, frame);
-                        self.last.insert(frame.from, (bit, answer.clone()));
-                        answer
-                    }
+                if let Some((_, answer)) = repeated {
+                    answer.clone()
+                } else {
+                    let answer = self.serve(now, frame);
+                    self.last.insert(frame.from, (bit, answer.clone()));
+                    answer
                 }
             }
             // Not counted as it must be, or a service that slaves do not have.

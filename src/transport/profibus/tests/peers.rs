@@ -33,7 +33,7 @@ impl ProfibusPhy for Phy {
         let (len, result) = f(&mut buffer);
         if len > 0 {
             self.wire.send(self.now, &buffer[..len]);
-            self.sent_until = self.now + self.slave_rate().pace().time(len);
+            self.sent_until = self.now + rate().pace().time(len);
         }
         result
     }
@@ -56,10 +56,8 @@ impl ProfibusPhy for Phy {
     }
 }
 
-impl Phy {
-    fn slave_rate(&self) -> Rate {
-        Rate::from_name("500k").expect("a rate")
-    }
+fn rate() -> Rate {
+    Rate::from_name("500k").unwrap()
 }
 
 /// Runs their master for so long; bytes that it got from our slave at the end, if it is in data exchange.
@@ -84,7 +82,7 @@ fn drive(time: Duration, ident: u16, fault: Option<SlaveFault>) -> (Option<Vec<u
         .watchdog_timeout(profirust::time::Duration::from_millis(500))
         .build_verified(&master);
     let mut station = fdl::FdlActiveStation::new(parameters);
-    let rate = Rate::from_name("500k").unwrap();
+    let rate = rate();
     let mut slave = Slave::new(setup(rate), Echo::default());
     slave.misbehave(fault);
     let wire = Wire::new(Some(rate.pace()), None);

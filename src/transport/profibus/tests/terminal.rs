@@ -117,11 +117,11 @@ async fn an_adapter_that_is_pulled_out_is_a_loss_and_is_opened_again() {
     let second = Served::new(settings().rate);
     // The same name leads to another terminal once the adapter is back.
     let (there, back) = (first.path.clone(), second.path.clone());
-    let mut opened = 0;
+    let mut count = 0;
     let rate = settings().rate;
     let opener = Box::new(move || {
-        opened += 1;
-        let path = if opened == 1 { &there } else { &back };
+        count += 1;
+        let path = if count == 1 { &there } else { &back };
         Ok(Box::new(Serial::open(path, rate)?) as Box<dyn Port>)
     });
     let mut connection = Connection::open(settings(), opener, None).await.unwrap();
