@@ -74,7 +74,7 @@ pub enum OfYerc {
 /// The first word of a line for `yrcx`.
 #[derive(Debug, Subcommand)]
 pub enum OfYrcx {
-    /// OMRON / Yamaha YRCX over EtherNet/IP
+    /// OMRON / Yamaha YRCX over a fieldbus
     #[command(after_help = "Settings and first contact: `armctl help yrcx-setup`.")]
     Yrcx {
         /// Which robot of the controller.

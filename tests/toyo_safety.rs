@@ -26,6 +26,8 @@ struct Machine {
     jogs: bool,
     runs: bool,
     x: i32,
+    /// The current task, counted from 0.
+    task: u8,
 }
 
 impl Machine {
@@ -49,6 +51,8 @@ impl Machine {
                 };
                 return format!("{block} ST1={page:02X} ST2=00");
             }
+            "CTSK" => self.task = block[block.len() - 1..].parse::<u8>().unwrap() - 1,
+            "MTSK" => return format!("@MTSK TASK={:02}", self.task + 1),
             "RSTX" => return "@RSTX 0001 NOP".to_owned(),
             _ => return "@NG".to_owned(),
         }
@@ -346,6 +350,69 @@ fn what_a_killed_command_has_left_is_told_until_it_is_undone() {
     toyo(&url, state.path(), "position").status().unwrap();
     let said = errors(&toyo(&url, state.path(), "position").output().unwrap());
     assert_eq!(said, "");
+}
+
+/// What another client of a device server does, and leaves so.
+fn another_client(url: &str, block: &str) {
+    let mut stream = std::net::TcpStream::connect(url.trim_start_matches("tcp://")).unwrap();
+    stream.write_all(format!("{block}\r\n").as_bytes()).unwrap();
+    let mut answer = String::new();
+    BufReader::new(&stream).read_line(&mut answer).unwrap();
+    assert_eq!(answer, "@OK\r\n");
+}
+
+#[test]
+fn what_somebody_else_has_left_is_told_where_the_state_is_read() {
+    let state = tempfile::tempdir().unwrap();
+    let url = lasting(|_| Peculiar::No);
+    let said = |words: &str| {
+        let output = toyo(&url, state.path(), words).output().unwrap();
+        assert!(output.status.success(), "{words}: {}", errors(&output));
+        errors(&output)
+    };
+    assert_eq!(said("status"), "");
+    another_client(&url, "@HSON");
+    let told = said("status");
+    assert!(told.contains("the host is ON, and no armctl of this user keeps it so"), "{told}");
+    assert!(told.contains("`toyo host off` gives it back"), "{told}");
+    assert_eq!(said("status --watch=20ms --count 3").matches("the host is ON").count(), 1, "once is enough");
+    // What changes something looks who commands, too; what does not ask is not made to.
+    assert!(said("stop").is_empty() && said("position").is_empty());
+    another_client(&url, "@SPST 0001");
+    let told = said("status");
+    assert!(told.contains("the host is ON and something is executed, and no armctl of this user does that"), "{told}");
+    assert!(told.contains("`toyo stop` stops it and `toyo host off` gives"), "{told}");
+    said("stop");
+    said("host off");
+    assert_eq!(said("status"), "");
+    // What is wanted here is no news, until it is over.
+    said("raw @HSON");
+    assert_eq!(said("status"), "");
+    said("host off");
+    said("host on");
+    assert_eq!(said("status"), "");
+    another_client(&url, "@HSOF");
+    assert_eq!(said("status"), "");
+    another_client(&url, "@HSON");
+    assert!(said("status").contains("the host is ON"));
+}
+
+#[test]
+fn a_task_that_somebody_else_chose_is_told() {
+    let state = tempfile::tempdir().unwrap();
+    let url = lasting(|_| Peculiar::No);
+    let said = |words: &str| errors(&toyo(&url, state.path(), words).output().unwrap());
+    assert_eq!(said("task get"), "");
+    another_client(&url, "@CTSK TASK=02");
+    let told = said("task get");
+    assert!(told.contains("task 2 is the current one, and no armctl of this user chose it"), "{told}");
+    assert!(told.contains("`toyo task set 1` chooses the first"), "{told}");
+    said("task set 2");
+    assert_eq!(said("task get"), "");
+    another_client(&url, "@CTSK TASK=03");
+    assert!(said("task get").contains("task 3 is the current one"));
+    said("task set 1");
+    assert_eq!(said("task get"), "");
 }
 
 #[test]

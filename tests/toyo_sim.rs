@@ -88,6 +88,39 @@ fn a_pseudo_terminal_has_its_link_as_long_as_it_is_served() {
     }
 }
 
+/// Envelopes as a watch prints them, up to one that is a success or none.
+fn until(lines: &mut impl Iterator<Item = std::io::Result<String>>, ok: bool) {
+    let is_so = |line: &String| line.contains(&format!(r#""ok":{ok}"#));
+    assert!(lines.map_while(Result::ok).any(|line| is_so(&line)), "none came that has ok: {ok}");
+}
+
+#[test]
+fn a_watch_outlives_a_port_that_is_pulled_out_and_plugged_in_again() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("on.toml"), "host = true\n").unwrap();
+    let mut served = Served::start(folder.path(), "--pty --link port");
+    for (words, state) in [
+        ("position --watch=50ms --count 2000", ""),
+        ("status --watch=50ms --count 2000 --until .data.host_on", " --state on.toml"),
+    ] {
+        let words = format!("-o jsonl -t {} toyo {words}", served.target);
+        let mut watch = armctl(folder.path(), &words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut lines = BufReader::new(watch.stdout.take().unwrap()).lines();
+        until(&mut lines, true);
+        assert_eq!(served.end("-INT"), Some(0));
+        assert!(!folder.path().join("port").exists(), "the path is gone");
+        until(&mut lines, false);
+        served = Served::start(folder.path(), &format!("--pty --link port{state}"));
+        until(&mut lines, true);
+        if state.is_empty() {
+            let pid = watch.id().to_string();
+            assert!(Command::new("kill").args(["-INT", pid.as_str()]).status().unwrap().success());
+        }
+        // What was waited for came true on the controller that came back.
+        assert_eq!(watch.wait().unwrap().code(), Some(if state.is_empty() { 130 } else { 0 }));
+    }
+}
+
 #[test]
 fn the_console_drives_what_no_command_can() {
     let folder = tempfile::tempdir().unwrap();

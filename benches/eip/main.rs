@@ -12,7 +12,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, ensure};
-use armctl::command::yrcx::{Family as Yrcx, simulated};
+use armctl::command::yrcx::Family as Yrcx;
+use armctl::command::yrcx::eip::simulated;
 use armctl::command::{Access, Family as _, Need};
 use armctl::controller::yrcx;
 use armctl::controller::yrcx::simulator::Start;

@@ -10,7 +10,7 @@ use crate::command::Access;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::{Robot, Sessions};
-use crate::transport::session::client::{self, AttachError, Attached, Found, Hindrance};
+use crate::transport::session::client::{self, AttachError, Attached, Found, SessionBusy};
 use crate::transport::session::place::{Place, PlaceError, key};
 use crate::transport::session::process;
 use crate::transport::session::wire::Peer;
@@ -118,16 +118,16 @@ pub fn refused(label: &str, error: &AttachError) -> Failure {
 }
 
 /// What stands in the way within a session.
-pub fn hindered(label: &str, hindrance: &Hindrance) -> Failure {
-    match hindrance {
-        Hindrance::Ended(why) => Failure::new(Kind::NoAnswer, format!("{label}: {why}"))
+pub fn session_busy(label: &str, busy: &SessionBusy) -> Failure {
+    match busy {
+        SessionBusy::Ended(why) => Failure::new(Kind::NoAnswer, format!("{label}: {why}"))
             .hint("look at the robot; `armctl session open` opens another session"),
-        Hindrance::Busy(holder) => {
+        SessionBusy::Busy(holder) => {
             let who = holder.as_ref().map_or_else(|| "another client".to_owned(), peer);
             Failure::new(Kind::NoAnswer, format!("{label}: the link is in use by {who}"))
                 .hint("wait for its end; stops get through: `yrcx stop`, `toyo stop`, `yerc hold on`")
         }
-        Hindrance::Moved(holder) => {
+        SessionBusy::Moved(holder) => {
             let message = format!("{label}: another client moves the robot: {}; nothing was sent", peer(holder));
             Failure::new(Kind::RefusedHere, message)
                 .hint("wait for its end; stops get through: `yrcx stop`, `toyo stop`, `yerc hold on`")

@@ -56,14 +56,14 @@ impl State {
 #[derive(Debug)]
 pub struct Layers {
     label: String,
-    names: &'static [&'static str],
+    names: Vec<&'static str>,
     found: Vec<Layer>,
 }
 
 impl Layers {
     /// Of the robot that messages name so; these are the layers there are.
-    pub fn new(label: String, names: &'static [&'static str]) -> Self {
-        Self { label, names, found: Vec::new() }
+    pub fn new(label: String, names: impl Into<Vec<&'static str>>) -> Self {
+        Self { label, names: names.into(), found: Vec::new() }
     }
 
     /// As it should be.
@@ -98,8 +98,8 @@ impl Layers {
             Some(failed) => format!("{} failed", failed.layer),
             None => "it could not be asked".to_owned(),
         };
-        for name in self.names {
-            if !self.found.iter().any(|found| found.layer == *name) {
+        for name in std::mem::take(&mut self.names) {
+            if !self.found.iter().any(|found| found.layer == name) {
                 self.add(name, State::Skipped, why.clone(), None);
             }
         }

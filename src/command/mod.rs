@@ -9,6 +9,7 @@ pub mod authority;
 pub mod backup;
 pub mod checks;
 pub mod common;
+pub mod decode;
 pub mod dry_run;
 pub mod holding;
 pub mod interrupt;
@@ -22,6 +23,7 @@ pub mod orders;
 pub mod overview;
 pub mod run;
 pub mod sample;
+pub mod serve;
 #[cfg(test)]
 mod testing;
 pub mod toyo;
@@ -120,7 +122,7 @@ pub enum Entry {
     /// Nothing, as a session holds it; another way would not be harmless.
     ThroughSession,
     /// It stops the robot when it ends; completes "This will …".
-    Stops(&'static str),
+    Stops(String),
 }
 
 /// A controller family as the commands see it.

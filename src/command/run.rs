@@ -162,7 +162,7 @@ impl Run {
             Confirmation::Question => (intent.risk >= Risk::Destroy, Confirmation::Question),
             Confirmation::WhenKnown => (intent.risk == Risk::Motion, Confirmation::Question),
         };
-        let text = if asks { format!("{}, and {entry}", intent.text) } else { entry.to_owned() };
+        let text = if asks { format!("{}, and {entry}", intent.text) } else { entry };
         Intent { risk: Risk::Motion, text, confirmation, ..intent }
     }
 

@@ -13,6 +13,7 @@ pub mod prompt;
 pub mod redraw;
 pub mod render;
 pub mod view;
+mod wrap;
 
 use std::io::{self, IsTerminal, Write};
 
@@ -156,7 +157,7 @@ impl Screen {
     /// Says something on stderr, unless `--quiet`.
     pub fn note(&self, text: &str) {
         if !self.quiet {
-            Self::stderr(&format!("{}\n", escape::lines(text)));
+            Self::prose(&format!("{}\n", escape::lines(text)));
         }
     }
 
@@ -170,7 +171,7 @@ impl Screen {
     /// Says something on stderr from `-v` times `level` on.
     pub fn detail(&self, level: u8, text: &str) {
         if self.verbosity >= level {
-            Self::stderr(&format!("{}\n", escape::lines(text)));
+            Self::prose(&format!("{}\n", escape::lines(text)));
         }
     }
 
@@ -185,7 +186,7 @@ impl Screen {
         let code = failure.code.as_ref().map(|code| format!(" [{code}]")).unwrap_or_default();
         let hint = failure.hint.as_ref().map(|hint| format!("\n{} {}\n", paint("1;36", "hint:"), escape::lines(hint)));
         let message = escape::lines(&failure.message);
-        Self::stderr(&format!("{} {message}{code}\n{}", paint("1;31", label), hint.unwrap_or_default()));
+        Self::prose(&format!("{} {message}{code}\n{}", paint("1;31", label), hint.unwrap_or_default()));
     }
 
     /// What the parser of the command line has to say about a mistake.
@@ -199,6 +200,16 @@ impl Screen {
         match escape::json_line(value) {
             Ok(text) => Self::stderr(&format!("{text}\n")),
             Err(error) => Self::stderr(&format!("error: {error}\n")),
+        }
+    }
+
+    /// Text for people: on a terminal in lines that end between words.
+    fn prose(text: &str) {
+        if io::stderr().is_terminal() {
+            let (_, columns) = dialoguer::console::Term::stderr().size();
+            Self::stderr(&wrap::wrapped(text, columns.max(40).into()));
+        } else {
+            Self::stderr(text);
         }
     }
 

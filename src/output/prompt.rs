@@ -10,7 +10,7 @@ use crate::failure::{Failure, Kind};
 impl Screen {
     /// Says what a question is about, even under `--quiet`.
     pub fn ask_note(&self, text: &str) {
-        Self::stderr(&format!("{}\n", super::escape::lines(text)));
+        Self::prose(&format!("{}\n", super::escape::lines(text)));
     }
 
     /// Asks `question` and takes yes or no; an empty answer is no. The terminal stays as it is, so that whatever ends the
@@ -25,7 +25,7 @@ impl Screen {
     }
 
     fn ask(question: &str) -> Result<Vec<u8>, Failure> {
-        Self::stderr(&format!("{} ", super::escape::line(question)));
+        Self::prose(&format!("{} ", super::escape::line(question)));
         let mut answer = Vec::new();
         // A terminal that cannot be read any more, as it was closed, gives no answer either.
         if std::io::stdin().lock().read_until(b'\n', &mut answer).unwrap_or(0) == 0 {

@@ -22,7 +22,7 @@ use crate::controller::yrcx::signal::{Side, Signal};
 use crate::controller::yrcx::{alarm, table};
 use crate::settings::Sources;
 use crate::settings::inventory::{Inventory, Location};
-use crate::settings::target::Family;
+use crate::settings::target::{BUSES, Family};
 use crate::transport::session::place::{Place, Spot};
 
 /// What the rest of the line says about robots and settings.
@@ -141,14 +141,16 @@ fn tags(context: &Context) -> Vec<Candidate> {
 
 /// How target URLs begin. What follows is nobody's guess.
 fn urls() -> Vec<Candidate> {
-    let urls = [
+    let buses = BUSES.each_ref().map(|bus| Candidate::new(format!("{}://", bus.name), bus.about));
+    let before = [
         Candidate::new("sim:", "the built-in simulator"),
         Candidate::new("udp://", "yerc: name or address of the controller"),
-        Candidate::new("eip://", "yrcx: name or address of the network board"),
+    ];
+    let after = [
         Candidate::new("serial://", "toyo: a port of this machine, as in serial:///dev/ttyUSB0 or serial://COM3"),
         Candidate::new("tcp://", "toyo: HOST:PORT of a serial device server"),
     ];
-    urls.map(Candidate::begun).into()
+    before.into_iter().chain(buses).chain(after).map(Candidate::begun).collect()
 }
 
 const FAMILIES: [(Family, &str); 3] =

@@ -3,7 +3,7 @@
 pub mod backup;
 pub mod batch;
 pub mod completions;
-pub mod decode;
+mod decode;
 mod explain;
 pub mod help;
 pub mod man;
@@ -11,7 +11,7 @@ pub mod repl;
 pub mod robots;
 pub mod schema;
 pub mod session;
-pub mod sim;
+mod sim;
 mod top;
 
 use clap::Subcommand;

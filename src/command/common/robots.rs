@@ -34,7 +34,7 @@ pub enum Robots {
     Remove(Remove),
     /// What is wrong between this machine and a robot, and what to set
     Check(check::Check),
-    /// Which EtherNet/IP boards answer on the network, and which serial ports are there
+    /// Which controllers answer on the network, and which serial ports are there
     Discover(discover::Discover),
 }
 

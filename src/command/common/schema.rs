@@ -53,19 +53,11 @@ pub fn all() -> Vec<SchemaEntry> {
     all.extend(<super::backup::Backup as Noun<Fleet>>::schemas());
     all.extend(<super::backup::Restore as Noun<Fleet>>::schemas());
     all.extend(<super::backup::Diff as Noun<Fleet>>::schemas());
+    all.push(SchemaEntry::of::<super::backup::Checked>("backup.check"));
+    all.extend(super::decode::Decode::schemas());
+    all.extend([SchemaEntry::of::<DryRun>("dry-run"), SchemaEntry::of::<Envelope>("envelope")]);
+    all.extend(super::explain::Explain::schemas());
     all.extend([
-        SchemaEntry::of::<super::backup::Checked>("backup.check"),
-        SchemaEntry::of::<super::decode::toyo::Lines>("decode.toyo"),
-        SchemaEntry::of::<super::decode::capture::Capture<super::decode::toyo::FieldRow>>("decode.toyo.capture"),
-        SchemaEntry::of::<super::decode::yerc::Frames>("decode.yerc"),
-        SchemaEntry::of::<super::decode::capture::Capture<super::decode::yerc::FieldRow>>("decode.yerc.capture"),
-        SchemaEntry::of::<super::decode::yrcx::Explained>("decode.yrcx"),
-        SchemaEntry::of::<super::decode::capture::Capture<super::decode::yrcx::FieldRow>>("decode.yrcx.capture"),
-        SchemaEntry::of::<DryRun>("dry-run"),
-        SchemaEntry::of::<Envelope>("envelope"),
-        SchemaEntry::of::<super::explain::ToyoCode>("explain.toyo"),
-        SchemaEntry::of::<super::explain::Codes>("explain.yerc"),
-        SchemaEntry::of::<super::explain::YrcxAlarm>("explain.yrcx"),
         SchemaEntry::of::<ErrorBody>("failure"),
         SchemaEntry::of::<super::robots::Changed>("robots.add"),
         SchemaEntry::of::<super::robots::check::CheckReport>("robots.check"),
@@ -76,9 +68,7 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<super::session::Closed>("session.close"),
         SchemaEntry::of::<super::session::Sessions>("session.list"),
         SchemaEntry::of::<super::session::Opened>("session.open"),
-        SchemaEntry::of::<super::sim::toyo::Serving>("sim.toyo"),
-        SchemaEntry::of::<super::sim::yerc::Serving>("sim.yerc"),
-        SchemaEntry::of::<super::sim::yrcx::Serving>("sim.yrcx"),
     ]);
+    all.extend(super::sim::Sim::schemas());
     all
 }

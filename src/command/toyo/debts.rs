@@ -134,12 +134,25 @@ impl Debts {
 
     /// What others have left behind on the same robot.
     pub fn left(&self) -> Vec<Left> {
-        let Some(entries) = self.folder.as_ref().and_then(|folder| fs::read_dir(folder).ok()) else {
-            return Vec::new();
-        };
-        let paths = entries.flatten().map(|entry| entry.path());
-        let left = paths.filter_map(|path| Some(Left { owed: abandoned(&path)?, path }));
+        let left = self.notes().filter_map(|path| Some(Left { owed: abandoned(&path)?, path }));
         left.filter(|left| left.owed.robot == self.owed.robot).collect()
+    }
+
+    /// Whether other processes that live have changed something on the same robot.
+    pub fn others_owe(&self) -> bool {
+        let own = self.file.as_ref().map(|(_, path)| path);
+        let others = self.notes().filter(|path| Some(path) != own);
+        let mut living = others.filter(|path| {
+            let (file, about) = (files::open(path), fs::symlink_metadata(path));
+            file.is_ok_and(|file| about.is_ok_and(|about| about.is_file() && !is_free(&file, &about)))
+        });
+        living.any(|path| owed(&path).is_some_and(|owed| owed.robot == self.owed.robot))
+    }
+
+    /// The notes of all.
+    fn notes(&self) -> impl Iterator<Item = PathBuf> {
+        let entries = self.folder.as_ref().and_then(|folder| fs::read_dir(folder).ok()).into_iter().flatten().flatten();
+        entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|ending| ending == "json"))
     }
 }
 
@@ -158,9 +171,6 @@ impl Left {
 
 /// The note in a file, unless the process that wrote it lives.
 fn abandoned(path: &Path) -> Option<Owed> {
-    if path.extension().is_none_or(|ending| ending != "json") {
-        return None;
-    }
     let about = fs::symlink_metadata(path).ok().filter(|about| about.is_file() && about.len() <= MOST)?;
     let file = files::open(path).ok()?;
     if !is_free(&file, &about) {
@@ -170,6 +180,11 @@ fn abandoned(path: &Path) -> Option<Owed> {
         fs::remove_file(path).unwrap_or_default();
         return None;
     }
+    owed(path)
+}
+
+/// The note in a file.
+fn owed(path: &Path) -> Option<Owed> {
     serde_json::from_slice(&files::read(path, MOST).ok()?).ok()
 }
 
@@ -213,7 +228,7 @@ mod tests {
         assert_eq!(left(), 1);
         // The process that wrote it lives.
         #[cfg(unix)]
-        assert!(notes().left().is_empty());
+        assert!(notes().left().is_empty() && notes().others_owe() && !debts.others_owe());
         debts.moving(None);
         debts.pop("@CTSK TASK=01");
         assert_eq!(left(), 1);
@@ -232,7 +247,7 @@ mod tests {
         // Its lock goes with it, and nothing is put back.
         drop(debts);
         fs::write(folder.path().join("odd.json"), "{").unwrap();
-        assert!(notes("tcp://other").left().is_empty());
+        assert!(notes("tcp://other").left().is_empty() && !notes("tcp://cell").others_owe());
         let left = notes("tcp://cell").left();
         assert_eq!(left.len(), 1);
         assert!(left[0].owed.host && left[0].owed.back == ["@CTSK TASK=01"] && left[0].owed.moving.is_none());

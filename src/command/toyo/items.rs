@@ -68,6 +68,14 @@ impl<T> Item<T> {
         }
     }
 
+    /// From an answer whose value says itself whether the manual lists it.
+    pub fn kept(name: &'static str, number: i32, answer: Result<T, Failure>) -> Self {
+        match answer {
+            Ok(value) => Self::Answered { ok: true, value },
+            Err(error) => Self::Failed { ok: false, key: Key::from([(name, number)]), error },
+        }
+    }
+
     /// The value, if there is one.
     pub fn value(&self) -> Option<&T> {
         if let Self::Answered { value, .. } = self { Some(value) } else { None }
@@ -123,7 +131,21 @@ pub fn failure_of<T>(items: &[Item<T>]) -> Option<Failure> {
 /// # Errors
 /// The first failure, if nothing was answered at all.
 pub async fn read_each(link: &mut Link, screen: &Screen, what: &str, requests: &[Request]) -> Result<Answers, Failure> {
-    read(link, screen, what, requests, 1).await
+    read(link, screen, what, requests, 1, |_| false).await
+}
+
+/// As [`read_each`], up to the first answer for which `is_last` holds.
+///
+/// # Errors
+/// As those of [`read_each`].
+pub async fn read_until(
+    link: &mut Link,
+    screen: &Screen,
+    what: &str,
+    requests: &[Request],
+    is_last: impl Fn(&Record) -> bool,
+) -> Result<Answers, Failure> {
+    read(link, screen, what, requests, 1, is_last).await
 }
 
 /// As [`read_each`]; what is refused is asked for once more, as a controller that is busy refuses, too.
@@ -136,7 +158,7 @@ pub async fn read_each_twice(
     what: &str,
     requests: &[Request],
 ) -> Result<Answers, Failure> {
-    read(link, screen, what, requests, 2).await
+    read(link, screen, what, requests, 2, |_| false).await
 }
 
 async fn read(
@@ -145,6 +167,7 @@ async fn read(
     what: &str,
     requests: &[Request],
     times: u8,
+    is_last: impl Fn(&Record) -> bool,
 ) -> Result<Answers, Failure> {
     if times > 1 && link.is_dry() {
         for request in requests {
@@ -170,9 +193,13 @@ async fn read(
                 return Err(failure.clone());
             }
         }
+        let ends = answer.as_ref().is_ok_and(&is_last);
         answers.push(answer);
         if let Some(progress) = &mut progress {
             progress.advance(1);
+        }
+        if ends {
+            break;
         }
     }
     match answers.first() {
@@ -307,6 +334,9 @@ mod tests {
         .0;
         let got = bench.data(&["program", "get", "--to", "4"]);
         assert_eq!(got["text"], "SPD V=05\nFOO X=1   # not in the manual\nEND\nNOP\n");
-        assert_eq!(got["steps"][1], serde_json::json!({ "step": 2, "instruction": "FOO X=1", "in_manual": false }));
+        assert_eq!(
+            got["steps"][1],
+            serde_json::json!({ "ok": true, "step": 2, "instruction": "FOO X=1", "in_manual": false })
+        );
     }
 }

@@ -2,8 +2,10 @@
 
 mod borrowed;
 pub(super) mod fence;
+mod foreign;
 mod left;
 mod stop;
+mod trouble;
 
 use std::io;
 use std::net::SocketAddr;
@@ -12,24 +14,25 @@ use std::time::Duration;
 use serde_json::json;
 use tokio::time::Instant;
 
+use super::chosen::Chosen;
+use super::connect;
 use super::debts::{Debts, Left};
 use super::letters::Letters;
 use super::position::Place;
-use super::reach;
 use super::refusal;
 use super::trace::Trace;
 use super::wear::Wear;
-use crate::command::attach::hindered;
+use crate::command::attach::session_busy;
 use crate::command::dry_run::{Plan, Reason, unknown};
 use crate::command::{Access, Family};
 use crate::controller::toyo::field::Value;
-use crate::controller::toyo::layout::{Misfit, Record};
-use crate::controller::toyo::request::{Answer, BlockError, Request};
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::request::{Answer, Request};
 use crate::controller::toyo::session::{Counters, Ended, Line, Policy};
 use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table::commands::{Command, Row};
 use crate::controller::{Risk, Session as _, Step};
-use crate::failure::{Failure, Kind, plain};
+use crate::failure::Failure;
 use crate::gate::Grant;
 use crate::output::Screen;
 use crate::settings::Robot;
@@ -40,6 +43,8 @@ use crate::transport::sim::Peer;
 use crate::transport::stream::Stream;
 use crate::transport::tap::Direction;
 use borrowed::{Host, wants_host};
+use foreign::Told;
+pub use trouble::{misuse, wrong};
 
 /// The toyo family.
 #[derive(Debug)]
@@ -69,6 +74,9 @@ pub struct Link {
     /// What is changed for a while, for others to find if this process is killed; and what others have left.
     debts: Debts,
     left: Vec<Left>,
+    /// What is meant to stay as it is; and what is not, and was told.
+    chosen: Chosen,
+    told: Told,
     /// How to open it again.
     again: Option<(Robot, Access)>,
     /// Whether nothing can come any more that answers what was asked before.
@@ -121,6 +129,8 @@ pub struct Refusal(pub Request);
 const BUFFER: usize = 1024;
 /// The longest silence while something moves that must be stopped.
 const SILENCE: Duration = Duration::from_millis(300);
+/// The page of the status that tells who commands.
+const HOST_PAGE: u8 = 2;
 /// A session that waits for nothing is asked again after this.
 const LONG: Duration = Duration::from_secs(3600);
 
@@ -129,13 +139,13 @@ impl Family for Toyo {
     type Link = Link;
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
-        let way = reach::way(robot)?;
+        let endpoint = connect::endpoint(robot)?;
         let transport = if access.dry_run {
             Transport::Notes(Plan::default())
         } else {
-            Transport::Stream(Box::new(Box::pin(reach::open(robot, &access, screen)).await?))
+            Transport::Stream(Box::new(Box::pin(connect::open(robot, &access, screen)).await?))
         };
-        let mut link = Link::new(robot, &access, screen, transport, way.character())?;
+        let mut link = Link::new(robot, &access, screen, transport, endpoint.character())?;
         link.again = Some((robot.clone(), access));
         Ok(link)
     }
@@ -199,10 +209,11 @@ impl Link {
         let trace = Trace::open(access, screen, transport.ends())?;
         let is_kept = !robot.target.value.is_simulated();
         let wear = if is_kept { Wear::of(&robot.target.value.to_string()) } else { Wear::without_diary() };
-        let debts = if is_kept && !access.dry_run {
-            Debts::of(&robot.target.value.to_string())
+        let (debts, chosen) = if is_kept && !access.dry_run {
+            let target = robot.target.value.to_string();
+            (Debts::of(&target), Chosen::of(&target))
         } else {
-            Debts::without_notes()
+            (Debts::without_notes(), Chosen::without_notes())
         };
         let left = debts.left();
         Ok(Self {
@@ -221,7 +232,9 @@ impl Link {
             waited: Duration::ZERO,
             is_gone: false,
             debts,
+            told: Told::by(&left),
             left,
+            chosen,
             again: None,
             is_fenced: false,
             hangs_on: None,
@@ -275,7 +288,12 @@ impl Link {
             return Err(unknown());
         }
         match self.exchange(request).await? {
-            Answer::Data(record) => Ok(Ok(record)),
+            Answer::Data(record) => {
+                if request.command() == Command::Mtsk {
+                    self.tell_foreign_task(record.number("task"));
+                }
+                Ok(Ok(record))
+            }
             Answer::Refused => Ok(Err(Refusal(request.clone()))),
             Answer::Done => Err(self.malformed("@OK", "data is expected")),
         }
@@ -358,6 +376,9 @@ impl Link {
         for page in pages {
             status = status.with(*page, self.status_page(*page).await?);
         }
+        if pages.contains(&HOST_PAGE) {
+            self.tell_foreign_host(status);
+        }
         Ok(status)
     }
 
@@ -369,12 +390,16 @@ impl Link {
 
     /// Sends a block that is in no table, and returns what came back.
     pub async fn raw(&mut self, block: &str) -> Result<String, Failure> {
+        self.granted.check(Risk::Motion, block)?;
+        self.fence().await?;
         if let Transport::Notes(plan) = &mut self.transport {
             plan.note(json!({ "text": block }), Reason::default());
             return Err(unknown());
         }
         self.take_turn(Risk::Motion).await?;
+        self.is_fenced = false;
         self.moving = Some(Moving::Program);
+        self.debts.moving(self.moving);
         self.line.begin_raw(block);
         match self.drive(Risk::Motion).await? {
             Ended::Answered(answer) => Ok(answer),
@@ -437,7 +462,7 @@ impl Link {
             }
             stream.take(until).await
         };
-        turn.await.map_err(|hindrance| hindered(&self.label, &hindrance))
+        turn.await.map_err(|hindrance| session_busy(&self.label, &hindrance))
     }
 
     async fn drive_alone(&mut self, risk: Risk) -> Result<Ended, Failure> {
@@ -555,60 +580,6 @@ impl Link {
     fn note(&mut self, request: &Request, reason: Reason<'_>) {
         self.plan_depending(&request.text(), reason);
     }
-
-    /// An answer that makes no sense.
-    pub fn malformed(&self, block: &str, why: &str) -> Failure {
-        Failure::new(Kind::Malformed, format!("{}: unexpected answer '{block}': {why}", self.label))
-            .hint("check baud rate and parity; -vv shows what came, `armctl decode toyo` explains it")
-    }
-
-    /// No answer, or none that fits.
-    fn unanswered(&self, ended: Ended, risk: Risk, telltale: &str) -> Failure {
-        let counters = self.line.counters();
-        let (kind, what) = match ended {
-            Ended::Unfitting { block, why } => (Kind::Malformed, format!("unexpected answer '{block}': {why}")),
-            _ if counters.received == counters.echoes && counters.echoes > 0 => {
-                (Kind::NoAnswer, "only what was sent came back".to_owned())
-            }
-            _ if counters.received == 0 && counters.noise > 0 => {
-                (Kind::NoAnswer, format!("no answer, but {} stray characters", counters.noise))
-            }
-            _ => (Kind::NoAnswer, format!("no answer within {:.1?}", self.policy.timeout)),
-        };
-        let failure = Failure::new(kind, format!("{}: {what}", self.label));
-        if risk > Risk::Read {
-            let message =
-                format!("{}: the order was sent, but whether it was carried out is unknown: {what}", self.label);
-            return Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(telltale);
-        }
-        failure.hint(if counters.echoes > 0 {
-            "a loop-back plug, or an RS-485 adapter that hears itself and no controller"
-        } else if counters.noise > 0 || kind == Kind::Malformed {
-            "check baud rate and parity: the controller has 9600 baud, 8 data bits, even parity, 1 stop bit"
-        } else {
-            "check that the controller is on, and the cable: TXD and RXD cross over, there is no handshake"
-        })
-    }
-
-    /// The line has bad news.
-    fn broken(&mut self, error: &io::Error, is_open: bool) -> Failure {
-        self.is_gone = true;
-        let what = match error.kind() {
-            io::ErrorKind::NotConnected if self.is_shared() => format!("the line is gone: {error}"),
-            io::ErrorKind::NotConnected => "the line is gone: unplugged, or closed by the other side".to_owned(),
-            _ => format!("the line is broken: {}", plain(error)),
-        };
-        if is_open {
-            let message = format!("{}: {what}; whether the order was carried out is unknown", self.label);
-            return Failure::new(Kind::OutcomeUnknown, message)
-                .hint("look at the robot; once the line is back, `toyo status` tells");
-        }
-        Failure::new(Kind::NoAnswer, format!("{}: {what}", self.label)).hint(if self.is_shared() {
-            "`armctl session list` tells how it stands"
-        } else {
-            "`toyo ports` lists the ports there are"
-        })
-    }
 }
 
 fn status_page(page: u8) -> Request {
@@ -619,14 +590,4 @@ fn status_page(page: u8) -> Request {
 pub fn jog(word: &'static str, axis: Option<usize>) -> Request {
     let of = |index| if axis.is_none_or(|axis| axis == index) { word } else { "SP" };
     Request::of(Command::Jgst, [0, 1, 2, 3].map(|index| Value::Word(of(index))))
-}
-
-/// Values that cannot be sent, as a failure of the command line.
-pub fn wrong(error: &Misfit) -> Failure {
-    Failure::usage(error.to_string()).hint("`--help` tells what may be given")
-}
-
-/// A request that cannot be sent.
-pub fn misuse(error: &BlockError) -> Failure {
-    Failure::usage(error.to_string()).hint("`--help` tells what may be given")
 }

@@ -5,14 +5,18 @@ mod bus;
 mod card;
 mod cells;
 mod check;
+mod chosen;
+mod connect;
 mod coordinate;
 mod copies;
 mod counter;
 #[cfg(test)]
 mod coverage;
 mod debts;
+pub mod decode;
 mod easy;
 mod error;
+pub mod explain;
 mod files;
 #[cfg(test)]
 mod gate;
@@ -38,11 +42,11 @@ pub mod ports;
 mod position;
 mod program;
 mod raw;
-mod reach;
 mod refusal;
 mod robot_type;
 mod rows;
 mod run;
+pub mod serve;
 mod sim;
 pub mod simulated;
 mod status;
@@ -59,9 +63,9 @@ mod waiting;
 mod wear;
 
 pub use check::check;
+pub use connect::hold;
 pub use link::Toyo as Family;
 pub use overview::overview;
-pub use reach::hold;
 
 use crate::command::{AtDesk, Verbs, commands};
 

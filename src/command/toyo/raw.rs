@@ -5,19 +5,24 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Family;
-use crate::command::common::decode::toyo::{FieldRow, field_table};
+use super::decode::FieldRow;
+use super::link::Link;
+use super::numbers::small;
+use crate::command::decode::{field_table, problem_lines};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::describe::{Sender, describe};
-use crate::controller::toyo::request::{BlockError, Request};
+use crate::controller::toyo::request::{Answer, BlockError, Request};
+use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Section, View};
+use crate::output::view::View;
 
-/// Sends a block as it is. Nothing is done before or after it: no host ON, no comparison, no waiting.
+/// Sends a block as it is: no host ON, no comparison, no waiting for what it does.
 #[derive(Debug, Args)]
 #[command(
     after_help = "A block that is not as the manual prints it goes out all the same, and counts as a motion, as nobody \
-                        knows what it does. If the controller refuses (@NG), the exit code is 3. `armctl decode toyo` \
+                        knows what it does. Before what is not known to only read or to stop, a page of the status is \
+                        asked for, so that no older answer is taken for its own. If the controller refuses (@NG), the exit code is 3. `armctl decode toyo` \
                         explains a block without sending it."
 )]
 pub struct Raw {
@@ -78,12 +83,38 @@ impl Command for Raw {
         let link = context.link;
         let answer = match &self.block {
             Block::Known(request) => {
+                if request.risk() > Risk::Read && !is_stop(request) {
+                    link.fence().await?;
+                }
                 link.dry_run(std::slice::from_ref(request))?;
-                link.exchange(request).await?.text()
+                let answer = link.exchange(request).await?;
+                if answer == Answer::Done {
+                    chosen(link, request);
+                }
+                answer.text()
             }
             Block::Unknown(text) => link.raw(text).await?,
         };
         Ok(Exchange::of(&self.block, answer))
+    }
+}
+
+/// What was done so was wanted, and is nothing that somebody else has left.
+fn chosen(link: &mut Link, request: &Request) {
+    match request.command() {
+        table::Command::Hson => link.choose_host(true),
+        table::Command::Hsof => link.choose_host(false),
+        table::Command::Ctsk => link.choose_task(small(request.record(), "task")),
+        _ => {}
+    }
+}
+
+/// Whether it stops what moves: that waits for nothing.
+fn is_stop(request: &Request) -> bool {
+    match request.command() {
+        table::Command::Stop => true,
+        table::Command::Jgst => request.risk() < Risk::Motion,
+        _ => false,
     }
 }
 
@@ -118,9 +149,9 @@ impl Exchange {
 
 impl Report for Exchange {
     fn view(&self) -> View {
-        let problem = self.problem.as_ref().map(|problem| format!("\nproblem: {problem}")).unwrap_or_default();
+        let problem = problem_lines(&self.problem);
         let view = View::text(format!("{}\n{}{problem}", self.answer, self.title));
-        if self.fields.is_empty() { view } else { view.and(Section::Table(field_table(&self.fields))) }
+        if self.fields.is_empty() { view } else { view.and(field_table(&self.fields)) }
     }
 
     fn failure(&self) -> Option<Failure> {
@@ -135,7 +166,7 @@ impl Report for Exchange {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, all_blocks, intent, objection};
+    use crate::command::toyo::testing::{Bench, Fate, all_blocks, intent, objection};
     use crate::controller::Risk;
     use crate::failure::Kind;
 
@@ -146,9 +177,36 @@ mod tests {
 
     #[test]
     fn a_block_goes_out_as_it_is() {
-        for text in ["@STAS SNO=0", "@HOME", "@HTSK TASK=01", "@XXXX", "@STAS SNO=9", "@STAS  SNO=0", "@HSON "] {
+        for text in ["@STAS SNO=0", "@MTSK", "@STOP", "@JGST X=SP Y=SP Z=SP R=SP"] {
             assert_eq!(all_blocks(&["raw", text]).unwrap(), [text]);
         }
+        for text in ["@HOME", "@WOVR OV=001", "@JGST X=+L Y=SP Z=SP R=SP", "@XXXX", "@STAS SNO=9", "@HSON "] {
+            assert_eq!(all_blocks(&["raw", text]).unwrap(), ["@STAS SNO=0", text], "an order has a fence before it");
+        }
+    }
+
+    #[test]
+    fn a_stale_ok_is_not_taken_for_that_of_a_raw_order() {
+        for order in ["@MCST CN06=0001", "@MCST CN06=1"] {
+            let late = move |block: &str, _| match block {
+                "@MCST CN05=0007" => Fate::Late(std::time::Duration::from_millis(3010)),
+                _ if block == order => Fate::Lost,
+                _ => Fate::Pass,
+            };
+            let (mut bench, heard) = Bench::spoilt("host = true\n", late);
+            assert_eq!(bench.run(&["counter", "set", "5", "7"]).unwrap_err().kind, Kind::OutcomeUnknown);
+            heard.borrow_mut().clear();
+            assert_eq!(bench.run(&["raw", order]).unwrap_err().kind, Kind::OutcomeUnknown);
+            assert_eq!(heard.borrow()[..2], ["@STAS SNO=0", order]);
+        }
+    }
+
+    #[test]
+    fn what_follows_an_unknown_order_is_fenced_again() {
+        let (mut bench, heard) = Bench::spoilt("host = true\n", |_, _| Fate::Pass);
+        bench.run(&["raw", "@XXXX"]).unwrap();
+        bench.run(&["raw", "@MCST CN06=0001"]).unwrap();
+        assert_eq!(heard.borrow()[..], ["@STAS SNO=0", "@XXXX", "@STAS SNO=0", "@MCST CN06=0001"]);
     }
 
     #[test]

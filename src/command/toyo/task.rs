@@ -70,13 +70,15 @@ impl Command for Set {
     async fn run(&self, context: Context<'_, Family>) -> Result<Current, Failure> {
         let (link, order) = (context.link, Request::of(table::Command::Ctsk, [Value::Number(self.task)]));
         link.order(&order).await?;
+        let chosen = u8::try_from(self.task).unwrap_or(u8::MAX);
+        link.choose_task(chosen);
         let found = read_back(link, &order, &Request::bare(table::Command::Mtsk)).await?.number(field().name);
         if found != Some(self.task) {
             let found = found.unwrap_or_default();
             return Err(not_held(&order, &format!("task {found} is the current one"))
                 .hint("somebody else may choose tasks at the same time; `toyo task get` tells"));
         }
-        Ok(Current { task: u8::try_from(self.task).unwrap_or(u8::MAX) })
+        Ok(Current { task: chosen })
     }
 }
 

@@ -4,7 +4,10 @@ mod alarm;
 mod axes;
 mod check;
 mod chosen;
+mod connect;
+pub mod decode;
 mod each;
+pub mod explain;
 pub mod file;
 mod fitted;
 #[cfg(test)]
@@ -22,9 +25,9 @@ mod overview;
 mod parts;
 mod position;
 mod raw;
-mod reach;
 mod refusal;
 mod register;
+pub mod serve;
 pub mod simulated;
 mod status;
 #[cfg(test)]
@@ -35,9 +38,9 @@ mod var;
 mod writes;
 
 pub use check::check;
+pub use connect::hold;
 pub use link::Yerc as Family;
 pub use overview::overview;
-pub use reach::hold;
 
 use crate::command::{Verbs, commands};
 

@@ -47,7 +47,15 @@ impl Command for Reset {
         let image = link.look().await?;
         let report = WasReset { alarm: output::ALARM.is_on(&image), servo_on: output::SERVO_ON.is_on(&image) };
         if !report.servo_on {
-            screen.note(if link.is_held() { POWER_OFF } else { POWER_OFF_AND_AGAIN });
+            if link.is_held() {
+                screen.note(POWER_OFF);
+            } else {
+                let alarm = link.link_alarm();
+                screen.note(&format!(
+                    "hint: motor power is off, and the end of this connection raises alarm {alarm} again: keep one open with \
+                     `armctl session open`, then `yrcx alarm reset` and `yrcx recover`"
+                ));
+            }
         }
         Ok(report)
     }
@@ -55,10 +63,6 @@ impl Command for Reset {
 
 /// What comes next where an alarm has switched the motors off.
 const POWER_OFF: &str = "hint: motor power is off: `yrcx recover` clears the emergency stop and switches the servos on";
-
-/// The same where the end of the connection is the next alarm.
-const POWER_OFF_AND_AGAIN: &str = "hint: motor power is off, and the end of this connection raises alarm 12.551 again: keep one \
-    open with `armctl session open`, then `yrcx alarm reset` and `yrcx recover`";
 
 /// An alarm that was reset.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -1,4 +1,4 @@
-//! `yrcx`: OMRON / Yamaha YRCX over EtherNet/IP.
+//! `yrcx`: OMRON / Yamaha YRCX over a fieldbus, see `buses.rs`.
 //!
 //! A command that gives one remote command implements `single::Single`: which row of the table, its fields, the report.
 //! `servo.rs` is the model of one that changes something, `info.rs` of those that read. What gives several implements
@@ -16,18 +16,25 @@
 mod alarm;
 mod arguments;
 pub mod backup;
+pub mod buses;
 mod check;
 mod clock;
+mod connect;
 #[cfg(test)]
 mod coverage;
 mod data;
+pub mod decode;
+pub mod discover;
 pub mod eip;
+pub mod explain;
+pub mod fieldbus;
 #[cfg(test)]
 mod gate;
 mod hold;
 mod info;
 mod io;
 pub mod link;
+mod link_error;
 mod motion;
 mod numbers;
 mod overview;
@@ -39,9 +46,9 @@ mod position;
 mod procedures;
 mod program;
 mod raw;
-mod reach;
 mod refusal;
 mod select;
+pub mod serve;
 mod servo;
 mod several;
 pub mod simulated;

@@ -12,6 +12,10 @@ use crate::failure::Failure;
 const NOT_ASKED: &str =
     "servos and position are remote commands, which take command of the controller: `yrcx status --full`, or a session";
 
+/// The same where there are no remote commands.
+const NO_COMMANDS: &str =
+    "servos and position are remote commands, for which the fieldbus unit has no words (I/O size \"Compact\")";
+
 /// The same while a session gives somebody else's command.
 const BUSY: &str =
     "servos and position were not asked for: another client's remote command is under way, and there is one at a time";
@@ -29,6 +33,9 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
 pub(super) fn not_asked(link: &Link, image: &Image) -> Option<&'static str> {
     if link.is_shared() && Status::of(image.0[0]) == Status::Running {
         return Some(BUSY);
+    }
+    if !link.has_commands() {
+        return Some(NO_COMMANDS);
     }
     (!link.commands()).then_some(NOT_ASKED)
 }

@@ -4,9 +4,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::decode::FieldRow;
 use super::refusal::refused;
 use super::{Family, link, overwrite};
-use crate::command::common::decode::yrcx::{FieldRow, field_table};
+use crate::command::decode::{field_table, problem_lines};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::answer::Answer;
@@ -15,7 +16,7 @@ use crate::controller::yrcx::image::{COMMAND_WORDS, Words};
 use crate::controller::yrcx::order::Order;
 use crate::failure::Failure;
 use crate::gate::Confirmation;
-use crate::output::view::{Section, View};
+use crate::output::view::View;
 
 /// Sends words that the manual allows.
 #[derive(Debug, Args)]
@@ -121,9 +122,9 @@ impl Exchange {
 
 impl Report for Exchange {
     fn view(&self) -> View {
-        let problems: String = self.problems.iter().map(|problem| format!("\nproblem: {problem}")).collect();
+        let problems = problem_lines(&self.problems);
         let view = View::text(format!("{}\n{}{problems}", self.wo.join(" "), self.title));
-        view.and(Section::Table(field_table(&self.fields)))
+        view.and(field_table(&self.fields))
     }
 
     fn failure(&self) -> Option<Failure> {

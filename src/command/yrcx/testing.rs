@@ -185,20 +185,51 @@ impl ImagePeer for Handle {
     }
 }
 
+/// The same behind a fieldbus that carries signals alone.
+#[derive(Debug)]
+struct SignalsAlone(Handle);
+
+impl ImagePeer for SignalsAlone {
+    fn input(&mut self, now: Duration, image: Option<&[u8]>) {
+        let whole = image.map(|bytes| {
+            assert_eq!(bytes.len(), Image::SIGNAL_BYTES);
+            Image::from_link(bytes).unwrap().to_bytes()
+        });
+        self.0.input(now, whole.as_ref().map(|bytes| &bytes[..]));
+    }
+
+    fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
+        self.0.output(now).map(|bytes| Image::from_link(&bytes).unwrap().to_link(Image::SIGNAL_BYTES))
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        self.0.wake()
+    }
+}
+
 impl Bench {
     pub(super) fn new(scripted: Scripted) -> Self {
         Self::granted(scripted, Risk::Motion)
     }
 
+    /// A controller whose fieldbus carries signals alone.
+    pub(super) fn signals_alone(scripted: Scripted) -> Self {
+        Self::over(scripted, Risk::Motion, |handle| Box::new(SignalsAlone(handle)))
+    }
+
     /// A link that may do so much and no more.
     pub(super) fn granted(scripted: Scripted, granted: Risk) -> Self {
+        Self::over(scripted, granted, |handle| Box::new(handle))
+    }
+
+    fn over(scripted: Scripted, granted: Risk, end: impl FnOnce(Handle) -> Box<dyn ImagePeer>) -> Self {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
         let peer = Shared::new(scripted.into());
         let access = Access { granted: Grant::of(granted), ..Access::reading(Need::Command) };
         let screen = quiet();
-        let opening = Link::to_peer(&robot, &access, &screen, Box::new(Handle(Shared::clone(&peer))));
+        let opening = Link::to_peer(&robot, &access, &screen, end(Handle(Shared::clone(&peer))));
         let link = runtime.block_on(opening).expect("a link");
         Self { runtime, robot, link, peer }
     }

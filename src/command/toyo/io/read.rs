@@ -86,6 +86,11 @@ impl Bank {
         if station == 0 && self.command != table::Command::Mnin && port > 3 { port / 4 + 1 } else { 1 }
     }
 
+    /// The screen that tells of a port, if there is one.
+    pub(super) fn screen_of(self, station: u8, port: u8) -> Option<u8> {
+        (port <= self.last(station)).then(|| self.screen(station, port))
+    }
+
     /// The ports of a screen that there should be.
     fn ports(self, station: u8, screen: u8) -> impl Iterator<Item = u8> {
         (1..=self.last(station)).filter(move |port| self.screen(station, *port) == screen)

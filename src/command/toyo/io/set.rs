@@ -7,23 +7,25 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::Family;
-use super::super::link::wrong;
-use super::super::numbers::number;
-use super::{listed, name, numbers};
+use super::super::link::{Link, wrong};
+use super::super::numbers::{not_held, number, read_back};
+use super::super::{items, refusal};
+use super::{OUTPUTS, Port, listed, name, numbers, ports_of};
 use crate::command::orders::Done;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Mask, Value};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
-use crate::failure::Failure;
-use crate::output::view::{Table, View};
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Table, Tone, View};
 
 /// Sets outputs. All bits of a port change at once; ports follow each other as they are typed.
 #[derive(Debug, Args)]
 #[command(
     after_help = "A whole port is eight characters for the bits 8 to 1, so that the rightmost one is bit 1: 1 is on, 0 \
-                        is off, a dot leaves the bit alone. A running program may set the same outputs."
+                        is off, a dot leaves the bit alone. Each port is read back behind its order; only the ports \
+                        that `io out` shows can be. A running program may set the same outputs."
 )]
 pub struct Set {
     /// Such as 1.3=on (port 1, bit 3) or 1=.......1 (port 1, bits 8 to 1)
@@ -126,13 +128,50 @@ impl Command for Set {
     async fn run(&self, context: Context<'_, Family>) -> Result<Outputs, Failure> {
         let station = self.station;
         let orders = self.orders()?;
-        for (done, Assignment { port, mask }) in orders.iter().enumerate() {
-            let values = vec![Value::Number(station.into()), Value::Number((*port).into()), Value::Mask(*mask)];
-            let request = Request::new(table::Command::Dout, values).map_err(|error| wrong(&error))?;
-            let ordered = context.link.order(&request).await;
-            ordered.map_err(|failure| account(failure, &orders, done))?;
+        let mut outputs = Vec::with_capacity(orders.len());
+        for (done, order) in orders.iter().enumerate() {
+            let output = order.set(context.link, station).await;
+            outputs.push(output.map_err(|failure| account(failure, &orders, done))?);
         }
-        Ok(Outputs { station, outputs: orders.iter().map(Output::from).collect() })
+        Ok(Outputs { station, outputs })
+    }
+}
+
+impl Assignment {
+    /// Sets it, and reads it back where that can be.
+    async fn set(&self, link: &mut Link, station: u8) -> Result<Output, Failure> {
+        let order = self.order(station)?;
+        link.order(&order).await?;
+        let Some(screen) = OUTPUTS.screen_of(station, self.port) else {
+            return Ok(Output::new(self, None));
+        };
+        let read = OUTPUTS.request(station, screen);
+        if link.is_dry() {
+            link.plan(&read, "the port as it is then");
+            return Ok(Output::new(self, None));
+        }
+        let answer = read_back(link, &order, &read).await?;
+        let found = ports_of(&answer).into_iter().find(|port| port.port == Some(self.port));
+        let Some(found) = found else {
+            let message =
+                format!("{} was accepted, but {} is not in '{}'", order.text(), name(self.port), answer.written());
+            return Err(Failure::new(Kind::OutcomeUnknown, message).hint(refusal::telltale(order.command())));
+        };
+        let mut output = Output::new(self, Some(&found));
+        if found.byte() & self.mask.care != self.mask.bits {
+            output.ok = false;
+            output.error = Some(
+                not_held(&order, &format!("{} reads {}", found.name, found.raw))
+                    .hint("a program that runs may set the same outputs; `toyo io out` tells how they are now"),
+            );
+        }
+        Ok(output)
+    }
+
+    /// As it is sent.
+    fn order(&self, station: u8) -> Result<Request, Failure> {
+        let values = vec![Value::Number(station.into()), Value::Number(self.port.into()), Value::Mask(self.mask)];
+        Request::new(table::Command::Dout, values).map_err(|error| wrong(&error))
     }
 }
 
@@ -170,7 +209,7 @@ impl Command for Direct {
     }
 }
 
-/// What the controller accepted.
+/// What the controller accepted, and what it tells of it then.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Outputs {
     /// 0 is the controller itself.
@@ -181,47 +220,74 @@ pub struct Outputs {
 /// Bits of a port that were set.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Output {
+    /// Whether the port reads as it was set, or cannot be read.
+    ok: bool,
     /// `PN01`.
     name: String,
     port: u8,
     /// As it was sent: bits 8 to 1, a dot for those left alone.
-    raw: String,
+    requested: String,
+    /// As the controller tells it behind the order; null for a port that it does not tell of.
+    read: Option<String>,
     /// Bits that were switched on.
     on: Vec<u8>,
     /// Bits that were switched off.
     off: Vec<u8>,
+    /// What is not as it was set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<Failure>,
 }
 
-impl From<&Assignment> for Output {
-    fn from(Assignment { port, mask }: &Assignment) -> Self {
-        let off = numbers(mask.care & !mask.bits);
-        Self { name: name(*port), port: *port, raw: mask.to_string(), on: numbers(mask.bits), off }
+impl Output {
+    fn new(Assignment { port, mask }: &Assignment, found: Option<&Port>) -> Self {
+        Self {
+            ok: true,
+            name: name(*port),
+            port: *port,
+            requested: mask.to_string(),
+            read: found.map(|found| found.raw.clone()),
+            on: numbers(mask.bits),
+            off: numbers(mask.care & !mask.bits),
+            error: None,
+        }
     }
 }
 
 impl Report for Outputs {
     fn view(&self) -> View {
-        let mut table = Table::new(&["port", "8 to 1", "on", "off"], "no ports");
+        let mut table = Table::new(&["port", "8 to 1", "on", "off", "read back"], "no ports");
         for output in &self.outputs {
-            let Output { name, raw, on, off, .. } = output;
-            table.row([name.as_str().into(), raw.as_str().into(), listed(on).into(), listed(off).into()]);
+            let tone = if output.ok { Tone::Plain } else { Tone::Bad };
+            table.row([
+                output.name.as_str().into(),
+                output.requested.as_str().into(),
+                listed(&output.on).into(),
+                listed(&output.off).into(),
+                Cell::maybe(output.read.as_deref()).tone(tone),
+            ]);
         }
         View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::failure(self.outputs.len(), self.outputs.iter().map(|output| output.error.as_ref()))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::toyo::testing::{all_blocks, blocks, objection};
+    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, objection};
 
     #[test]
     fn bits_and_whole_ports() {
-        assert_eq!(blocks(&["io", "set", "1=.......1"]).unwrap(), ["@DOUT STN=0 PN01=.......1"]);
-        assert_eq!(blocks(&["io", "set", "1.3=on"]).unwrap(), ["@DOUT STN=0 PN01=.....1.."]);
+        let read = "@MOUT SNO=0 GN=1";
+        assert_eq!(blocks(&["io", "set", "1=.......1"]).unwrap(), ["@DOUT STN=0 PN01=.......1", read]);
+        assert_eq!(blocks(&["io", "set", "1.3=on"]).unwrap(), ["@DOUT STN=0 PN01=.....1..", read]);
         assert_eq!(
             blocks(&["io", "set", "PN99.8=off", "2=10101010", "99.1=1", "--station", "4"]).unwrap(),
-            ["@DOUT STN=4 PN99=0......1", "@DOUT STN=4 PN02=10101010"]
+            ["@DOUT STN=4 PN99=0......1", "@DOUT STN=4 PN02=10101010", "@MOUT SNO=4 GN=1"],
+            "no port 99 can be read"
         );
         assert_eq!(
             all_blocks(&["io", "direct", "4"]).unwrap(),
@@ -254,7 +320,35 @@ mod tests {
         let message = |orders: &[Assignment], done| account(Failure::local("no"), orders, done).message;
         assert_eq!(message(&orders[..1], 0), "no");
         assert_eq!(message(&orders, 1), "PN02: no; set before that: PN01; not set: PN03");
-        let output = Output::from(&orders[0]);
+        let output = Output::new(&orders[0], None);
         assert_eq!((output.on, output.off), (vec![1], vec![2]));
+    }
+
+    #[test]
+    fn what_was_set_is_read_back() {
+        let set = Bench::new("sim:").data(&["io", "set", "1.3=on", "18.1=on"]);
+        let outputs = &set["outputs"];
+        assert_eq!((&outputs[0]["requested"], &outputs[0]["read"]), (&".....1..".into(), &"00000100".into()), "{set}");
+        assert_eq!((&outputs[1]["ok"], &outputs[1]["read"]), (&true.into(), &"00000001".into()), "{set}");
+        // A bit that was left alone may be anything.
+        let odd = |block: &str, _| match block {
+            "@MOUT SNO=0 GN=1" => {
+                Fate::Answered("@MOUT SNO=0 GN=1 SY01=00000000 PN01=10000000 PN02=10000001 PN03=00000000")
+            }
+            _ => Fate::Pass,
+        };
+        let (set, failure) = Bench::spoilt("", odd).0.run(&["io", "set", "1.3=on"]).unwrap();
+        let output = &set["outputs"][0];
+        assert_eq!((&output["ok"], &output["read"]), (&false.into(), &"10000000".into()), "{set}");
+        let failure = failure.unwrap();
+        assert_eq!(failure.kind, Kind::ConditionNotMet);
+        assert_eq!(failure.message, "the controller accepted @DOUT STN=0 PN01=.....1.., but PN01 reads 10000000");
+        let (set, failure) = Bench::spoilt("", odd).0.run(&["io", "set", "1.3=on", "2.1=on"]).unwrap();
+        assert_eq!((&set["outputs"][1]["ok"], failure.unwrap().kind), (&true.into(), Kind::Mixed));
+        let silent = |block: &str, _| if block.starts_with("@MOUT") { Fate::Lost } else { Fate::Pass };
+        let failure = Bench::spoilt("", silent).0.run(&["io", "set", "1.3=on", "2.1=on"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::OutcomeUnknown);
+        assert!(failure.message.contains("DOUT STN=0 PN01=.....1.. was accepted, but not read back"), "{failure}");
+        assert!(failure.message.ends_with("; not set: PN02"), "{failure}");
     }
 }

@@ -6,7 +6,7 @@
 
 use super::{Link, Transport, status_page};
 use crate::command::dry_run::Reason;
-use crate::command::toyo::reach;
+use crate::command::toyo::connect;
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 
@@ -17,7 +17,7 @@ pub const FENCE: &str = "whether the line is at peace";
 
 impl Link {
     /// Asks something harmless before an order, unless an answered question was the last on the line.
-    pub(super) async fn fence(&mut self) -> Result<(), Failure> {
+    pub(in crate::command::toyo) async fn fence(&mut self) -> Result<(), Failure> {
         if self.is_fenced {
             return Ok(());
         }
@@ -50,7 +50,7 @@ impl Link {
             return Ok(());
         }
         let Some((robot, access)) = self.again.clone() else { return Ok(()) };
-        let opened = Box::pin(reach::open(&robot, &access, &self.screen)).await;
+        let opened = Box::pin(connect::open(&robot, &access, &self.screen)).await;
         // Whatever is in the way, such as rights that a port gets a moment after it is there: it may pass.
         let stream = opened.map_err(|failure| Failure { kind: Kind::NoAnswer, ..failure })?;
         self.transport = Transport::Stream(Box::new(stream));

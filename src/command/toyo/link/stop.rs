@@ -5,6 +5,7 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 use super::borrowed::Host;
+use super::foreign::Told;
 use super::{Link, Moving, SILENCE, jog, status_page};
 use crate::command::dry_run::unknown;
 use crate::command::toyo::refusal;
@@ -63,8 +64,9 @@ impl Link {
         self.set_policy(Policy { timeout: SILENCE, retries: REPETITIONS, ..self.usual });
         // What others have left behind is told when it stands.
         let left = std::mem::take(&mut self.left);
+        let told = std::mem::replace(&mut self.told, Told::ALL);
         let stopped = self.stop_until_it_stands(moving).await;
-        self.left = left;
+        (self.left, self.told) = (left, told);
         self.set_policy(self.usual);
         self.trace.release();
         match &stopped {

@@ -9,22 +9,27 @@ use serde::Serialize;
 use super::steps;
 use crate::command::dry_run::unknown;
 use crate::command::local::Target;
+use crate::command::toyo::items::{self, Answers, Item, in_a_word};
 use crate::command::toyo::link::{Link, misuse};
 use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::program::{self, Rows, Style, listing};
+use crate::controller::toyo::program::{self, Rows, Style, Unread, listing_with, not_read};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::{Op, Parameter};
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::output::escape;
 use crate::output::view::View;
 
 /// Reads the program of a task as text, which `program put` writes back.
 #[derive(Debug, Args)]
 #[command(
     after_help = "All steps are read, as subroutines may stand behind END; NOPs up to the end of the task are left out of the text. A step takes about 35 ms at 9600 baud. To read another task than the current one, that task is \
-                        made the current one for a while, which is a change: a read-only robot refuses it."
+                        made the current one for a while, which is a change: a read-only robot refuses it.\n\nWhere the controller \
+                        refuses a step, the others are given, and ? stands in its place, which no program has: that text \
+                        is refused wherever a program is read, and no file is written."
 )]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag")]
 pub struct Get {
@@ -77,23 +82,29 @@ impl Command for Get {
             return self.dry_run(link).await;
         }
         let outcome = self.read(link, screen).await;
-        let (task, room, read) = tasks::done(link, outcome).await?;
+        let (task, room, answers) = tasks::done(link, outcome).await?;
+        let unread = unread(&answers);
+        let read: Vec<Record> = answers.iter().map(|answer| answer.clone().unwrap_or_else(|_| not_read())).collect();
         let rows = if self.explain { rows(link, &read).await? } else { Rows::new() };
         let last = usize::from(self.from) + read.len() - 1;
         let is_whole = self.from == 1 && last == usize::from(room);
         let style = Style { first: self.from.into(), is_whole, is_numbered: self.numbers };
-        let program::Listing { text, .. } = listing(&read, style, &rows);
-        let file = match &target {
-            Some(target) => {
+        let program::Listing { text, .. } = listing_with(&read, &unread, style, &rows);
+        let (file, not_written) = match target {
+            Some(target) if unread.is_empty() => {
                 let mut draft = target.begin()?;
                 draft.write(text.as_bytes())?;
                 draft.commit()?;
-                Some(target.path().display().to_string())
+                (Some(target.path().display().to_string()), None)
             }
-            None => None,
+            // What looks like a program shall be one, and nothing whole be replaced by it.
+            Some(target) => (None, Some(target.path().display().to_string())),
+            None => (None, None),
         };
         let shown = if is_whole { program::used(&read) } else { read.len() };
-        let numbered = (usize::from(self.from)..).zip(&read[..shown]);
+        let step = |(step, answer): (u16, Result<Record, Failure>)| {
+            Item::kept("step", step.into(), answer.map(|record| Step::of(step.into(), &record)))
+        };
         Ok(Got {
             task,
             room_steps: room,
@@ -101,19 +112,21 @@ impl Command for Get {
             last_step: last,
             used_steps: program::used(&read),
             tags: program::tags(&read, self.from.into()).into_iter().map(|(tag, step)| Tag { tag, step }).collect(),
-            steps: numbered.map(|(step, record)| Step::of(step, record)).collect(),
+            steps: (self.from..).zip(answers).take(shown).map(step).collect(),
             text: file.is_none().then_some(text),
             file,
+            read_steps: read.len(),
+            not_written,
         })
     }
 }
 
 impl Get {
-    async fn read(&self, link: &mut Link, screen: &crate::output::Screen) -> Result<(u8, u16, Vec<Record>), Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen) -> Result<(u8, u16, Answers), Failure> {
         let task = tasks::choose(link, self.task).await?;
         let room = steps::room(link, task, self.to.unwrap_or(self.from)).await?;
         let is_end = |record: &Record| self.until_end && record.layout() == Op::End.row().layout;
-        let read = steps::read(link, screen, self.from..=self.to.unwrap_or(room), is_end).await?;
+        let read = steps::read_each(link, screen, self.from..=self.to.unwrap_or(room), is_end).await?;
         Ok((task, room, read))
     }
 
@@ -124,6 +137,17 @@ impl Get {
         link.then("the steps behind it are read, one after the other");
         Err(unknown())
     }
+}
+
+/// Why steps were not read.
+fn unread(answers: &Answers) -> Unread {
+    let why = |failure: &Failure| match failure.kind {
+        // The same for all that were not asked any more.
+        Kind::NoAnswer => in_a_word(failure.kind).to_owned(),
+        _ => escape::line(&failure.message).into_owned(),
+    };
+    let failed = answers.iter().enumerate().filter_map(|(index, answer)| Some((index, answer.as_ref().err()?)));
+    failed.map(|(index, failure)| (index, why(failure))).collect()
 }
 
 /// The rows of tables that steps name; those that the controller refuses are left out.
@@ -151,16 +175,21 @@ pub struct Got {
     first_step: u16,
     /// The last step that was read.
     last_step: usize,
-    /// Steps up to the last that is no NOP.
+    /// Steps up to the last that is no NOP, or was not read.
     used_steps: usize,
     /// Tags with their steps.
     tags: Vec<Tag>,
     /// Each step; without the NOPs at the end of the task.
-    steps: Vec<Step>,
-    /// The text as a file has it; null if it went to a file.
+    steps: Vec<Item<Step>>,
+    /// The text as a file has it, with `?` for what was not read; null if it went to a file.
     text: Option<String>,
-    /// The file that was written.
+    /// The file that was written; none is where a step was not read.
     file: Option<String>,
+    #[serde(skip)]
+    read_steps: usize,
+    /// The file that was to be written.
+    #[serde(skip)]
+    not_written: Option<String>,
 }
 
 /// A tag.
@@ -200,11 +229,75 @@ impl Report for Got {
             ("used steps", self.used_steps.into()),
         ])
     }
+
+    fn failure(&self) -> Option<Failure> {
+        let failure = items::failure(self.read_steps, self.steps.iter().map(Item::error))?;
+        let Some(file) = &self.not_written else { return Some(failure) };
+        let message = format!("{}; {file} was not written, as the program is not whole", failure.message);
+        Some(Failure { message, ..failure })
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{all_blocks, blocks, objection};
+    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, objection};
+    use crate::failure::Kind;
+
+    /// A controller that does this with step 2 of three.
+    fn with_step_2(fate: Fate) -> Bench {
+        let state = "steps = { 1 = [\"SPD V=05\", \"NOP\", \"END\"] }";
+        Bench::spoilt(state, move |block, _| if block == "@RSTX 0002" { fate } else { Fate::Pass }).0
+    }
+
+    #[test]
+    fn a_refused_step_hides_no_other_and_makes_no_program() {
+        let mut bench = with_step_2(Fate::Answered("@NG"));
+        let (got, failure) = bench.run(&["program", "get"]).unwrap();
+        let failure = failure.unwrap();
+        let why = "the controller refused RSTX 0002 (@NG): the status does not tell why";
+        assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Mixed, Some("NG")));
+        assert_eq!(failure.message, format!("1 of 2000 failed: {why}"));
+        let steps = got["steps"].as_array().unwrap();
+        assert_eq!(
+            steps[0],
+            serde_json::json!({ "ok": true, "step": 1, "instruction": "SPD V=05", "in_manual": true })
+        );
+        assert_eq!((&steps[1]["ok"], &steps[1]["step"]), (&false.into(), &2.into()), "{got}");
+        assert_eq!((&steps[1]["error"]["code"], &steps[2]["instruction"]), (&"NG".into(), &"END".into()), "{got}");
+        let text = format!(
+            "# NOT WHOLE: 1 of 2000 steps were not read\nSPD V=05\n?  # step 2 was not read: {why}\nEND\n\
+             # 1997 NOP up to the end of the program are left out\n"
+        );
+        assert_eq!(got["text"], text);
+        // Nothing takes it for a program.
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("partial.txt");
+        std::fs::write(&path, text).unwrap();
+        let failure = bench.run(&["program", "put", path.to_str().unwrap()]).unwrap_err();
+        assert_eq!(failure.kind, Kind::Usage);
+        assert!(failure.message.contains(":3:1: this step was not read from the controller"), "{failure}");
+    }
+
+    #[test]
+    fn a_program_with_a_gap_replaces_no_file() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), "whole").unwrap();
+        let path = file.path().to_str().unwrap();
+        let words = ["program", "get", path, "--force"];
+        let (got, failure) = with_step_2(Fate::Answered("@NG")).run(&words).unwrap();
+        assert!(got["file"].is_null() && got["text"].as_str().unwrap().contains("\n?  # step 2"), "{got}");
+        let failure = failure.unwrap();
+        assert!(failure.message.ends_with("was not written, as the program is not whole"), "{failure}");
+        assert_eq!(std::fs::read_to_string(path).unwrap(), "whole");
+        let (got, _) = with_step_2(Fate::Lost).run(&["program", "get", "--to", "9"]).unwrap();
+        assert_eq!(
+            got["text"],
+            "# NOT WHOLE: 8 of 9 steps were not read\nSPD V=05\n?  # steps 2 to 9 were not read: no answer\n"
+        );
+        assert_eq!(got["steps"].as_array().unwrap().len(), 9);
+        let failure = with_step_2(Fate::Answered("@NG")).run(&["program", "get", "--from", "2", "--to", "2"]);
+        assert_eq!(failure.unwrap_err().kind, Kind::Refused, "nothing was answered");
+    }
 
     #[test]
     fn another_task_is_chosen_first() {

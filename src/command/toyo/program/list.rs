@@ -6,14 +6,15 @@ use serde::Serialize;
 
 use super::steps;
 use crate::command::dry_run::unknown;
+use crate::command::toyo::items::{self, in_a_word};
 use crate::command::toyo::link::Link;
 use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::program::{tags, used};
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::output::Screen;
-use crate::output::view::{Cell, Table, View};
+use crate::output::view::{Cell, Table, Tone, View};
 
 /// Lists the tasks with the steps that their programs have room for.
 #[derive(Debug, Args)]
@@ -57,12 +58,18 @@ impl List {
         let current = tasks::choose(link, None).await?;
         let mut tasks = Vec::new();
         for (task, room) in (1..).zip(steps::rooms(link).await?) {
-            let mut listed = Task { task, current: task == current, room_steps: room, used_steps: None, tags: None };
+            let mut listed =
+                Task { task, current: task == current, room_steps: room, used_steps: None, tags: None, error: None };
             if self.used && room > 0 {
                 tasks::choose(link, Some(task)).await?;
-                let read = steps::read_all(link, screen, 1..=room).await?;
-                listed.used_steps = Some(used(&read));
-                listed.tags = Some(tags(&read, 1).into_keys().collect());
+                match steps::read_all(link, screen, 1..=room).await {
+                    Ok(read) => {
+                        listed.used_steps = Some(used(&read));
+                        listed.tags = Some(tags(&read, 1).into_keys().collect());
+                    }
+                    Err(error) if matches!(error.kind, Kind::Refused | Kind::Malformed) => listed.error = Some(error),
+                    Err(failure) => return Err(failure),
+                }
             }
             tasks.push(listed);
         }
@@ -88,21 +95,32 @@ struct Task {
     used_steps: Option<usize>,
     /// Tags in its program; null where it was not read.
     tags: Option<Vec<i32>>,
+    /// Why its program could not be read.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<Failure>,
 }
 
 impl Report for Listed {
     fn view(&self) -> View {
         let mut table = Table::new(&["task", "current", "steps", "used", "tags"], "no tasks");
-        for Task { task, current, room_steps, used_steps, tags } in &self.tasks {
+        for Task { task, current, room_steps, used_steps, tags, error } in &self.tasks {
             let tags = tags.as_ref().map(|tags| tags.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "));
+            let tags = match error {
+                Some(error) => Cell::from(in_a_word(error.kind)).tone(Tone::Bad),
+                None => Cell::maybe(tags),
+            };
             table.row([
                 (*task).into(),
                 if *current { "yes" } else { "" }.into(),
                 (*room_steps).into(),
                 used_steps.map_or_else(|| Cell::number("-"), Cell::from),
-                Cell::maybe(tags),
+                tags,
             ]);
         }
         View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::failure(self.tasks.len(), self.tasks.iter().map(|task| task.error.as_ref()))
     }
 }

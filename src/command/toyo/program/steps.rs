@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use crate::command::toyo::cells::Cell;
+use crate::command::toyo::items::{Answers, read_until};
 use crate::command::toyo::link::{Link, misuse};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
@@ -11,6 +12,8 @@ use crate::controller::toyo::status::RunMode;
 use crate::controller::toyo::table::{Command, Op, Parameter};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
+
+const READING: &str = "reading steps";
 
 /// How many steps each task has (TO 2-4, E22).
 pub async fn rooms(link: &mut Link) -> Result<[u16; 4], Failure> {
@@ -41,30 +44,26 @@ pub fn read_request(step: u16) -> Request {
     Request::read_step(step.into()).expect("steps are at most 5000")
 }
 
-/// Reads steps up to the first for which `is_last` holds.
-pub async fn read(
+/// Reads steps up to the first for which `is_last` holds; each answers for itself.
+pub async fn read_each(
     link: &mut Link,
     screen: &Screen,
     steps: RangeInclusive<u16>,
     is_last: impl Fn(&Record) -> bool,
-) -> Result<Vec<Record>, Failure> {
-    let mut read = Vec::with_capacity(steps.len());
-    let mut progress = screen.items_progress("reading steps", steps.len() as u64);
-    for step in steps {
-        let record = link.read_content(&read_request(step)).await?;
-        progress.advance(1);
-        let ends = is_last(&record);
-        read.push(record);
-        if ends {
-            break;
-        }
-    }
-    Ok(read)
+) -> Result<Answers, Failure> {
+    let requests: Vec<Request> = steps.map(read_request).collect();
+    read_until(link, screen, READING, &requests, is_last).await
 }
 
-/// Reads all steps of a range.
+/// Reads all steps of a range, where one that is not known makes the others worthless: before they are written over.
 pub async fn read_all(link: &mut Link, screen: &Screen, steps: RangeInclusive<u16>) -> Result<Vec<Record>, Failure> {
-    read(link, screen, steps, |_| false).await
+    let mut read = Vec::with_capacity(steps.len());
+    let mut progress = screen.items_progress(READING, steps.len() as u64);
+    for step in steps {
+        read.push(link.read_content(&read_request(step)).await?);
+        progress.advance(1);
+    }
+    Ok(read)
 }
 
 /// A step as something that is stored.

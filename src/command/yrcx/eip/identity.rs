@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::board;
-use super::{Family, NO_UNIT};
+use super::{Family, NO_UNIT, board_of};
 use crate::command::{Command, Context, Need, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
@@ -26,7 +26,7 @@ impl Command for Identify {
     async fn run(&self, context: Context<'_, Family>) -> Result<Identified, Failure> {
         context.link.no_unit(NO_UNIT)?;
         context.link.then("messages that ask the board who it is, and what it can do");
-        let board = context.link.board()?;
+        let board = board_of(context.link)?;
         let address = board.address().to_string();
         let Some(identity) = board.identity().await? else {
             return Err(Failure::new(Kind::Malformed, format!("{}: it does not say who it is", context.robot.label()))

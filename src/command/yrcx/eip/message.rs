@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::board::{Object, shown};
-use super::{Family, NO_UNIT};
+use super::{Family, NO_UNIT, board_of};
 use crate::command::orders::Done;
 use crate::command::{Command, Context, Need, Report};
 use crate::controller::Risk;
@@ -48,7 +48,7 @@ impl Command for Get {
         let about = format!("{} of {object}", object.reading());
         let asked = object.get_bytes();
         context.link.rehearse_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
-        let bytes = context.link.board()?.get(object).await?;
+        let bytes = board_of(context.link)?.get(object).await?;
         context.link.tell_message(&asked, &bytes, &about);
         Ok(Value::of(object, &bytes))
     }
@@ -104,7 +104,7 @@ impl Command for Set {
         let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));
         context.link.rehearse_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
         context.link.permit("yrcx.eip.set", self.risk())?;
-        context.link.board()?.set(object, &self.data.0).await?;
+        board_of(context.link)?.set(object, &self.data.0).await?;
         context.link.tell_message(&asked, &[], &about);
         Ok(Done::new(format!("set {object} to {}", shown(&self.data.0))))
     }

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::board::{self, Probed, warned};
-use super::{Family, NO_UNIT};
+use super::{Family, NO_UNIT, board_of};
 use crate::command::{Command, Context, Need, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, Table, View};
@@ -33,7 +33,7 @@ impl Command for Probe {
         context
             .link
             .then("messages that ask the board who it is, for its assemblies, and for connections that it refuses");
-        let board = context.link.board()?;
+        let board = board_of(context.link)?;
         let identity = board.identity().await?;
         let probed = board.probe(identity.as_ref()).await?;
         Ok(Found { identity, probed })

@@ -42,8 +42,24 @@ pub fn uses(steps: &[Record]) -> BTreeSet<(&'static str, i32)> {
     steps.iter().flat_map(rows_of).map(|(_, key)| key).collect()
 }
 
-/// The text of steps.
+/// Stands in place of a step that was not read. It is no instruction, so a text with it is no program.
+pub const NOT_READ: &str = "?";
+
+/// Why steps were not read, by their index. Such a step is [`not_read`] among the others.
+pub type Unread = BTreeMap<usize, String>;
+
+/// In place of a step that was not read.
+pub fn not_read() -> Record {
+    Record::unlisted(NOT_READ)
+}
+
+/// The text of steps that are all known.
 pub fn listing(steps: &[Record], style: Style, rows: &Rows) -> Listing {
+    listing_with(steps, &Unread::new(), style, rows)
+}
+
+/// The text of steps, of which some were not read: it is no program then, and says so at its head and where they are.
+pub fn listing_with(steps: &[Record], unread: &Unread, style: Style, rows: &Rows) -> Listing {
     let Style { first, is_whole, is_numbered } = style;
     let used = used(steps).max(steps.len().min(1));
     let end = if is_whole { used } else { steps.len() };
@@ -52,7 +68,21 @@ pub fn listing(steps: &[Record], style: Style, rows: &Rows) -> Listing {
     let width = texts.iter().map(String::len).max().unwrap_or_default();
     let tags = tags(shown, first);
     let mut text = String::new();
+    if !unread.is_empty() {
+        let _ = writeln!(text, "# NOT WHOLE: {} of {} steps were not read", unread.len(), steps.len());
+    }
     for (index, (record, own)) in shown.iter().zip(&texts).enumerate() {
+        if let Some(why) = unread.get(&index) {
+            // Those that follow each other for one reason are told together.
+            if index.checked_sub(1).and_then(|before| unread.get(&before)) != Some(why) {
+                let last = (index..end).take_while(|index| unread.get(index) == Some(why)).last().unwrap_or(index);
+                let _ = match (index + first, last + first) {
+                    (one, last) if one == last => writeln!(text, "{NOT_READ}  # step {one} was not read: {why}"),
+                    (one, last) => writeln!(text, "{NOT_READ}  # steps {one} to {last} were not read: {why}"),
+                };
+            }
+            continue;
+        }
         if is_numbered {
             let _ = write!(text, "{:04}  ", index + first);
         }

@@ -23,7 +23,9 @@ mod tests;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-pub use listing::{Listing, NOT_IN_MANUAL, Rows, Style, listing, tags, used, uses};
+pub use listing::{
+    Listing, NOT_IN_MANUAL, NOT_READ, Rows, Style, Unread, listing, listing_with, not_read, tags, used, uses,
+};
 
 pub use super::findings::{Finding, Severity};
 use super::findings::{Findings, Place};

@@ -1,6 +1,7 @@
 //! The lines of a file: step numbers, labels, instructions, comments.
 
 use super::instruction::{Cursor, Draft, TagUse, Target, is_label, read as read_instruction, shown};
+use super::listing::NOT_READ;
 use super::{MOST_STEPS, Part};
 use crate::toyo::findings::{Findings, Place};
 use crate::toyo::source;
@@ -75,6 +76,11 @@ impl Reader<'_> {
         let steps = self.read.steps.len();
         if cursor.rest().starts_with(|c: char| c.is_ascii_digit()) {
             self.step_number(&mut cursor);
+        }
+        if cursor.rest().starts_with(NOT_READ) {
+            let hint = "read the program again: without this step it is another one";
+            self.findings.error(cursor.place(), "this step was not read from the controller", Some(hint.to_owned()));
+            return self.read.steps.push(Draft::empty(cursor.place()));
         }
         while self.read.steps.len() <= MOST_STEPS && !self.findings.is_full() {
             let at = cursor.place();

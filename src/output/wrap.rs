@@ -1,0 +1,48 @@
+//! Lines for people, broken between words.
+
+use std::borrow::Cow;
+
+use dialoguer::console::measure_text_width;
+
+/// The text with lines of at most `width` columns, as far as its words allow: a word is never broken, so that an address
+/// or a command can be copied. What continues a line is indented as that line is.
+pub fn wrapped(text: &str, width: usize) -> Cow<'_, str> {
+    if text.lines().all(|line| measure_text_width(line) <= width) {
+        return text.into();
+    }
+    let mut out = String::with_capacity(text.len() + text.len() / width.max(1) + 1);
+    for line in text.split_inclusive('\n') {
+        let indent = &line[..line.len() - line.trim_start_matches(' ').len()];
+        let mut column = 0;
+        for word in line[indent.len()..].split_inclusive(' ') {
+            let wide = measure_text_width(word.trim_end());
+            if column == 0 {
+                out.push_str(indent);
+                column = indent.len();
+            } else if column + wide > width {
+                out.truncate(out.trim_end_matches(' ').len());
+                out.push('\n');
+                out.push_str(indent);
+                column = indent.len();
+            }
+            out.push_str(word);
+            column += measure_text_width(word.trim_end_matches('\n'));
+        }
+    }
+    out.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_break_between_words_and_keep_their_indentation() {
+        assert_eq!(wrapped("short\nlines\n", 8), "short\nlines\n");
+        assert_eq!(wrapped("one two three four\n", 9), "one two\nthree\nfour\n");
+        assert_eq!(wrapped("a\n  bb ccc dddd\n", 7), "a\n  bb\n  ccc\n  dddd\n");
+        assert_eq!(wrapped("see https://example.org/a/b?c=d now", 12), "see\nhttps://example.org/a/b?c=d\nnow");
+        assert_eq!(wrapped("\u{1b}[31merror:\u{1b}[0m no answer", 10), "\u{1b}[31merror:\u{1b}[0m no\nanswer");
+        assert_eq!(wrapped("Continue? [y/N] ", 80), "Continue? [y/N] ");
+    }
+}
