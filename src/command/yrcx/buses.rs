@@ -4,24 +4,25 @@
 use clap::Args;
 use schemars::{JsonSchema as _, Schema, SchemaGenerator};
 
-use super::eip;
+// Not its folder as a whole, whose commands know the link, which knows this list.
+use super::eip::bus as eip;
 use super::fieldbus::{Fieldbus, Search, Serve};
 
 /// All of them. The first is the one that a simulator is on unless its URL says otherwise.
-pub const BUSES: [&dyn Fieldbus; 1] = [&eip::bus::EtherNetIp];
+pub const BUSES: [&dyn Fieldbus; 1] = [&eip::EtherNetIp];
 
 /// How each is searched by `robots discover`: arguments of the command line.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Searches {
     #[command(flatten)]
-    eip: eip::discover::Search,
+    eip: eip::Search,
 }
 
 impl Searches {
     /// Each with its fieldbus.
     pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Search); 1] {
-        [(&eip::bus::EtherNetIp, &self.eip)]
+        [(&eip::EtherNetIp, &self.eip)]
     }
 }
 
@@ -30,19 +31,19 @@ impl Searches {
 #[group(skip)]
 pub struct Servers {
     #[command(flatten)]
-    eip: eip::serve::ServeArgs,
+    eip: eip::ServeArgs,
 }
 
 impl Servers {
     /// Each with its fieldbus.
     pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Serve); 1] {
-        [(&eip::bus::EtherNetIp, &self.eip)]
+        [(&eip::EtherNetIp, &self.eip)]
     }
 }
 
 /// What devices of each say of themselves.
 pub fn identities(generator: &mut SchemaGenerator) -> Vec<Schema> {
-    vec![eip::board::Identity::json_schema(generator)]
+    vec![eip::Identity::json_schema(generator)]
 }
 
 /// The fieldbus of this name.

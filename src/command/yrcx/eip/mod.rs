@@ -1,17 +1,17 @@
 //! Controllers on EtherNet/IP, and `yrcx eip`: the network board itself, by messages. For diagnosis: no connection for
 //! images is opened, so nothing that the controller would miss when it ends.
 
-pub mod board;
+mod board;
 pub mod bus;
 mod check;
 mod cip;
 mod connect;
 mod decode;
-pub mod discover;
+mod discover;
 mod identity;
 mod message;
 mod probe;
-pub mod serve;
+mod serve;
 pub mod simulated;
 
 use self::board::Board;
