@@ -24,6 +24,7 @@ pub mod overview;
 pub mod run;
 pub mod sample;
 pub mod serve;
+pub mod terminal_link;
 #[cfg(test)]
 mod testing;
 pub mod toyo;

@@ -3,6 +3,7 @@
 mod address;
 pub mod bus;
 pub mod eip;
+pub mod profibus;
 
 use std::fmt;
 use std::ops::RangeInclusive;

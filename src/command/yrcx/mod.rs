@@ -44,6 +44,7 @@ mod point_calc;
 mod port;
 mod position;
 mod procedures;
+pub mod profibus;
 mod program;
 mod raw;
 mod refusal;
@@ -173,5 +174,7 @@ commands! {
         Raw(raw::Raw),
         /// The network board itself: who it is, which assemblies it has (diagnosis)
         Eip(Verbs<eip::Eip>),
+        /// The line and the stations of PROFIBUS, without owning any
+        Profibus(Verbs<profibus::Profibus>),
     }
 }

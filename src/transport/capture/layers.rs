@@ -2,7 +2,7 @@
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 
-use crate::tap::Direction;
+use crate::tap::{Direction, LINKTYPE_PROFIBUS_DL};
 
 /// What is in a packet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,6 +25,8 @@ pub enum PacketContent<'a> {
         /// The bytes.
         bytes: &'a [u8],
     },
+    /// A frame of a link that has frames of its own.
+    Frame,
     /// A part of an IP packet.
     Fragment,
     /// Anything else.
@@ -75,6 +77,7 @@ pub fn content_of(link_type: u16, packet: &[u8]) -> PacketContent<'_> {
         113 => ethernet(packet, 14),
         276 => of_type(short(packet, 0), packet.get(20..)),
         147 => serial(packet),
+        LINKTYPE_PROFIBUS_DL => Some(PacketContent::Frame),
         _ => None,
     };
     content.unwrap_or(PacketContent::Other)

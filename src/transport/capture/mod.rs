@@ -62,6 +62,11 @@ pub enum Carrier {
         /// Section of the file: one for each command that was recorded.
         section: usize,
     },
+    /// A link that has frames of its own: the message is whole.
+    Frame {
+        /// `LINKTYPE_…`.
+        link_type: u16,
+    },
 }
 
 impl Carrier {
@@ -69,7 +74,7 @@ impl Carrier {
     pub const fn ends(&self) -> Option<(SocketAddr, SocketAddr)> {
         match *self {
             Self::Datagram { from, to } | Self::Stream { from, to, .. } => Some((from, to)),
-            Self::Line { .. } => None,
+            Self::Line { .. } | Self::Frame { .. } => None,
         }
     }
 }
@@ -124,7 +129,10 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
                 let is_cut = is_cut || packet.is_cut;
                 streams.take(key, &segment, (number, time, is_cut), &mut |arrived| pass_on(arrived, &mut each));
             }
-            PacketContent::Packet { .. } | PacketContent::Other => {}
+            PacketContent::Frame if !packet.bytes.is_empty() => {
+                say(Carrier::Frame { link_type: packet.link_type }, packet.bytes, packet.is_cut);
+            }
+            PacketContent::Packet { .. } | PacketContent::Frame | PacketContent::Other => {}
             PacketContent::Fragment => summary.fragments += 1,
         }
     }

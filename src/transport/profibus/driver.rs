@@ -12,6 +12,7 @@ use super::error::ProfibusError;
 use super::master::{Master, State, View};
 use super::port::Port;
 use super::settings::Settings;
+use super::survey::{Found, Survey};
 use super::wire::{Piece, Stream};
 
 /// How long a port is waited for at once, so that a wish to end is heard.
@@ -207,17 +208,17 @@ impl Driver {
 }
 
 /// Whole telegrams for a tap.
-struct Record {
+pub(super) struct Record {
     tap: Tap,
     stream: Stream,
 }
 
 impl Record {
-    fn new(tap: Tap) -> Self {
+    pub(super) fn new(tap: Tap) -> Self {
         Self { tap, stream: Stream::default() }
     }
 
-    fn pass(&mut self, bytes: &[u8], is_whole: bool) {
+    pub(super) fn pass(&mut self, bytes: &[u8], is_whole: bool) {
         if is_whole {
             self.stream.clear();
             return (self.tap)(bytes);
@@ -233,6 +234,37 @@ impl Record {
 }
 
 /// An error of the system without its number.
-fn plain(error: &io::Error) -> String {
+pub(super) fn plain(error: &io::Error) -> String {
     error.to_string().split(" (os error").next().unwrap_or_default().to_owned()
+}
+
+/// Asks stations who they are; on a thread that may block.
+///
+/// # Errors
+/// When nobody can be asked.
+pub fn survey(survey: &mut Survey, port: &mut dyn Port, tap: Option<Tap>) -> Result<Vec<Found>, ProfibusError> {
+    let start = Instant::now();
+    let mut record = tap.map(Record::new);
+    let gone = |error: io::Error| ProfibusError::Gone { text: plain(&error) };
+    let mut buffer = [0; 512];
+    loop {
+        if let Some(result) = survey.result() {
+            return result.map(<[Found]>::to_vec);
+        }
+        if let Some(bytes) = survey.poll(start.elapsed()) {
+            if let Some(record) = &mut record {
+                record.pass(&bytes, true);
+            }
+            port.send(&bytes).map_err(gone)?;
+            continue;
+        }
+        let wait = survey.due().saturating_sub(start.elapsed()).min(SLICE);
+        let len = port.receive(&mut buffer, wait).map_err(gone)?;
+        if let Some(record) = record.as_mut().filter(|_| len > 0) {
+            record.pass(&buffer[..len], false);
+        }
+        if len > 0 {
+            survey.handle(start.elapsed(), &buffer[..len]);
+        }
+    }
 }

@@ -166,6 +166,18 @@ pub enum ProfibusError {
         /// What it said.
         why: String,
     },
+    /// No exchange of the station with a master was heard. Nothing was sent.
+    #[error("no exchange of station {station} with a master was heard within {} ms ({telegrams} telegrams, {noise} bytes of noise)", after.as_millis())]
+    NotHeard {
+        /// Its address.
+        station: u8,
+        /// How long was listened.
+        after: Duration,
+        /// Telegrams of others.
+        telegrams: u64,
+        /// Bytes that were no telegram.
+        noise: u64,
+    },
     /// The image or the wish is for a connection that has ended meanwhile.
     #[error("the connection was lost meanwhile")]
     Outdated,

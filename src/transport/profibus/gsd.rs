@@ -8,8 +8,8 @@ use thiserror::Error;
 use super::rates::{RATES, Rate};
 use super::wire::{Configuration, MAX_DATA, Parameters};
 
-/// Most bytes of a file: makers' files have a few hundred thousand.
-pub const MAX_FILE: usize = 4 << 20;
+/// Most bytes of a file, for whoever reads one: makers' files have a few hundred thousand.
+pub const MAX_FILE: u64 = 4 << 20;
 
 /// What a file says.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -136,10 +136,6 @@ impl Gsd {
     /// # Errors
     /// [`GsdError`] names line and keyword.
     pub fn parse(bytes: &[u8]) -> Result<Self, GsdError> {
-        if bytes.len() > MAX_FILE {
-            let problem = format!("the file has more than {MAX_FILE} bytes");
-            return Err(GsdError { line: 1, keyword: "file".to_owned(), problem });
-        }
         let text: String = bytes.iter().map(|byte| char::from(*byte)).collect();
         let mut gsd = Self::default();
         let mut module: Option<(usize, Module)> = None;

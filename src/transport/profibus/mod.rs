@@ -7,6 +7,8 @@ use std::time::Duration;
 pub mod driver;
 pub mod error;
 pub mod gsd;
+mod hearing;
+pub mod link;
 pub mod listener;
 pub mod master;
 pub mod port;

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use armctl_files as files;
 use serialport::{DataBits, Parity, SerialPort, StopBits};
 
 use super::error::ProfibusError;
@@ -21,6 +22,9 @@ use crate::vanished;
 const MOST_OFF: u32 = 3;
 /// A latency timer above this costs a slot time now and then.
 const LATENCY: u32 = 1;
+
+/// Most characters of the file that says it.
+const LONGEST_TIME: u64 = 64;
 
 /// Sends and receives characters on a thread that waits for them.
 pub trait Port: fmt::Debug + Send {
@@ -96,7 +100,7 @@ pub fn latency_timer(path: &str) -> Option<u32> {
     let path = std::fs::canonicalize(path).ok()?;
     let name = path.file_name()?;
     let file = Path::new("/sys/class/tty").join(name).join("device/latency_timer");
-    let text = std::fs::read_to_string(file).ok()?;
+    let text = files::text(&file, LONGEST_TIME).ok()?;
     text.trim().parse().ok().filter(|time| *time > LATENCY)
 }
 
