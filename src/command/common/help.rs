@@ -19,7 +19,7 @@ pub struct Help {
 }
 
 /// Topics with a line about each and their text.
-const TOPICS: [(&str, &str, &str); 13] = [
+const TOPICS: [(&str, &str, &str); 14] = [
     ("targets", "how to say which robot", include_str!("topics/targets.txt")),
     ("inventory", "robots.toml", include_str!("topics/inventory.txt")),
     ("output", "tables, JSON, jq, colour", include_str!("topics/output.txt")),
@@ -30,6 +30,7 @@ const TOPICS: [(&str, &str, &str); 13] = [
     ("batch", "files of commands", include_str!("topics/batch.txt")),
     ("completion", "what Tab offers, in which shells", include_str!("topics/completion.txt")),
     (SIMULATOR, "servers, start state, console, faults", include_str!("topics/simulator.txt")),
+    ("profibus", "a YRCX over PROFIBUS DP", include_str!("topics/profibus.txt")),
     ("toyo-setup", "cable and settings of a Toyo controller", include_str!("topics/toyo-setup.txt")),
     ("yerc-setup", "settings of an FS100 or DX200", include_str!("topics/yerc-setup.txt")),
     ("yrcx-setup", "settings of a YRCX", include_str!("topics/yrcx-setup.txt")),

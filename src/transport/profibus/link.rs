@@ -230,7 +230,8 @@ impl From<ProfibusError> for LinkError {
         match error {
             ProfibusError::Settings(_) => Self::Settings(cause),
             ProfibusError::Port { .. } => Self::Local(cause.advice(
-                "check the name of the port (`armctl robots discover` lists those of this machine), and what the adapter can do",
+                "check the name of the port (`armctl robots discover` lists those of this machine), what the adapter can do, and \
+                 that no session and no other program has it open",
             )),
             ProfibusError::Gone { .. } => Self::Local(cause.advice("check the plug and the supply of the adapter")),
             ProfibusError::OtherMaster { .. } => Self::Owned(cause.advice(
@@ -271,7 +272,8 @@ impl From<ProfibusError> for LinkError {
                 cause.advice("look at the unit's lamps and at the controller's display; `yrcx profibus probe` shows the diagnosis"),
             ),
             ProfibusError::NotHeard { .. } => Self::Silent(cause.advice(
-                "listening wants a master that exchanges data with the controller: check station and baud of the URL",
+                "a controller shows its images to its master only: open a session, which commands it (`armctl session open`), or \
+                 listen where a PLC exchanges data with it, with station and baud of the URL as they are there",
             )),
             ProfibusError::Outdated | ProfibusError::Ended => Self::Local(cause),
         }

@@ -75,7 +75,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         None => layers.warn(
             "inputs",
             "a slave without a master shows nothing",
-            "`yrcx status` opens a link, which commands the controller",
+            "`armctl session open` commands it; then `yrcx status` shows its signals",
         ),
     }
     image
