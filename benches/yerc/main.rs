@@ -16,14 +16,11 @@ mod peers;
 mod process;
 
 use anyhow::{Context as _, ensure};
-use armctl::command::yerc::Family as Yerc;
-use armctl::command::yerc::link::Link;
-use armctl::command::{Access, Family as _, Need};
-use armctl::controller::Risk;
+use armctl::command::yerc::link::{Link, Yerc};
+use armctl::command::{Access, ConnectMode, Family as _};
 use armctl::controller::yerc::files::FileName;
 use armctl::controller::yerc::query::ReadStatus;
 use armctl::controller::yerc::session::DownloadEnd;
-use armctl::gate::Grant;
 use armctl::output::{ColorChoice, Format, Screen};
 use armctl::settings::target::Family;
 use armctl::settings::{Selection, Sources};
@@ -169,14 +166,7 @@ fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
     let sources = Sources { selection, ..Sources::default() };
     let robots = sources.robots(Some(Family::Yerc))?;
     let robot = robots.first().context("a target is a robot")?;
-    let access = Access {
-        granted: Grant::of(Risk::Read),
-        dry_run: false,
-        trace: None,
-        need: Need::Command,
-        typed: None,
-        unit: 0,
-    };
+    let access = Access::reading(ConnectMode::Control);
     let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
     Ok(runtime.block_on(Yerc::connect(robot, access, &screen))?)
 }

@@ -8,8 +8,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::io::{AsyncBufReadExt as _, BufReader, Lines, Stdin};
 
-use super::interrupt::interruptible;
-use super::run::{Run, Stopped};
+use super::frame::interrupt::interruptible;
+use super::frame::run::{Run, RunError};
 use super::{Report, SchemaEntry};
 use crate::failure::{Failure, Kind, plain};
 use crate::output::view::View;
@@ -71,7 +71,7 @@ impl Report for Serving {
 }
 
 /// Starts a simulator, says where, and serves it until Ctrl-C.
-pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), Stopped> {
+pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
     let Started { report, mut server, address, with_console } = arguments.start().await?;
     run.local(S::ID, &report)?;
     if address.is_some_and(|address| !address.ip().is_loopback()) {

@@ -9,6 +9,7 @@ use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::time::Duration;
 
 use serialport::{DataBits, Parity, StopBits};
 
@@ -49,6 +50,20 @@ impl Family {
             Self::Yrcx => bus::USUAL.shortest,
             Self::Toyo => "serial:///dev/ttyUSB0 or tcp://HOST:PORT",
         }
+    }
+
+    /// Longest wait for an answer unless set. Over a network a controller answers in 5 to 20 ms, a busy one within
+    /// seconds; over a serial line, within one second (TO 1-3).
+    pub const fn timeout(self) -> Duration {
+        match self {
+            Self::Yerc | Self::Yrcx => Duration::from_secs(3),
+            Self::Toyo => Duration::from_millis(1500),
+        }
+    }
+
+    /// Whether its controllers are of one model or another, which settings tell.
+    pub const fn has_model(self) -> bool {
+        matches!(self, Self::Yerc)
     }
 
     /// Whether URLs of this kind reach it.

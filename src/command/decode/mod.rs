@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use self::capture::{CaptureDecoder, Selection};
-use super::run::{Run, Stopped};
+use super::frame::run::{Run, RunError};
 use super::{Report, SchemaEntry};
 use crate::failure::{Failure, Kind};
 use crate::files;
@@ -42,7 +42,7 @@ pub trait Decode {
 }
 
 /// Decodes what is given, and prints it.
-pub fn run<D: Decode>(arguments: &D, run: &Run) -> Result<(), Stopped> {
+pub fn run<D: Decode>(arguments: &D, run: &Run) -> Result<(), RunError> {
     if let Some((path, decoder)) = arguments.capture() {
         return capture::print(run, D::CAPTURE_ID, path, arguments.selection(), decoder);
     }

@@ -4,9 +4,9 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Toyo;
 use super::waiting::{Accepted, Work};
-use crate::command::dry_run::{Known as _, unknown};
+use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
@@ -16,7 +16,7 @@ use crate::output::view::{Cell, Tone, View};
 
 commands! {
     /// The memory card.
-    pub enum Card of Family {
+    pub enum Card {
         /// Read everything from the card, over what the controller holds
         Read(Read),
         /// Write everything that the controller holds to the card
@@ -41,7 +41,7 @@ pub struct Write {
 }
 
 impl Command for Read {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Transferred;
     const ID: &'static str = "toyo.card.read";
 
@@ -53,7 +53,7 @@ impl Command for Read {
         "replace programs, tables and parameters of the controller by those on the memory card".to_owned()
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Transferred, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
         let work = Accepted {
             work: Work::Card,
             order: table::Command::Rmca,
@@ -65,7 +65,7 @@ impl Command for Read {
 }
 
 impl Command for Write {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Transferred;
     const ID: &'static str = "toyo.card.write";
 
@@ -77,7 +77,7 @@ impl Command for Write {
         "overwrite what is on the memory card".to_owned()
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Transferred, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
         let work = Accepted {
             work: Work::Card,
             order: table::Command::Wmca,
@@ -88,7 +88,7 @@ impl Command for Write {
     }
 }
 
-async fn transfer(context: Context<'_, Family>, work: Accepted, no_wait: bool) -> Result<Transferred, Failure> {
+async fn transfer(context: Context<'_, Toyo>, work: Accepted, no_wait: bool) -> Result<Transferred, Failure> {
     let link = context.link;
     link.order(&Request::bare(work.order)).await?;
     if no_wait {
@@ -130,7 +130,7 @@ impl Report for Transferred {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks};
+    use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks};
     use crate::failure::Kind;
 
     #[test]
@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn a_transfer_is_waited_for() {
-        let (mut bench, _) = Bench::spoilt("card = \"empty\"\n", |_, _| Fate::Pass);
+        let (mut bench, _) = Bench::with_faults("card = \"empty\"\n", |_, _| Fault::None);
         let failure = bench.run(&["card", "read"]).unwrap_err();
         assert!(failure.hint.unwrap().contains("nothing on the card"));
         let data = bench.data(&["card", "write"]);
@@ -166,10 +166,10 @@ mod tests {
 
     #[test]
     fn a_card_that_is_absent_or_taken_out_is_told() {
-        let failure = Bench::spoilt("", |_, _| Fate::Pass).0.run(&["card", "write"]).unwrap_err();
+        let failure = Bench::with_faults("", |_, _| Fault::None).0.run(&["card", "write"]).unwrap_err();
         assert_eq!(failure.message, "the controller refused WMCA (@NG): there is no memory card");
         let state = "card = \"written\"\n[[event]]\nat_ms = 1000\ndo = \"card out\"\n";
-        let failure = Bench::spoilt(state, |_, _| Fate::Pass).0.run(&["card", "read"]).unwrap_err();
+        let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["card", "read"]).unwrap_err();
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("E0")));
         assert!(
             failure.message.starts_with("reading the card was accepted, but an error came up (E0"),

@@ -7,7 +7,7 @@ use tokio::time::Instant;
 use super::link::Toyo;
 use super::overview::overview;
 use super::simulated::{self, Simulated};
-use crate::command::attach::attach;
+use crate::command::frame::attach::attach;
 use crate::command::{Access, Family as _};
 use crate::failure::{Failure, Kind, plain};
 use crate::output::Screen;

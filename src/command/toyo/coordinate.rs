@@ -2,9 +2,9 @@
 
 use clap::Args;
 
-use super::Family;
+use super::link::Toyo;
 use super::link::wrong;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::{Command, Context, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
@@ -14,7 +14,7 @@ use crate::failure::Failure;
 
 commands! {
     /// Coordinates that the host supplies.
-    pub enum Coordinate of Family {
+    pub enum Coordinate {
         /// Supply coordinates to an RSMV, which moves there
         Set(Set),
     }
@@ -68,7 +68,7 @@ impl Set {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.coordinate.set";
 
@@ -80,7 +80,7 @@ impl Command for Set {
         format!("have the next RSMV of task {} move to {}", field("task").meaning(&self.task), self.aim())
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let Self { x, y, z, r, task, speed } = self;
         let values = [task, x, y, z, r, speed].map(Clone::clone).into();
         let request = Request::new(table::Command::Mrss, values).map_err(|error| wrong(&error))?;
@@ -91,7 +91,7 @@ impl Command for Set {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, Fate, blocks, intent, objection};
+    use crate::command::toyo::testing::{Bench, Fault, blocks, intent, objection};
 
     #[test]
     fn the_order_is_in_form_and_in_range() {
@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn a_waiting_move_goes_there() {
         let state = "origin = true\nsteps = { 1 = [\"RSMV a X=+0000.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 PASS\", \"END\"] }\n";
-        let (mut bench, _) = Bench::spoilt(state, |_, _| Fate::Pass);
+        let (mut bench, _) = Bench::with_faults(state, |_, _| Fault::None);
         bench.data(&["run", "sequential", "1", "--no-wait"]);
         bench.data(&["coordinate", "set", "50", "20", "0", "0"]);
         bench.wait(std::time::Duration::from_secs(5));

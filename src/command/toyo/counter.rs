@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::items::{self, Item, read_each};
+use super::link::Toyo;
 use super::numbers::{Numbers, not_held, number, read_back, small};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -18,7 +18,7 @@ use crate::output::view::{Table, View};
 
 commands! {
     /// What can be done with counters.
-    pub enum Counter of Family {
+    pub enum Counter {
         /// Read counters 1 to 99
         Get(Get),
         /// Set a counter
@@ -51,11 +51,11 @@ fn fields() -> &'static [Field] {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Counters;
     const ID: &'static str = "toyo.counter.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Counters, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Counters, Failure> {
         let numbers = Numbers::of(&self.counters, &fields()[0]);
         let requests = numbers.iter().map(|number| Request::of(table::Command::Mcnt, [Value::Number(*number)]));
         let requests: Vec<Request> = requests.collect();
@@ -68,7 +68,7 @@ impl Command for Get {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Count;
     const ID: &'static str = "toyo.counter.set";
 
@@ -76,7 +76,7 @@ impl Command for Set {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Count, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Count, Failure> {
         let Self { counter, value } = *self;
         let values = [Value::Number(counter), Value::Number(value)];
         let (link, order) = (context.link, Request::of(table::Command::Mcst, values));
@@ -126,7 +126,7 @@ impl Report for Count {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, objection};
+    use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, objection};
     use crate::failure::Kind;
 
     #[test]
@@ -144,12 +144,12 @@ mod tests {
         let mut bench = Bench::new("sim:");
         assert_eq!(bench.data(&["counter", "set", "5", "7"])["count"], 7);
         let other =
-            |block: &str, _| if block == "@MCNT CN=05" { Fate::Answered("@MCNT CN05=0008") } else { Fate::Pass };
-        let failure = Bench::spoilt("", other).0.run(&["counter", "set", "5", "7"]).unwrap_err();
+            |block: &str, _| if block == "@MCNT CN=05" { Fault::Answered("@MCNT CN05=0008") } else { Fault::None };
+        let failure = Bench::with_faults("", other).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
         assert_eq!(failure.message, "the controller accepted @MCST CN05=0007, but it stands at 8");
-        let silent = |block: &str, _| if block == "@MCNT CN=05" { Fate::Lost } else { Fate::Pass };
-        let failure = Bench::spoilt("", silent).0.run(&["counter", "set", "5", "7"]).unwrap_err();
+        let silent = |block: &str, _| if block == "@MCNT CN=05" { Fault::Lost } else { Fault::None };
+        let failure = Bench::with_faults("", silent).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
     }
 
@@ -157,11 +157,11 @@ mod tests {
     fn a_stale_ok_is_not_taken_for_that_of_an_order() {
         // The order before was given up, and its @OK comes when nobody waits for it any more.
         let late = |block: &str, _| match block {
-            "@MCST CN05=0007" => Fate::Late(std::time::Duration::from_millis(3010)),
-            "@MCST CN06=0001" => Fate::Lost,
-            _ => Fate::Pass,
+            "@MCST CN05=0007" => Fault::Late(std::time::Duration::from_millis(3010)),
+            "@MCST CN06=0001" => Fault::Lost,
+            _ => Fault::None,
         };
-        let (mut bench, heard) = Bench::spoilt("host = true\n", late);
+        let (mut bench, heard) = Bench::with_faults("host = true\n", late);
         assert_eq!(bench.run(&["counter", "set", "5", "7"]).unwrap_err().kind, Kind::OutcomeUnknown);
         heard.borrow_mut().clear();
         // No `@OK` of its own came: whether it was done is open, not done.

@@ -4,11 +4,11 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::link::Link;
+use super::link::Toyo;
 use super::status::ErrorCode;
 use super::waiting::{becomes, status_page};
-use crate::command::dry_run::unknown;
+use crate::command::frame::dry_run::unknown;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::errors;
@@ -21,7 +21,7 @@ use crate::output::view::{Cell, Table, Tone, View};
 
 commands! {
     /// Errors.
-    pub enum Error of Family {
+    pub enum Error {
         /// The error that is present, with cause and remedy
         Show(Show),
         /// The errors of the past, the latest first
@@ -38,11 +38,11 @@ commands! {
 pub struct Show {}
 
 impl Command for Show {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Present;
     const ID: &'static str = "toyo.error.show";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Present, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Present, Failure> {
         let link = context.link;
         if link.is_dry() {
             link.plan(&status_page(0), "whether there is an error");
@@ -106,11 +106,11 @@ pub struct History {
 }
 
 impl Command for History {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Past;
     const ID: &'static str = "toyo.error.history";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Past, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Past, Failure> {
         let link = context.link;
         let question = |number| Request::of(table::Command::Ehtr, [Value::Number(number)]);
         if link.is_dry() {
@@ -206,7 +206,7 @@ impl Report for Past {
 pub struct Cancel {}
 
 impl Command for Cancel {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Cancelled;
     const ID: &'static str = "toyo.error.cancel";
 
@@ -214,7 +214,7 @@ impl Command for Cancel {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Cancelled, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Cancelled, Failure> {
         let link = context.link;
         link.order(&Request::bare(table::Command::Cerr)).await?;
         if becomes(link, (0, "whether it is gone"), |status| !status.has_error()).await? {
@@ -252,11 +252,11 @@ impl Report for Cancelled {
 pub struct Point {}
 
 impl Command for Point {
-    type Family = Family;
+    type Family = Toyo;
     type Report = PointReport;
     const ID: &'static str = "toyo.error.point";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<PointReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<PointReport, Failure> {
         let record = context.link.read(&Request::bare(table::Command::Merp)).await?;
         let point = record.text("point").map(str::trim).filter(|point| !point.is_empty());
         Ok(PointReport { point: point.map(ToOwned::to_owned) })
@@ -279,7 +279,7 @@ impl Report for PointReport {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::toyo::testing::{Bench, Fate, blocks, objection};
+    use crate::command::toyo::testing::{Bench, Fault, blocks, objection};
 
     #[test]
     fn what_is_asked() {
@@ -293,7 +293,7 @@ mod tests {
 
     #[test]
     fn an_error_is_shown_and_cancelled() {
-        let (mut bench, _) = Bench::spoilt("error = \"28\"\n", |_, _| Fate::Pass);
+        let (mut bench, _) = Bench::with_faults("error = \"28\"\n", |_, _| Fault::None);
         let error = &bench.data(&["error", "show"])["error"];
         assert_eq!((&error["code"], &error["axis"]), (&"28".into(), &1.into()));
         assert!(error["remedy"].as_str().unwrap().contains("toyo param get"));
@@ -304,8 +304,8 @@ mod tests {
 
     #[test]
     fn an_error_that_stays_is_a_failure() {
-        let stays = |block: &str, _| if block == "@CERR" { Fate::Answered("@OK") } else { Fate::Pass };
-        let (data, failure) = Bench::spoilt("error = \"24\"\n", stays).0.run(&["error", "cancel"]).unwrap();
+        let stays = |block: &str, _| if block == "@CERR" { Fault::Answered("@OK") } else { Fault::None };
+        let (data, failure) = Bench::with_faults("error = \"24\"\n", stays).0.run(&["error", "cancel"]).unwrap();
         assert_eq!(data["error"]["code"], "24");
         let failure = failure.unwrap();
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("24")));
@@ -314,7 +314,7 @@ mod tests {
     #[test]
     fn the_history_ends_where_it_is_empty() {
         let state = "history = [{ code = \"13\", after_seconds = 3723 }, { power_cut = true }, { code = \"A1\" }]\n";
-        let (mut bench, heard) = Bench::spoilt(state, |_, _| Fate::Pass);
+        let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
         let data = bench.data(&["error", "history"]);
         let entries = data["entries"].as_array().unwrap();
         assert_eq!(entries.len(), 3, "{data}");
@@ -329,7 +329,8 @@ mod tests {
 
     #[test]
     fn a_controller_without_history_says_so() {
-        let failure = Bench::spoilt("model = \"other\"\n", |_, _| Fate::Pass).0.run(&["error", "history"]).unwrap_err();
+        let failure =
+            Bench::with_faults("model = \"other\"\n", |_, _| Fault::None).0.run(&["error", "history"]).unwrap_err();
         assert_eq!(failure.kind, Kind::Refused);
         assert!(failure.hint.unwrap().contains("KCA-25"));
     }

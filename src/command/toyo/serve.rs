@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::command::interrupt::catch_interrupts;
+use crate::command::frame::interrupt::catch_interrupts;
 use crate::command::serve::{self, Serving, Started, address, cannot_listen};
 use crate::command::terminal_link::TerminalLink;
 use crate::command::toyo::simulated::{self, Simulated};

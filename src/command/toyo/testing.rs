@@ -9,14 +9,15 @@ use std::time::Duration;
 use clap::Parser as _;
 use serde_json::Value;
 
-use super::Family;
 use super::link::Link;
+use super::link::Toyo;
 use super::link::fence::FENCE;
 use super::simulated::Simulated;
-use crate::cli::{Cli, OfToyo, Top, Verb};
-use crate::command::authority::Authority;
-use crate::command::testing::{QUIET, context, everything, frames, planned};
-use crate::command::{AnyCommand, Context, Family as _, Noun as _};
+use crate::cli::{Cli, FamilyWord, Top};
+use crate::command::face::words::{Typed, Wish};
+use crate::command::frame::authority::Authority;
+use crate::command::frame::testing::{self, QUIET, context, everything, frames, planned};
+use crate::command::{AnyCommand, Context, Family as _};
 use crate::controller::Risk;
 use crate::controller::toyo::simulator::Start;
 use crate::failure::Failure;
@@ -60,7 +61,7 @@ pub(super) fn all_blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
 /// The report of a dry run.
 pub(super) fn plan(words: &[&str]) -> Result<Value, Failure> {
     let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
-    planned(&robot, &*command, |_| ())
+    planned::<Toyo>(&robot, &*command, |_| ())
 }
 
 /// The block of a frame of it.
@@ -75,11 +76,11 @@ pub(super) struct Bench {
     link: Link,
 }
 
-/// What becomes of a block and its answer.
+/// What happens to a block and its answer on the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Fate {
+pub(super) enum Fault {
     /// Both arrive.
-    Pass,
+    None,
     /// The block never arrives.
     Lost,
     /// The block arrives, its answer does not.
@@ -91,26 +92,26 @@ pub(super) enum Fate {
 }
 
 /// Blocks that arrived at the end of the line, or were lost before it, in their order.
-pub(super) type Heard = Rc<RefCell<Vec<String>>>;
+pub(super) type ReceivedBlocks = Rc<RefCell<Vec<String>>>;
 
 /// A simulated controller behind a line that loses what a test wants to be lost.
-struct Spoilt<F> {
+struct FaultyLine<F> {
     controller: Simulated,
     coming: Vec<u8>,
     answers: VecDeque<(Duration, Vec<u8>)>,
-    heard: Heard,
+    heard: ReceivedBlocks,
     counts: HashMap<String, usize>,
-    /// The fate of a block, and of how many of its kind it is, from 1.
-    fate: F,
+    /// The fault for a block, by its text and how often it came, from 1.
+    fault: F,
 }
 
-impl<F> fmt::Debug for Spoilt<F> {
+impl<F> fmt::Debug for FaultyLine<F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Spoilt").finish_non_exhaustive()
+        f.debug_struct("FaultyLine").finish_non_exhaustive()
     }
 }
 
-impl<F: FnMut(&str, usize) -> Fate> Peer for Spoilt<F> {
+impl<F: FnMut(&str, usize) -> Fault> Peer for FaultyLine<F> {
     fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
         for byte in bytes {
             self.coming.push(*byte);
@@ -122,16 +123,16 @@ impl<F: FnMut(&str, usize) -> Fate> Peer for Spoilt<F> {
             self.heard.borrow_mut().push(block.clone());
             let count = self.counts.entry(block.clone()).or_default();
             *count += 1;
-            let fate = (self.fate)(&block, *count);
-            match fate {
-                Fate::Lost => continue,
-                Fate::Answered(answer) => self.answers.push_back((now, format!("{answer}\r\n").into_bytes())),
+            let fault = (self.fault)(&block, *count);
+            match fault {
+                Fault::Lost => continue,
+                Fault::Answered(answer) => self.answers.push_back((now, format!("{answer}\r\n").into_bytes())),
                 _ => self.controller.receive(now, channel, &coming),
             }
             while let Some((_, answer)) = self.controller.transmit(now) {
-                match fate {
-                    Fate::Unanswered => {}
-                    Fate::Late(by) => self.answers.push_back((now + by, answer)),
+                match fault {
+                    Fault::Unanswered => {}
+                    Fault::Late(by) => self.answers.push_back((now + by, answer)),
                     _ => self.answers.push_back((now, answer)),
                 }
             }
@@ -149,12 +150,16 @@ impl<F: FnMut(&str, usize) -> Fate> Peer for Spoilt<F> {
 }
 
 impl Bench {
-    /// A simulator in a start state (TOML), whose blocks have a fate; and what it hears.
-    pub(super) fn spoilt(state: &str, fate: impl FnMut(&str, usize) -> Fate + 'static) -> (Self, Heard) {
+    /// A simulator in a start state (TOML), behind a line with faults; and the blocks that it receives.
+    pub(super) fn with_faults(
+        state: &str,
+        fault: impl FnMut(&str, usize) -> Fault + 'static,
+    ) -> (Self, ReceivedBlocks) {
         let controller = Simulated::new(Start::parse(state).expect("a start state"));
-        let heard = Heard::default();
+        let heard = ReceivedBlocks::default();
         let (coming, answers) = (Vec::new(), VecDeque::new());
-        let peer = Box::new(Spoilt { controller, coming, answers, heard: heard.clone(), counts: HashMap::new(), fate });
+        let peer =
+            Box::new(FaultyLine { controller, coming, answers, heard: heard.clone(), counts: HashMap::new(), fault });
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
         let runtime = runtime();
         let link = runtime
@@ -166,7 +171,7 @@ impl Bench {
     /// Runs `armctl toyo WORDS…` until Ctrl-C comes after a while; what is said then.
     pub(super) fn interrupted(&mut self, words: &[&str], after: Duration) -> Result<String, Failure> {
         self.left(words, after);
-        self.runtime.block_on(Family::halt(&mut self.link))
+        self.runtime.block_on(Toyo::halt(&mut self.link))
     }
 
     /// Runs `armctl toyo WORDS…` for a while and leaves it there; whether that must not be.
@@ -175,11 +180,11 @@ impl Bench {
         let Self { runtime, robot, link } = self;
         runtime.block_on(async {
             let context = context(robot, link);
-            if let Ok(done) = tokio::time::timeout(after, command.run(context)).await {
+            if let Ok(done) = tokio::time::timeout(after, testing::run::<Toyo>(&*command, context)).await {
                 panic!("{words:?} has ended before: {:?}", done.map(|report| report.data()));
             }
         });
-        Family::must_halt(&self.link)
+        Toyo::must_halt(&self.link)
     }
 
     /// Lets time pass.
@@ -198,14 +203,14 @@ impl Bench {
 
     /// Closes the link.
     pub(super) fn close(self) -> Result<(), Failure> {
-        self.runtime.block_on(Family::close(self.link, &quiet()))
+        self.runtime.block_on(Toyo::close(self.link, &quiet()))
     }
 
     /// A simulator by its URL.
     pub(super) fn new(target: &str) -> Self {
         let runtime = runtime();
         let (robot, _) = resolved(target, &["status"]).expect("a robot");
-        let link = runtime.block_on(Family::connect(&robot, everything(), &quiet())).expect("a link");
+        let link = runtime.block_on(Toyo::connect(&robot, everything(), &quiet())).expect("a link");
         Self { runtime, robot, link }
     }
 
@@ -213,7 +218,7 @@ impl Bench {
     pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link } = self;
-        let report = runtime.block_on(command.run(context(robot, link)))?;
+        let report = runtime.block_on(testing::run::<Toyo>(&*command, context(robot, link)))?;
         Ok((report.data()?, report.failure()))
     }
 
@@ -226,7 +231,7 @@ impl Bench {
         self.link.grant(grant.clone());
         let authority = Authority::new(Gate::default(), &QUIET, &robot, intent.risk, grant);
         let context = Context { robot: &robot, link: &mut self.link, screen: &QUIET, several: false, authority };
-        let came = self.runtime.block_on(command.run(context)).and_then(|report| report.data());
+        let came = self.runtime.block_on(testing::run::<Toyo>(&*command, context)).and_then(|report| report.data());
         self.link.grant(Grant::of(Risk::Motion));
         came
     }
@@ -250,14 +255,14 @@ fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
 }
 
 /// Robot and command of a line.
-fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Family>>), Failure> {
+fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Toyo))?.remove(0);
-    let Top::Toyo(OfToyo::Toyo { verb: Some(Verb::Command(verb)) }) = cli.command else {
-        unreachable!("the words follow toyo")
-    };
-    Ok((robot, verb.command()))
+    match cli.command {
+        Top::Family(FamilyWord { typed: Typed { wish: Wish::Command(command), .. }, .. }) => Ok((robot, command)),
+        _ => unreachable!("the words follow toyo"),
+    }
 }
 
 /// Where tests write: nowhere.

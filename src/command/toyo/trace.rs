@@ -2,7 +2,8 @@
 
 use std::net::SocketAddr;
 
-use crate::command::{Access, trace};
+use crate::command::Access;
+use crate::command::frame::trace;
 use crate::controller::toyo::describe::{Sender, summary};
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
@@ -107,13 +108,13 @@ fn text(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::Need;
+    use crate::command::ConnectMode;
     use crate::output::{ColorChoice, Format};
 
     /// What a capture file holds of a request and its answer.
     fn recorded(ends: Option<(SocketAddr, SocketAddr)>) -> Vec<u8> {
         let file = tempfile::NamedTempFile::new().unwrap();
-        let access = Access { trace: Some(file.path().to_owned()), ..Access::reading(Need::Command) };
+        let access = Access { trace: Some(file.path().to_owned()), ..Access::reading(ConnectMode::Control) };
         let mut trace = Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 0), ends).unwrap();
         trace.record(Direction::Sent, b"@HSON\r\n");
         trace.record(Direction::Received, b"");

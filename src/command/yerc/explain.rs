@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::{Desk, Report, ValueKind};
+use crate::command::{OfflineCommand, Report, ValueKind};
 use crate::controller::yerc::status;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -19,7 +19,7 @@ pub struct Explain {
     code: String,
 }
 
-impl Desk for Explain {
+impl OfflineCommand for Explain {
     type Report = Codes;
     const ID: &'static str = "explain.yerc";
 

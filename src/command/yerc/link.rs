@@ -12,8 +12,8 @@ use super::fitted::Fitted;
 pub use super::refusal::{Asked, Refusal};
 use super::simulated::channel;
 use super::trace::Trace;
-use crate::command::attach::session_busy;
-use crate::command::dry_run::{Plan, Reason, unknown};
+use crate::command::frame::attach::session_busy;
+use crate::command::frame::dry_run::{Plan, Reason, unknown};
 use crate::command::{Access, Family};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -131,7 +131,7 @@ impl Family for Yerc {
         Ok("the robot was stopped: HOLD is on; `yerc hold off` releases it".to_owned())
     }
 
-    fn rehearsed(link: &mut Link) -> Plan {
+    fn planned(link: &mut Link) -> Plan {
         match &mut link.transport {
             Transport::Notes(plan) => std::mem::take(plan),
             Transport::Udp(_) | Transport::Sim(_) | Transport::Session(_) => Plan::default(),

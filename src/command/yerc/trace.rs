@@ -2,7 +2,8 @@
 
 use std::net::SocketAddr;
 
-use crate::command::{Access, trace};
+use crate::command::Access;
+use crate::command::frame::trace;
 use crate::controller::yerc::describe::{Sender, summary};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::wire::RequestFrame;

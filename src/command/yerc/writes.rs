@@ -1,7 +1,7 @@
 //! Several writes in a row, with an exact account of what was done when one of them fails.
 
 use super::link::Link;
-use crate::command::interrupt::interruptible;
+use crate::command::frame::interrupt::interruptible;
 use crate::controller::yerc::query::Query;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -69,19 +69,6 @@ fn account<O: Order>(failure: Failure, orders: &[O], done: usize) -> Failure {
     let hint = failure.hint.clone().unwrap_or_else(|| "read them back before you repeat the command".to_owned());
     let kind = if failure.kind == Kind::Refused && !written.is_empty() { Kind::Mixed } else { failure.kind };
     Failure { kind, message, ..failure }.hint(hint)
-}
-
-/// Numbers in the order given, runs as `5..9`.
-pub fn runs(numbers: &[u16]) -> String {
-    let mut runs: Vec<(u16, u16)> = Vec::new();
-    for &number in numbers {
-        match runs.last_mut() {
-            Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
-            _ => runs.push((number, number)),
-        }
-    }
-    let run = |&(first, last): &(u16, u16)| if first == last { first.to_string() } else { format!("{first}..{last}") };
-    runs.iter().map(run).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

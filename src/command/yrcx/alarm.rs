@@ -5,7 +5,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Yrcx;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::signal::output;
@@ -15,7 +15,7 @@ use crate::output::view::View;
 
 commands! {
     /// What can be done about alarms.
-    pub enum Alarm of Family {
+    pub enum Alarm {
         /// Reset the alarm
         Reset(Reset),
     }
@@ -29,7 +29,7 @@ commands! {
 pub struct Reset {}
 
 impl Command for Reset {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = WasReset;
     const ID: &'static str = "yrcx.alarm.reset";
 
@@ -37,7 +37,7 @@ impl Command for Reset {
         table::Command::AlarmReset.row().risk
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<WasReset, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasReset, Failure> {
         let Context { link, screen, .. } = context;
         let order = link.draft(table::Command::AlarmReset)?.build()?;
         link.run(&order).await?;

@@ -1,8 +1,8 @@
 //! The layers of a controller for `armctl robots check`. No connection for images is opened.
 
-use super::Family;
 use super::connect::endpoint;
-use crate::command::checks::{Layer, Layers};
+use super::link::Yrcx;
+use crate::command::face::layers::{Layer, Layers};
 use crate::command::{Access, Family as _};
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::image::Image;
@@ -18,13 +18,13 @@ const SIGNALS: [&str; 7] = ["CPU", "emergency stop", "alarm", "remote command", 
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
     let of_bus = endpoint(robot)?.fieldbus().layers();
     let mut layers = Layers::new(robot.label(), [of_bus, &SIGNALS].concat());
-    match Family::connect(robot, access, screen).await {
+    match Yrcx::connect(robot, access, screen).await {
         Err(failure) => layers.fail(of_bus.first().copied().unwrap_or("name"), &failure),
         Ok(mut link) => {
             if let Some(image) = link.any_board()?.check(&mut layers).await {
                 signals(&image, &mut layers);
             }
-            Family::close(link, screen).await?;
+            Yrcx::close(link, screen).await?;
         }
     }
     Ok(layers.finish())
@@ -48,7 +48,7 @@ fn signals(image: &Image, layers: &mut Layers) {
         ("none", "SO(03) is on"),
         "`yrcx info alarm` names it, `yrcx alarm reset` resets it",
     );
-    let status = Status::of(image.0[0]);
+    let status = Status::from_word(image.0[0]);
     layers.judge(
         "remote command",
         status == Status::Ready,

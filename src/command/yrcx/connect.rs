@@ -7,13 +7,14 @@ use super::fieldbus::{At, Board, Fieldbus, Purpose, Simulation};
 use super::link_error::not_open;
 use super::simulated;
 use super::trace::Recorder;
-use crate::command::{Access, Need};
+use crate::command::{Access, ConnectMode};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::bus::simulators;
 use crate::settings::target::{self, Bus, Place};
 use crate::transport::image::ImageLink;
+use crate::transport::image::tap::Tap;
 
 /// What a target leads to.
 #[derive(Debug, Clone, Copy)]
@@ -51,7 +52,7 @@ impl Endpoint<'_> {
         access: &Access,
         screen: &Screen,
     ) -> Result<(ImageLink, Option<Recorder>), Failure> {
-        let purpose = if access.need == Need::Sight { Purpose::Look } else { Purpose::Command };
+        let purpose = if access.mode == ConnectMode::Monitor { Purpose::Look } else { Purpose::Command };
         match *self {
             Self::Bus(bus, fieldbus) => {
                 let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type())?.unzip();
@@ -68,7 +69,7 @@ impl Endpoint<'_> {
             // What goes wrong on a network takes one.
             Self::Sim(sim) if sim.bus.is_some() || simulated::has_faults(sim) => {
                 let (fieldbus, Simulation { bus, controller }) = simulate(sim)?;
-                let opened = fieldbus.open(At { robot, bus: &bus, tap: Default::default() }, Purpose::Command).await;
+                let opened = fieldbus.open(At { robot, bus: &bus, tap: Tap::default() }, Purpose::Command).await;
                 let link = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
                 Ok((link.keeping(controller), None))
             }
@@ -92,7 +93,7 @@ impl Endpoint<'_> {
             }
             Self::Sim(sim) => {
                 let (fieldbus, Simulation { bus, controller }) = simulate(sim)?;
-                let opened = fieldbus.board(At { robot, bus: &bus, tap: Default::default() }).await;
+                let opened = fieldbus.board(At { robot, bus: &bus, tap: Tap::default() }).await;
                 let board = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
                 Ok(((board, Some(controller)), None))
             }

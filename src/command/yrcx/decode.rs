@@ -11,7 +11,7 @@ use serde::Serialize;
 
 pub use self::capture::ImageDecoder;
 pub use self::images::FieldRow;
-use super::words;
+use super::raw::words;
 use crate::command::Report;
 use crate::command::decode::capture::Selection;
 use crate::command::decode::{self, field_table, in_parentheses, problem_lines};

@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::{Desk, Report, ValueKind};
+use crate::command::{OfflineCommand, Report, ValueKind};
 use crate::controller::yrcx::alarm::Alarm;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -24,7 +24,7 @@ fn alarm(text: &str) -> Result<Alarm, String> {
     text.parse().map_err(|error| format!("{error}"))
 }
 
-impl Desk for Explain {
+impl OfflineCommand for Explain {
     type Report = YrcxAlarm;
     const ID: &'static str = "explain.yrcx";
 

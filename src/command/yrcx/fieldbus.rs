@@ -10,7 +10,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::decode::images::BusDecoder;
-use crate::command::checks::Layers;
+use crate::command::face::layers::Layers;
 use crate::controller::yrcx::alarm::Alarm;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::Start;
@@ -142,6 +142,9 @@ pub trait Serve {
     fn serve(&self, simulator: Option<&str>, start: Start) -> Result<Served, Failure>;
 }
 
+/// What lines of a console do.
+pub type Console = dyn FnMut(&str) -> Result<String, String>;
+
 /// A controller that is served as long as this lives.
 pub struct Served {
     /// The URL to reach it by.
@@ -149,7 +152,7 @@ pub struct Served {
     /// Where others may come from, where it is a network.
     pub address: Option<SocketAddr>,
     /// Does what a line of the console says, and tells what was done, or why not.
-    pub console: Box<dyn FnMut(&str) -> Result<String, String>>,
+    pub console: Box<Console>,
 }
 
 impl fmt::Debug for Served {

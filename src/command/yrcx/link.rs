@@ -24,9 +24,9 @@ use super::io::named;
 use super::overwrite::Replaced;
 use super::refusal;
 use super::trace::{Recorder, Trace};
-use crate::command::attach::{attach, is_held};
-use crate::command::dry_run::{Plan, Reason, unknown};
-use crate::command::{Access, Entry, Family, Need};
+use crate::command::frame::attach::{attach, is_held};
+use crate::command::frame::dry_run::{Plan, Reason, unknown};
+use crate::command::{Access, ConnectMode, Entry, Family};
 use crate::controller::Risk;
 use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use crate::controller::yrcx::answer::Answer;
@@ -171,11 +171,11 @@ impl Family for Yrcx {
         let endpoint = connect::endpoint(robot)?;
         if access.dry_run {
             let mut link = Link::new(robot, &access, screen, Transport::Notes(Plan::default()), None)?;
-            let opens_session = access.need == Need::Command && robot.hold.value && !robot.read_only.value;
+            let opens_session = access.mode == ConnectMode::Control && robot.hold.value && !robot.read_only.value;
             link.is_held |= opens_session || is_held(robot);
             return Ok(link);
         }
-        if access.need == Need::Messages {
+        if access.mode == ConnectMode::Explicit {
             let ((board, kept), recorder) = endpoint.board(robot, &access, screen).await?;
             return Link::new(robot, &access, screen, Transport::Board(board, kept), recorder);
         }
@@ -235,16 +235,16 @@ impl Family for Yrcx {
         link.is_jogging()
     }
 
-    fn rehearsed(link: &mut Link) -> Plan {
+    fn planned(link: &mut Link) -> Plan {
         match &mut link.transport {
             Transport::Notes(plan) => std::mem::take(plan),
             Transport::Image(_) | Transport::Board(..) => Plan::default(),
         }
     }
 
-    fn entry(robot: &Robot, need: Need) -> Entry {
+    fn entry(robot: &Robot, mode: ConnectMode) -> Entry {
         let fieldbus = match connect::endpoint(robot) {
-            Ok(Endpoint::Bus(bus, fieldbus)) if bus.is_owner && need == Need::Command => fieldbus,
+            Ok(Endpoint::Bus(bus, fieldbus)) if bus.is_owner && mode == ConnectMode::Control => fieldbus,
             _ => return Entry::Harmless,
         };
         if is_held(robot) {
@@ -313,8 +313,8 @@ impl Link {
         let timeout = robot.timeout.value;
         let endpoint = connect::endpoint(robot)?;
         let is_owner = match endpoint {
-            Endpoint::Bus(bus, _) => bus.is_owner && access.need == Need::Command,
-            Endpoint::Sim(_) => access.need != Need::Messages,
+            Endpoint::Bus(bus, _) => bus.is_owner && access.mode == ConnectMode::Control,
+            Endpoint::Sim(_) => access.mode != ConnectMode::Explicit,
         };
         let is_simulated = robot.target.value.is_simulated();
         let is_network = !is_simulated

@@ -6,10 +6,12 @@ use serde::Serialize;
 
 use super::decode::FieldRow;
 use super::refusal::refused;
-use super::{Family, link, overwrite};
+use super::{link, overwrite};
 use crate::command::decode::{field_table, problem_lines};
+use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
+use crate::controller::typed;
 use crate::controller::yrcx::answer::Answer;
 use crate::controller::yrcx::describe;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Words};
@@ -45,19 +47,13 @@ pub fn words(text: &str) -> Result<Words, String> {
         return Err(format!("1 to {COMMAND_WORDS} words are wanted, not {}", pieces.len()));
     }
     for (word, piece) in words.iter_mut().zip(pieces) {
-        let hex = piece.strip_prefix("0x").or_else(|| piece.strip_prefix("0X"));
-        let number = match hex {
-            Some(digits) if !digits.starts_with('+') => u16::from_str_radix(digits, 16).ok(),
-            None if !piece.starts_with('+') => piece.parse().ok(),
-            _ => None,
-        };
-        *word = number.ok_or_else(|| format!("'{piece}' is no word such as 0x0032 or 50"))?;
+        *word = typed::unsigned(piece).ok_or_else(|| format!("'{piece}' is no word such as 0x0032 or 50"))?;
     }
     Ok(words)
 }
 
 impl Command for Raw {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Exchange;
     const ID: &'static str = "yrcx.raw";
 
@@ -73,7 +69,7 @@ impl Command for Raw {
         overwrite::confirmation(self.wi.command())
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Exchange, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Exchange, Failure> {
         context.link.no_unit("the words name the robot")?;
         if self.confirmation() == Confirmation::WhenKnown {
             overwrite::confirm(context.link, &context.authority, &self.wi).await?;

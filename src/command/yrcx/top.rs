@@ -12,8 +12,8 @@ use super::info::{AlarmReport, servos};
 use super::link::{Link, Yrcx};
 use super::overview::{not_asked, report};
 use super::position::{Position, Unit};
-use crate::command::overview::{OverviewReport, PositionMm};
-use crate::command::sample::{Alarm, Axis, Bank, Depth, Eight, Lamp, Sample, Whole};
+use crate::command::face::overview::{OverviewReport, PositionMm};
+use crate::command::face::sample::{Alarm, Axis, Bank, Depth, Eight, Lamp, Sample, Whole};
 use crate::command::{Access, Family as _};
 use crate::controller::yrcx::answer::{Answer, Status};
 use crate::controller::yrcx::image::Image;
@@ -197,7 +197,7 @@ fn lamps(image: &Image) -> Vec<Lamp> {
         Lamp::should("CPU OK", is_on(output::CPU_OK), Tone::Bad),
         Lamp::should("MP ready", is_on(output::MP_READY), Tone::Warning),
         Lamp::new("at start", is_on(output::PROGRAM_RESET), Tone::Plain),
-        Lamp::new("command", Status::of(image.0[0]) == Status::Running, Tone::Good),
+        Lamp::new("command", Status::from_word(image.0[0]) == Status::Running, Tone::Good),
     ]
 }
 

@@ -7,7 +7,8 @@ use std::sync::mpsc::{self, SyncSender};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use crate::command::{Access, trace};
+use crate::command::Access;
+use crate::command::frame::trace;
 use crate::controller::text::hex;
 use crate::controller::yrcx::changes::changes;
 use crate::controller::yrcx::image::Image;

@@ -197,7 +197,7 @@ impl Request {
     /// The row of the table.
     pub fn row(&self) -> Option<&'static Row> {
         match self.division() {
-            Division::Robot => Row::of(self.command),
+            Division::Robot => Row::from_number(self.command),
             Division::File => Row::of_file(self.service, &self.data),
         }
     }

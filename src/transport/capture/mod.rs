@@ -1,8 +1,9 @@
 //! Reads capture files: pcap and pcapng, as `tap`(super::tap), tcpdump and Wireshark write them.
 //!
-//! A reader of our own, because the formats are small, damage has to be told by its offset with all that came before
-//! it, and what is inside the packets (addresses, streams) would have to be written anyway. `file` finds packets,
-//! `layers` what they carry, `stream` puts TCP together. No bytes make any of it panic.
+//! `file` finds packets, `layers` what they carry (by `etherparse`), `stream` puts TCP together. No bytes make any of it
+//! panic. The packets are found by a reader of our own: `pcap-file` stops at a packet with a comment that is not UTF-8 or
+//! an original length of 0, where nothing that is needed is damaged, and takes a length that no block has for the end of
+//! the file.
 
 mod file;
 mod layers;
@@ -14,7 +15,7 @@ use std::time::Duration;
 
 use self::file::Packets;
 use self::layers::{PacketContent, Payload, content_of};
-use self::stream::{StreamBytes, Streams};
+use self::stream::{Piece, Streams};
 use super::tap::Direction;
 
 pub use self::file::{Damage, OpenError};
@@ -141,8 +142,8 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
     Ok(summary)
 }
 
-fn pass_on(arrived: &StreamBytes<'_>, each: &mut impl FnMut(&Message<'_>)) {
-    let StreamBytes { key: (_, from, to), origin: (number, time, is_cut), begins, lost, bytes } = *arrived;
+fn pass_on(arrived: &Piece<'_>, each: &mut impl FnMut(&Message<'_>)) {
+    let Piece { key: (_, from, to), origin: (number, time, is_cut), begins, lost, bytes } = *arrived;
     let carrier = Carrier::Stream { from, to, begins, lost };
     each(&Message { number, time, carrier, bytes, is_cut });
 }

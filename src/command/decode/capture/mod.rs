@@ -19,7 +19,7 @@ pub use self::report::Capture;
 use self::report::{FULL, Links, Problems, counted};
 use super::Field;
 use crate::command::Report as _;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::files;
 use crate::output::Format;
@@ -68,6 +68,9 @@ pub fn file_among(arguments: &[String]) -> Option<&Path> {
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
     matches!(extension.as_str(), "pcap" | "pcapng" | "cap").then_some(path)
 }
+
+/// A report, unless there is no room for one, and the decoder, ready to begin anew.
+type Captured<D> = (Option<Capture<<D as CaptureDecoder>::Field>>, D);
 
 /// Finds the messages of a family in what a file holds.
 pub trait CaptureDecoder: Sized {
@@ -202,7 +205,7 @@ pub fn print<D: CaptureDecoder>(
     path: &Path,
     selection: &Selection,
     decoder: D,
-) -> Result<(), Stopped> {
+) -> Result<(), RunError> {
     let name = path.display().to_string();
     let source = Source { name: &name, open: || files::open(path), selection };
     let (is_streamed, without_fields) = (run.filter.is_none() && run.line.is_none(), run.is_for_people());
@@ -217,7 +220,7 @@ pub fn print<D: CaptureDecoder>(
         let failure = capture.failure();
         let whole = ReportEnvelope::new(run, id, &capture, failure.as_ref());
         run.screen.json(&whole)?;
-        return failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: true }));
+        return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: true }));
     }
     run.local(id, &capture)
 }
@@ -258,7 +261,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         mut decoder: D,
         room: usize,
         without_fields: bool,
-    ) -> Result<(Option<Capture<D::Field>>, D), Failure> {
+    ) -> Result<Captured<D>, Failure> {
         let frame = self.selection.frame;
         let mut kept = MessageBuffer::new(room, frame, without_fields);
         // Of one packet, the links still are those of the whole file.
@@ -282,7 +285,9 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
             return Err(Failure::usage(message).hint("the numbers are in the list, without --frame"));
         }
         let mut problems = Problems::default();
-        messages.iter().for_each(|row| problems.add(row));
+        for row in &messages {
+            problems.add(row);
+        }
         let mut capture = Capture { messages, problems, links: links.list, ..self.about(&summary, packets, notes) };
         if kept.is_full {
             capture.damage = Some(FULL.to_owned());

@@ -7,9 +7,9 @@ use std::io::{self, Read};
 use serde::ser::{Serialize, SerializeSeq as _, Serializer};
 
 use super::report::{Capture, Link, Links, Problems, Row};
-use super::{CaptureDecoder, DecodedMessage, ReportEnvelope, Source};
+use super::{CaptureDecoder, DecodedCapture, DecodedMessage, ReportEnvelope, Source};
 use crate::command::Report as _;
-use crate::command::run::{Run, Stopped};
+use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::output::Format;
 use crate::output::busy::busy;
@@ -26,7 +26,7 @@ pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
     id: &str,
     source: &Source<'_, O>,
     mut decoder: D,
-) -> Result<(), Stopped> {
+) -> Result<(), RunError> {
     let mut links = Links::default();
     let mut problems = Problems::default();
     let mut layout = Layout::new(&Row::<D::Field>::COLUMNS);
@@ -39,8 +39,8 @@ pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
             true
         })?
     };
-    let decoded = std::mem::take(decoder.decoded());
-    let mut about: Capture<D::Field> = source.about(&summary, decoded.packets, decoded.notes);
+    let DecodedCapture { packets, notes, .. } = std::mem::take(decoder.decoded());
+    let mut about: Capture<D::Field> = source.about(&summary, packets, notes);
     (about.links, about.problems) = (links.list, problems);
     let failure = about.failure();
     let second_pass = SecondPass { source, summary: &summary, all: about.problems.all };
@@ -51,7 +51,7 @@ pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
         let (packets, other_packets) = (*packets, *other_packets);
         let data = Written { file, packets, other_packets, links, messages, notes, damage };
         run.screen.json_as_it_comes(&ReportEnvelope::new(run, id, data, failure.as_ref()))?;
-        return failure.map_or(Ok(()), |failure| Err(Stopped { failure, envelope: None, told: true }));
+        return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: true }));
     }
     second_pass.rows_for_people(run, &about, layout, decoder.restart())?;
     failure.map_or(Ok(()), |failure| Err(failure.into()))

@@ -5,7 +5,7 @@
 //! which no `@OK` can be taken for, nothing older can come any more: then an order goes out.
 
 use super::{Link, Transport, status_page};
-use crate::command::dry_run::Reason;
+use crate::command::frame::dry_run::Reason;
 use crate::command::toyo::connect;
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};

@@ -7,11 +7,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::steps;
-use crate::command::dry_run::unknown;
-use crate::command::local::Target;
+use crate::command::frame::dry_run::unknown;
+use crate::command::frame::local::Target;
 use crate::command::toyo::items::{self, Answers, Item, in_a_word};
-use crate::command::toyo::link::{Link, misuse};
-use crate::command::toyo::{Family, tasks};
+use crate::command::toyo::link::{Link, Toyo, misuse};
+use crate::command::toyo::tasks;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::layout::Record;
@@ -59,7 +59,7 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Got;
     const ID: &'static str = "toyo.program.get";
 
@@ -67,7 +67,7 @@ impl Command for Get {
         if self.task.is_some() { Risk::Write } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Got, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Got, Failure> {
         let Context { link, screen, several, .. } = context;
         if let Some(to) = self.to.filter(|to| *to < self.from) {
             return Err(Failure::usage(format!("--to {to} is before --from {}", self.from))
@@ -240,18 +240,18 @@ impl Report for Got {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, objection};
+    use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, objection};
     use crate::failure::Kind;
 
     /// A controller that does this with step 2 of three.
-    fn with_step_2(fate: Fate) -> Bench {
+    fn with_step_2(fault: Fault) -> Bench {
         let state = "steps = { 1 = [\"SPD V=05\", \"NOP\", \"END\"] }";
-        Bench::spoilt(state, move |block, _| if block == "@RSTX 0002" { fate } else { Fate::Pass }).0
+        Bench::with_faults(state, move |block, _| if block == "@RSTX 0002" { fault } else { Fault::None }).0
     }
 
     #[test]
     fn a_refused_step_hides_no_other_and_makes_no_program() {
-        let mut bench = with_step_2(Fate::Answered("@NG"));
+        let mut bench = with_step_2(Fault::Answered("@NG"));
         let (got, failure) = bench.run(&["program", "get"]).unwrap();
         let failure = failure.unwrap();
         let why = "the controller refused RSTX 0002 (@NG): the status does not tell why";
@@ -284,18 +284,18 @@ mod tests {
         std::fs::write(file.path(), "whole").unwrap();
         let path = file.path().to_str().unwrap();
         let words = ["program", "get", path, "--force"];
-        let (got, failure) = with_step_2(Fate::Answered("@NG")).run(&words).unwrap();
+        let (got, failure) = with_step_2(Fault::Answered("@NG")).run(&words).unwrap();
         assert!(got["file"].is_null() && got["text"].as_str().unwrap().contains("\n?  # step 2"), "{got}");
         let failure = failure.unwrap();
         assert!(failure.message.ends_with("was not written, as the program is not whole"), "{failure}");
         assert_eq!(std::fs::read_to_string(path).unwrap(), "whole");
-        let (got, _) = with_step_2(Fate::Lost).run(&["program", "get", "--to", "9"]).unwrap();
+        let (got, _) = with_step_2(Fault::Lost).run(&["program", "get", "--to", "9"]).unwrap();
         assert_eq!(
             got["text"],
             "# NOT WHOLE: 8 of 9 steps were not read\nSPD V=05\n?  # steps 2 to 9 were not read: no answer\n"
         );
         assert_eq!(got["steps"].as_array().unwrap().len(), 9);
-        let failure = with_step_2(Fate::Answered("@NG")).run(&["program", "get", "--from", "2", "--to", "2"]);
+        let failure = with_step_2(Fault::Answered("@NG")).run(&["program", "get", "--from", "2", "--to", "2"]);
         assert_eq!(failure.unwrap_err().kind, Kind::Refused, "nothing was answered");
     }
 

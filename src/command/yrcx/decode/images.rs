@@ -110,7 +110,7 @@ impl Images {
                     }
                 }
                 Change::Words { words, .. } => {
-                    let answered = shown.command.filter(|_| Status::of(words[0]) != Status::Ready);
+                    let answered = shown.command.filter(|_| Status::from_word(words[0]) != Status::Ready);
                     decoded.answers = answered.map(|(number, _)| number);
                     describe(&mut decoded, answer(words, answered.as_ref().map(|(_, words)| words)));
                 }
@@ -167,15 +167,15 @@ fn describe(decoded: &mut DecodedMessage<FieldRow>, description: Description) {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct FieldRow {
     /// Word and bits, as in `WI1 bits 2-1`; `-` outside words.
-    place: String,
+    pub(super) place: String,
     /// Its name for programs; null for the code, the status and what is not used.
-    key: Option<&'static str>,
+    pub(super) key: Option<&'static str>,
     /// What it is called.
-    name: String,
+    pub(super) name: String,
     /// As it travels.
-    raw: String,
+    pub(super) raw: String,
     /// What it says.
-    meaning: String,
+    pub(super) meaning: String,
 }
 
 impl FieldRow {

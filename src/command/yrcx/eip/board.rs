@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::check;
-use crate::command::checks::Layers;
+use crate::command::face::layers::Layers;
 use crate::command::yrcx::fieldbus;
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::text;

@@ -13,6 +13,7 @@ use crate::command::yrcx::fieldbus::{self, At, Fieldbus, Purpose, Simulation, bu
 use crate::controller::yrcx::alarm::Alarm;
 use crate::failure::Failure;
 use crate::settings::target::Sim;
+use crate::settings::target::bus::Scheme;
 use crate::settings::target::eip::SCHEME;
 use crate::transport::image::{ImageLink, LinkError};
 
@@ -22,7 +23,8 @@ pub struct EtherNetIp;
 
 impl Fieldbus for EtherNetIp {
     fn name(&self) -> &'static str {
-        SCHEME.bus
+        let Scheme { bus, .. } = SCHEME;
+        bus
     }
 
     fn link_alarm(&self) -> Alarm {

@@ -1,7 +1,7 @@
 //! The layers of a network board for `armctl robots check`: from its name to what the controller shows.
 
 use super::board::{Board, MAKER, Probed};
-use crate::command::checks::Layers;
+use crate::command::face::layers::Layers;
 use crate::controller::yrcx::image::Image;
 
 /// In the order in which they are looked at.

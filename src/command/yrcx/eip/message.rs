@@ -6,11 +6,13 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::board::{Object, shown};
-use super::{Family, NO_UNIT, board_of};
-use crate::command::orders::Done;
-use crate::command::{Command, Context, Need, Report};
+use super::{NO_UNIT, board_of};
+use crate::command::frame::orders::Done;
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text;
+use crate::controller::typed;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, View};
 
@@ -34,15 +36,15 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Value;
     const ID: &'static str = "yrcx.eip.get";
 
-    fn need(&self) -> Need {
-        Need::Messages
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Value, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Value, Failure> {
         context.link.no_unit(NO_UNIT)?;
         let object = Object { class: self.class, instance: self.instance, attribute: self.attribute };
         let about = format!("{} of {object}", object.reading());
@@ -82,7 +84,7 @@ impl Set {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Done;
     const ID: &'static str = "yrcx.eip.set";
 
@@ -94,11 +96,11 @@ impl Command for Set {
         format!("set {} to {}", self.object(), shown(&self.data.0))
     }
 
-    fn need(&self) -> Need {
-        Need::Messages
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
         context.link.no_unit(NO_UNIT)?;
         let object = self.object();
         let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));
@@ -124,12 +126,9 @@ fn bytes(text: &str) -> Result<Bytes, String> {
 
 /// A number of an object: 16 bits, decimal or hexadecimal with 0x.
 fn number(text: &str) -> Result<u32, String> {
-    let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        Some(digits) if !digits.starts_with('+') => u16::from_str_radix(digits, 16).ok(),
-        None if !text.starts_with('+') => text.parse().ok(),
-        _ => None,
-    };
-    number.map(u32::from).ok_or_else(|| format!("'{text}' is no number from 0 to 65535, as in 4 or 0xF5"))
+    typed::unsigned::<u16>(text)
+        .map(u32::from)
+        .ok_or_else(|| format!("'{text}' is no number from 0 to 65535, as in 4 or 0xF5"))
 }
 
 /// What an attribute holds.

@@ -15,7 +15,6 @@ mod serve;
 pub mod simulated;
 
 use self::board::Board;
-use super::Family;
 use super::link::Link;
 use crate::command::commands;
 use crate::failure::Failure;
@@ -31,7 +30,7 @@ const NO_UNIT: &str = "the board is that of the whole controller";
 
 commands! {
     /// What the network board can be asked.
-    pub enum Eip of Family {
+    pub enum Eip {
         /// Who the board is
         Identity(identity::Identify),
         /// Find the assemblies of the board, their sizes, and what makes a connection

@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::{Desk, Report};
-use crate::controller::yrcx::bus::{self, Bus, Place};
+use crate::command::{OfflineCommand, Report};
+use crate::controller::yrcx::bus::{self, Bus, MapRow};
 use crate::controller::yrcx::signal::Side;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -29,7 +29,7 @@ pub struct Map {
     output_start: Option<u32>,
 }
 
-impl Desk for Map {
+impl OfflineCommand for Map {
     type Report = Addresses;
     const ID: &'static str = "yrcx.io.map";
 
@@ -64,7 +64,7 @@ struct Row {
 }
 
 impl Row {
-    fn of(place: &Place, start: Option<u32>) -> Self {
+    fn of(place: &MapRow, start: Option<u32>) -> Self {
         Self {
             direction: if place.side == Side::Output { "from_controller" } else { "to_controller" },
             address: place.address(start),

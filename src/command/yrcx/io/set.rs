@@ -2,12 +2,14 @@
 
 use clap::Args;
 
-use super::{Family, input, named};
+use super::{input, named};
 use crate::command::ValueKind;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::yrcx::link::Link;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
+use crate::controller::typed;
 use crate::controller::yrcx::procedure::Procedure;
 use crate::controller::yrcx::register::Register;
 use crate::controller::yrcx::signal::{Side, Signal};
@@ -34,7 +36,7 @@ enum Change {
 }
 
 fn change(text: &str) -> Result<Change, String> {
-    let (signal, state) = text.split_once('=').ok_or("say what to switch it to, as in servo-on=on")?;
+    let (signal, state) = typed::setting(text, "a signal", "a state", "servo-on=on")?;
     if let Some(register) = Register::parse(signal) {
         let register = register?;
         if register.side() == Side::Output {
@@ -42,11 +44,7 @@ fn change(text: &str) -> Result<Change, String> {
         }
         return Ok(Change::Word { register, value: register.value(state)? });
     }
-    let on = match state {
-        "on" | "1" => true,
-        "off" | "0" => false,
-        _ => return Err(format!("a signal is on or off, not '{state}'")),
-    };
+    let on = typed::state(state)?;
     Ok(Change::Signal { signal: input(signal)?, on })
 }
 
@@ -83,7 +81,7 @@ impl Change {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Done;
     const ID: &'static str = "yrcx.io.set";
 
@@ -95,7 +93,7 @@ impl Command for Set {
         format!("switch {}", told(&self.changes))
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
         let mut done = 0;
         for together in self.changes.chunk_by(|one, next| one.word().is_some() && next.word().is_some()) {
             let before = &self.changes[..done];
@@ -122,7 +120,7 @@ pub struct Pulse {
 }
 
 impl Command for Pulse {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Done;
     const ID: &'static str = "yrcx.io.pulse";
 
@@ -134,7 +132,7 @@ impl Command for Pulse {
         format!("switch {} on and off again", named(self.signal))
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
         context.link.carry_out(switching(Procedure::pulse(self.signal))?).await?;
         Ok(Done::new(format!("switched {} on and off again", named(self.signal))))
     }
@@ -211,7 +209,7 @@ mod tests {
         for (line, part) in [
             (&["io", "set"][..], "SIGNAL=STATE"),
             (&["io", "set", "20"], "servo-on=on"),
-            (&["io", "set", "20=maybe"], "on or off"),
+            (&["io", "set", "20=maybe"], "there are on and off"),
             (&["io", "set", "SI(02)=on"], "reserved"),
             (&["io", "pulse", "cpu-ok"], "is no signal"),
             (&["io", "set", "SOW2=5"], "the controller's to set"),

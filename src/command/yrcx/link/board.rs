@@ -5,7 +5,7 @@ use std::any::Any;
 use serde_json::Value as Json;
 
 use super::{Link, Transport};
-use crate::command::dry_run::{Reason, unknown};
+use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::yrcx::fieldbus::Board;
 use crate::failure::Failure;
 use crate::transport::tap::Direction;

@@ -3,7 +3,7 @@
 use tokio::time::Instant;
 
 use super::{Link, Transport};
-use crate::command::attach::session_busy;
+use crate::command::frame::attach::session_busy;
 use crate::command::yrcx::connect::endpoint;
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::describe::{answer_summary, command_summary};
@@ -91,7 +91,7 @@ impl Link {
         let until = Instant::now() + self.policy.accept;
         loop {
             let seen = self.input.unwrap_or_default().command();
-            match Status::of(seen[0]) {
+            match Status::from_word(seen[0]) {
                 Status::Running => {
                     self.is_over = true;
                     self.give_turn();

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{check, connect};
-use crate::command::checks::Layers;
+use crate::command::face::layers::Layers;
 use crate::command::yrcx::fieldbus::{self, At};
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::text::hex;

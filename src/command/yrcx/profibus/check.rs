@@ -1,7 +1,7 @@
 //! The layers of a line for `armctl robots check`: from the adapter to what the controller shows. Nobody is owned.
 
 use super::board::Board;
-use crate::command::checks::Layers;
+use crate::command::face::layers::Layers;
 use crate::controller::yrcx::image::Image;
 use crate::transport::profibus::port::latency_timer;
 

@@ -1,18 +1,17 @@
 //! Controllers on PROFIBUS DP, and `yrcx profibus`: the line and its stations. For diagnosis: no slave is owned.
 
-pub mod board;
+mod board;
 pub mod bus;
 mod check;
 mod connect;
 mod decode;
-pub mod discover;
+mod discover;
 mod probe;
 mod scan;
-pub mod serve;
+mod serve;
 pub mod simulated;
 
 use self::board::Board;
-use super::Family;
 use super::link::Link;
 use crate::command::commands;
 use crate::failure::Failure;
@@ -28,7 +27,7 @@ const NO_UNIT: &str = "the station is that of the whole controller";
 
 commands! {
     /// What a line and its stations can be asked.
-    pub enum Profibus of Family {
+    pub enum Profibus {
         /// List the stations of the line, without owning any
         Scan(scan::Scan),
         /// Show diagnosis, ident number and configuration of the station, without owning it

@@ -5,8 +5,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::board::Station;
-use super::{Family, NO_UNIT, board_of};
-use crate::command::{Command, Context, Need, Report};
+use super::{NO_UNIT, board_of};
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
 
@@ -16,15 +17,15 @@ use crate::output::view::{Section, View};
 pub struct Probe {}
 
 impl Command for Probe {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Probed;
     const ID: &'static str = "yrcx.profibus.probe";
 
-    fn need(&self) -> Need {
-        Need::Messages
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Probed, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Probed, Failure> {
         context.link.no_unit(NO_UNIT)?;
         context.link.then("telegrams that ask the station for its state, diagnosis and configuration");
         let board = board_of(context.link)?;

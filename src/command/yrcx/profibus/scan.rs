@@ -5,8 +5,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::board::Station;
-use super::{Family, NO_UNIT, board_of};
-use crate::command::{Command, Context, Need, Report};
+use super::{NO_UNIT, board_of};
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, View};
 
@@ -15,15 +16,15 @@ use crate::output::view::{Cell, Table, View};
 pub struct Scan {}
 
 impl Command for Scan {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Stations;
     const ID: &'static str = "yrcx.profibus.scan";
 
-    fn need(&self) -> Need {
-        Need::Messages
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Stations, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Stations, Failure> {
         context.link.no_unit(NO_UNIT)?;
         context.link.then("telegrams that ask every station for its state, and slaves for diagnosis and configuration");
         Ok(Stations { stations: board_of(context.link)?.scan().await? })

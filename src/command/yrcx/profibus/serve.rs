@@ -58,7 +58,7 @@ impl fieldbus::Serve for ServeArgs {
         };
         let server = simulated::serve(start, options)?;
         // From here on there may be a link to remove.
-        crate::command::interrupt::catch_interrupts();
+        crate::command::frame::interrupt::catch_interrupts();
         let link = self.link.as_ref().map(|link| TerminalLink::make(link, server.port())).transpose()?;
         let name = link.as_ref().map(|link| link.name().display().to_string());
         Ok(Served {

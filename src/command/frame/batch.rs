@@ -1,0 +1,31 @@
+//! `armctl batch`: what its command line says; `crate::app` runs it.
+
+use std::path::PathBuf;
+
+use crate::controller::typed;
+use clap::Args;
+
+/// Arguments of `batch`.
+#[derive(Debug, Args)]
+#[command(after_help = "What stands in the file: `armctl help batch`.")]
+pub struct Batch {
+    /// A command a line, each with its family; - is stdin
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Go on after a line that has failed
+    #[arg(short, long)]
+    pub keep_going: bool,
+    /// What ${NAME} stands for in the file (repeatable)
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<(String, String)>,
+}
+
+fn assignment(text: &str) -> Result<(String, String), String> {
+    let (name, value) = typed::setting(text, "a name", "a value", "SPEED=50")?;
+    if is_name(name) { Ok((name.to_owned(), value.to_owned())) } else { Err(format!("'{name}' is no name")) }
+}
+
+/// Letters, digits and underscores.
+pub fn is_name(name: &str) -> bool {
+    !name.is_empty() && name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric())
+}
