@@ -9,6 +9,7 @@ pub mod image;
 pub mod line;
 mod port;
 pub mod ports;
+pub mod profinet;
 mod pty;
 pub mod serial;
 pub mod server;

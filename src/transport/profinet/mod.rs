@@ -1,0 +1,10 @@
+//! PROFINET IO: images to and from a device, cyclically in Ethernet frames, and calls to it over UDP.
+//!
+//! Knows bytes of submodules and no robot.
+
+use std::time::Duration;
+
+pub mod wire;
+
+/// A moment, as time passed since an origin of the driver's choice. It never runs backwards.
+pub type Now = Duration;
