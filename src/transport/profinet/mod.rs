@@ -4,6 +4,9 @@
 
 use std::time::Duration;
 
+pub mod layout;
+pub mod settings;
+pub mod trouble;
 pub mod wire;
 
 /// A moment, as time passed since an origin of the driver's choice. It never runs backwards.
