@@ -4,6 +4,8 @@
 
 use std::time::Duration;
 
+pub mod controller;
+pub mod device;
 pub mod layout;
 pub mod settings;
 pub mod trouble;

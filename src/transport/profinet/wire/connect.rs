@@ -468,9 +468,25 @@ pub struct SubmoduleDiff {
 }
 
 impl SubmoduleDiff {
-    /// Whether it is the one that is expected.
-    pub const fn is_fine(&self) -> bool {
-        self.state & 0x8000 != 0 && (self.state >> 11) & 0xF == 0
+    /// Bits 11 to 14, where they are told; without bit 15 the whole of it is 0 none, 1 wrong, 2 proper, 3 substitute.
+    const fn ident_info(&self) -> u16 {
+        match (self.state & 0x8000 != 0, self.state) {
+            (true, state) => (state >> 11) & 0xF,
+            (false, 0) => 3,
+            (false, 1) => 2,
+            (false, 2 | 7) => 0,
+            (false, _) => 1,
+        }
+    }
+
+    /// Whether it is the one that is expected, or one that does the same.
+    pub const fn is_usable(&self) -> bool {
+        self.ident_info() < 2
+    }
+
+    /// Whether there is none.
+    pub const fn is_missing(&self) -> bool {
+        self.ident_info() == 3
     }
 }
 

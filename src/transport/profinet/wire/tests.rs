@@ -191,8 +191,10 @@ fn a_module_difference_reads_as_it_is_written() {
     let diff = Response::ModuleDiff(vec![ModuleDiff { slot: 1, ident: 0x40, state: 1, submodules }]);
     assert_eq!(diff.emit(), bytes);
     assert_eq!(Response::parse_all(&bytes).unwrap(), [diff]);
-    for (state, fine) in [(0x8000, true), (0x9000, false), (0x9800, false), (0, false), (0x8007, true)] {
-        assert_eq!(SubmoduleDiff { subslot: 1, ident: 1, state }.is_fine(), fine, "{state:#x}");
+    for (state, usable) in
+        [(0x8000, true), (0x8800, true), (0x9000, false), (0x9800, false), (0, false), (1, false), (2, true)]
+    {
+        assert_eq!(SubmoduleDiff { subslot: 1, ident: 1, state }.is_usable(), usable, "{state:#x}");
     }
 }
 
