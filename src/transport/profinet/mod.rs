@@ -8,6 +8,8 @@ pub mod controller;
 pub mod device;
 pub mod layout;
 pub mod settings;
+#[cfg(test)]
+mod tests;
 pub mod trouble;
 pub mod wire;
 

@@ -1,0 +1,5 @@
+//! The controller against the device, in virtual time.
+
+mod faults;
+mod opening;
+mod world;
