@@ -6,7 +6,7 @@ mod flags;
 mod leaves;
 mod misplaced;
 mod parser;
-mod ready;
+mod prepared;
 mod repl;
 mod words;
 
@@ -18,9 +18,9 @@ use clap::ValueEnum as _;
 use clap::error::ErrorKind;
 
 use self::parser::Parser;
-use self::ready::{Ready, Wanted};
+use self::prepared::{Invocation, PreparedCommand};
 use crate::cli::{Cli, Globals, Words};
-use crate::command::run::Stopped;
+use crate::command::frame::run::RunError;
 use crate::failure::{Failure, Kind};
 use crate::output::envelope::Envelope;
 use crate::output::{ColorChoice, Format, Screen, jq};
@@ -68,19 +68,19 @@ fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
     args
 }
 
-async fn run(cli: Cli) -> Result<(), Stopped> {
+async fn run(cli: Cli) -> Result<(), RunError> {
     let Words { globals, command } = cli;
-    match Wanted::from(command) {
-        Wanted::Work(work) => Box::pin(Ready::new(globals, None, work, None)?.go()).await,
-        Wanted::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
-        Wanted::Prompt(prefix) => Box::pin(repl::run(globals, prefix)).await,
-        Wanted::Bare(prefix) if repl::can_type() => Box::pin(repl::run(globals, prefix)).await,
-        Wanted::Bare(prefix) => Err(repl::usage(&screen(&globals), &prefix)),
+    match Invocation::from(command) {
+        Invocation::Task(task) => Box::pin(PreparedCommand::new(globals, None, task, None)?.go()).await,
+        Invocation::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
+        Invocation::Prompt(prefix) => Box::pin(repl::run(globals, prefix)).await,
+        Invocation::Bare(prefix) if repl::can_type() => Box::pin(repl::run(globals, prefix)).await,
+        Invocation::Bare(prefix) => Err(repl::usage(&screen(&globals), &prefix)),
     }
 }
 
 /// Runs it on this thread.
-fn on_this_thread(done: impl Future<Output = Result<(), Stopped>>) -> Result<(), Stopped> {
+fn on_this_thread(done: impl Future<Output = Result<(), RunError>>) -> Result<(), RunError> {
     has_room()?;
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
@@ -120,7 +120,7 @@ fn screen(globals: &Globals) -> Screen {
 }
 
 /// Writes a failure once, in the form that was asked for, and says what kind it was.
-fn tell(screen: &Screen, Stopped { failure, envelope, told }: Stopped) -> Kind {
+fn tell(screen: &Screen, RunError { failure, envelope, told }: RunError) -> Kind {
     let kind = failure.kind;
     if !told && kind != Kind::PipeClosed {
         if screen.is_json() {

@@ -1,18 +1,21 @@
 //! The command line: global flags and the first word.
 
+use std::fmt;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgMatches, Args, Command, FromArgMatches, Parser, Subcommand};
 
-use crate::command::common::batch::Batch;
-use crate::command::common::repl::Repl;
-use crate::command::{ValueKind, common, toyo, yerc, yrcx};
+use crate::command::face::words::Typed;
+use crate::command::families::{self, FAMILIES};
+use crate::command::frame::batch::Batch;
+use crate::command::frame::repl::Repl;
+use crate::command::{ValueKind, common};
 use crate::controller::text::Encoding;
 use crate::gate::OnInterrupt;
 use crate::output::{ColorChoice, Format};
 use crate::settings::duration;
-use crate::settings::target::Target;
+use crate::settings::target::{Family, Target};
 
 /// Talk to industrial robot controllers from a terminal or a script.
 ///
@@ -42,15 +45,9 @@ pub type Cli = Words<Top>;
 /// The first word of a command line.
 #[derive(Debug, Subcommand)]
 pub enum Top {
-    /// The family `yerc`
+    /// A family
     #[command(flatten)]
-    Yerc(OfYerc),
-    /// The family `yrcx`
-    #[command(flatten)]
-    Yrcx(OfYrcx),
-    /// The family `toyo`
-    #[command(flatten)]
-    Toyo(OfToyo),
+    Family(FamilyWord),
     /// Type commands one after the other, over one link
     Repl(Repl),
     /// Run the commands of a file, over one link
@@ -60,54 +57,48 @@ pub enum Top {
     Common(common::Common),
 }
 
-/// The first word of a line for `yerc`.
-#[derive(Debug, Subcommand)]
-pub enum OfYerc {
-    /// Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)
-    Yerc {
-        /// What follows.
-        #[command(subcommand)]
-        verb: Option<Verb<yerc::Yerc>>,
-    },
+/// The word of a family, and what stands behind it.
+pub struct FamilyWord {
+    /// Which family.
+    pub family: Family,
+    /// What stands behind it.
+    pub typed: Typed,
 }
 
-/// The first word of a line for `yrcx`.
-#[derive(Debug, Subcommand)]
-pub enum OfYrcx {
-    /// OMRON / Yamaha YRCX over EtherNet/IP
-    #[command(after_help = "Settings and first contact: `armctl help yrcx-setup`.")]
-    Yrcx {
-        /// Which robot of the controller.
-        #[command(flatten)]
-        unit: yrcx::Unit,
-        /// What follows.
-        #[command(subcommand)]
-        verb: Option<Verb<yrcx::Yrcx>>,
-    },
+impl fmt::Debug for FamilyWord {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.family.name())
+    }
 }
 
-/// The first word of a line for `toyo`.
-#[derive(Debug, Subcommand)]
-pub enum OfToyo {
-    /// Toyo over RS-232C host communication
-    #[command(
-        after_help = "Cable, settings and first contact: `armctl help toyo-setup`; the ports there are: `armctl toyo ports`."
-    )]
-    Toyo {
-        /// What follows.
-        #[command(subcommand)]
-        verb: Option<Verb<toyo::Toyo>>,
-    },
+impl Subcommand for FamilyWord {
+    fn augment_subcommands(command: Command) -> Command {
+        command.subcommands(FAMILIES.map(|face| face.augment(Command::new(face.family().name()))))
+    }
+
+    fn augment_subcommands_for_update(command: Command) -> Command {
+        Self::augment_subcommands(command)
+    }
+
+    fn has_subcommand(name: &str) -> bool {
+        name.parse::<Family>().is_ok()
+    }
 }
 
-/// What follows the name of a family. Nothing at all is the prompt, too, where somebody can type.
-#[derive(Debug, Subcommand)]
-pub enum Verb<V: Subcommand> {
-    /// A command of the family
-    #[command(flatten)]
-    Command(V),
-    /// Type commands one after the other, over one link
-    Repl(Repl),
+impl FromArgMatches for FamilyWord {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        Self::from_arg_matches_mut(&mut matches.clone())
+    }
+
+    fn from_arg_matches_mut(matches: &mut ArgMatches) -> Result<Self, clap::Error> {
+        let (family, mut matches) = families::named(matches)?;
+        Ok(Self { family, typed: families::of(family).read(&mut matches)? })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
 }
 
 /// Flags that every command takes, at any place of the line.

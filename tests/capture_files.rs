@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use armctl::transport::capture::{Carrier, Unknown, read};
+use armctl::transport::capture::{Carrier, OpenError, read};
 use proptest::prelude::*;
 
 const FILES: [&str; 3] = ["vlan.pcap", "lines.pcapng", "speed.pcapng"];
@@ -87,7 +87,7 @@ fn a_file_cut_anywhere_gives_what_came_before() {
                         problems.insert(damage.problem);
                     }
                 }
-                Err(error) => assert!(end < 24 && error == Unknown::Other, "{name} cut at {end}: {error}"),
+                Err(error) => assert!(end < 24 && error == OpenError::Other, "{name} cut at {end}: {error}"),
             }
         }
         assert!(problems.iter().all(|problem| problem.starts_with("the file ends inside")), "{problems:?}");

@@ -12,8 +12,9 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, ensure};
-use armctl::command::yrcx::{Family as Yrcx, simulated};
-use armctl::command::{Access, Family as _, Need};
+use armctl::command::yrcx::eip::simulated;
+use armctl::command::yrcx::link::Yrcx;
+use armctl::command::{Access, ConnectMode, Family as _};
 use armctl::controller::yrcx;
 use armctl::controller::yrcx::simulator::Start;
 use armctl::output::{ColorChoice, Format, Screen};
@@ -152,7 +153,7 @@ fn commands(effort: &Effort) -> anyhow::Result<()> {
             Sources { selection: Selection { target: Some(target), ..Selection::default() }, ..Sources::default() };
         let robot = sources.robots(Some(Name::Yrcx))?.remove(0);
         let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
-        let access = Access::reading(Need::Command);
+        let access = Access::reading(ConnectMode::Control);
         let order = yrcx::table::Command::ServoStatus.order().build()?;
         let mut times = Vec::new();
         let mut answers = Vec::new();

@@ -98,7 +98,7 @@ fn controllers(effort: &Effort) -> anyhow::Result<Vec<(&'static str, String)>> {
     }
     for _ in 0..effort.yrcx {
         let start = yrcx::simulated::start(None)?;
-        let server = yrcx::simulated::serve(start, Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
+        let server = yrcx::eip::simulated::serve(start, Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
         targets.push(("yrcx", format!("eip://{}", server.address())));
         // It serves as long as it is there.
         std::mem::forget(server);

@@ -13,10 +13,9 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 use anyhow::{Context as _, ensure};
-use armctl::command::toyo::Family as Toyo;
-use armctl::command::toyo::link::Link;
+use armctl::command::toyo::link::{Link, Toyo};
 use armctl::command::toyo::simulated::Simulated;
-use armctl::command::{Access, Family as _, Need};
+use armctl::command::{Access, ConnectMode, Family as _};
 use armctl::controller::toyo::program;
 use armctl::controller::toyo::request::Request;
 use armctl::controller::toyo::simulator::{Simulator, Start};
@@ -177,7 +176,7 @@ fn connect(runtime: &tokio::runtime::Runtime, address: SocketAddr) -> anyhow::Re
     let sources = Sources { selection, ..Sources::default() };
     let robots = sources.robots(Some(Family::Toyo))?;
     let robot = robots.first().context("a target is a robot")?;
-    let access = Access::reading(Need::Command);
+    let access = Access::reading(ConnectMode::Control);
     let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
     Ok(runtime.block_on(Toyo::connect(robot, access, &screen))?)
 }

@@ -16,9 +16,8 @@ mod peers;
 mod process;
 
 use anyhow::{Context as _, ensure};
-use armctl::command::yerc::Family as Yerc;
-use armctl::command::yerc::link::Link;
-use armctl::command::{Access, Family as _, Need};
+use armctl::command::yerc::link::{Link, Yerc};
+use armctl::command::{Access, ConnectMode, Family as _};
 use armctl::controller::Risk;
 use armctl::controller::yerc::files::FileName;
 use armctl::controller::yerc::query::ReadStatus;
@@ -169,14 +168,7 @@ fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
     let sources = Sources { selection, ..Sources::default() };
     let robots = sources.robots(Some(Family::Yerc))?;
     let robot = robots.first().context("a target is a robot")?;
-    let access = Access {
-        granted: Grant::of(Risk::Read),
-        dry_run: false,
-        trace: None,
-        need: Need::Command,
-        typed: None,
-        unit: 0,
-    };
+    let access = Access::reading(ConnectMode::Control);
     let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
     Ok(runtime.block_on(Yerc::connect(robot, access, &screen))?)
 }

@@ -12,14 +12,15 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::parser::Parser;
-use super::ready::{Ready, Wanted};
+use super::prepared::{Invocation, PreparedCommand};
 use super::{refusal, screen, words};
 use crate::cli::{Globals, Words};
-use crate::command::common::batch::Batch;
-use crate::command::holding::Holder;
-use crate::command::interrupt::catch_interrupts;
-use crate::command::line::{Line, Origin};
-use crate::command::run::{Stopped, begin_trace};
+use crate::command::fleet::session::host;
+use crate::command::frame::batch::Batch;
+use crate::command::frame::interrupt::catch_interrupts;
+use crate::command::frame::run::{RunError, begin_trace};
+use crate::command::frame::script_line::{Line, Origin};
+use crate::command::frame::session_manager::SessionManager;
 use crate::failure::{Failure, Kind};
 use crate::files;
 use crate::output::{Format, Screen};
@@ -28,7 +29,7 @@ use crate::output::{Format, Screen};
 type Results = Rc<RefCell<Vec<Value>>>;
 
 /// Runs the lines of a file.
-pub async fn run(globals: Globals, batch: Batch) -> Result<(), Stopped> {
+pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
     refuse_repetition(&globals)?;
     let text = read(&batch.file)?;
     catch_interrupts();
@@ -37,8 +38,8 @@ pub async fn run(globals: Globals, batch: Batch) -> Result<(), Stopped> {
     let globals = Globals { format, json: globals.json && globals.jq.is_none(), ..globals };
     let screen = screen(&globals);
     let results: Option<Results> = (screen.format == Format::Json).then(Rc::default);
-    let (holder, thread) = Holder::start(move |text| screen.note(text))?;
-    let plan = Plan { globals: &globals, batch: &batch, screen, holder, results: results.clone() };
+    let (manager, thread) = host::start(move |text| screen.note(text))?;
+    let plan = Plan { globals: &globals, batch: &batch, screen, manager, results: results.clone() };
     let lines = plan.lines(&text)?;
     begin_trace(globals.trace.as_deref().filter(|_| !globals.dry_run))?;
     let done = plan.go(lines).await;
@@ -70,13 +71,13 @@ struct Plan<'a> {
     globals: &'a Globals,
     batch: &'a Batch,
     screen: Screen,
-    holder: Holder,
+    manager: SessionManager,
     results: Option<Results>,
 }
 
 /// A line that can run.
 struct Planned {
-    ready: Ready,
+    ready: PreparedCommand,
     origin: Origin,
     typed: Arc<str>,
 }
@@ -130,14 +131,14 @@ impl Plan<'_> {
         let typed: Arc<str> = line.trim().into();
         let line = Line {
             typed: Arc::clone(&typed),
-            holder: self.holder.clone(),
+            manager: self.manager.clone(),
             origin: Some(origin.clone()),
             results: self.results.clone(),
         };
-        let Wanted::Work(work) = command.into() else {
+        let Invocation::Task(task) = command.into() else {
             return Err(Failure::usage("this is no command for a line of a file").hint("`armctl help batch`"));
         };
-        let ready = Ready::new(globals, Some(self.globals), work, Some(line))?;
+        let ready = PreparedCommand::new(globals, Some(self.globals), task, Some(line))?;
         if let Some(why) = ready.why_not_in_batch() {
             return Err(Failure::usage(format!("this is nothing for a line of a file: {why}"))
                 .hint("type it at a terminal of its own"));
@@ -147,7 +148,7 @@ impl Plan<'_> {
     }
 
     /// Runs them.
-    async fn go(&self, lines: Vec<Planned>) -> Result<(), Stopped> {
+    async fn go(&self, lines: Vec<Planned>) -> Result<(), RunError> {
         let all = lines.len();
         let mut failed: Vec<(Origin, Failure)> = Vec::new();
         let mut begun = 0;
@@ -156,8 +157,8 @@ impl Plan<'_> {
             if !self.screen.is_json() {
                 self.screen.note(&format!("{origin}: {typed}"));
             }
-            let Ready { run, work } = ready;
-            let Err(stopped) = Box::pin(work.go(&run)).await else { continue };
+            let PreparedCommand { run, task } = ready;
+            let Err(stopped) = Box::pin(task.go(&run)).await else { continue };
             if stopped.failure.kind == Kind::PipeClosed {
                 return Err(stopped);
             }
@@ -181,6 +182,6 @@ impl Plan<'_> {
         if !self.screen.is_json() {
             self.screen.note(&message);
         }
-        Err(Stopped { failure: Failure { message, ..first.clone() }, envelope: None, told: true })
+        Err(RunError { failure: Failure { message, ..first.clone() }, envelope: None, told: true })
     }
 }

@@ -1,9 +1,9 @@
 //! Global flags that mean nothing to a command are mistakes, not decoration.
 
-use super::ready::Work;
+use super::prepared::Task;
 use crate::cli::Globals;
 use crate::command::common::Common;
-use crate::command::common::robots::Robots;
+use crate::command::fleet::robots::Robots;
 use crate::failure::Failure;
 use crate::gate::OnInterrupt;
 
@@ -25,13 +25,11 @@ const ALL: Uses = Uses { robots: true, link: true, repeat: true, gate: true };
 const NONE: Uses = Uses { robots: false, link: false, repeat: false, gate: false };
 
 impl Uses {
-    fn of(work: &Work) -> Self {
-        match work {
-            Work::Yerc(command) if !command.takes_robot() => NONE,
-            Work::Yrcx(_, command) if !command.takes_robot() => NONE,
-            Work::Toyo(command) if !command.takes_robot() => NONE,
-            Work::Yerc(_) | Work::Yrcx(..) | Work::Toyo(_) => ALL,
-            Work::Common(common) => Self::of_common(common),
+    fn of(task: &Task) -> Self {
+        match task {
+            Task::Family(_, command) if !command.takes_robot() => NONE,
+            Task::Family(..) => ALL,
+            Task::Common(common) => Self::of_common(common),
         }
     }
 
@@ -62,10 +60,10 @@ impl Uses {
 }
 
 /// Refuses a flag of the line that means nothing to its command.
-pub fn check(globals: &Globals, work: &Work) -> Result<(), Failure> {
-    let uses = Uses::of(work);
+pub fn check(globals: &Globals, task: &Task) -> Result<(), Failure> {
+    let uses = Uses::of(task);
     match given(globals).into_iter().find(|(flag, is_meant)| flag.is_some() && !is_meant(uses)) {
-        Some((Some(flag), _)) => Err(wrong(flag, work)),
+        Some((Some(flag), _)) => Err(wrong(flag, task)),
         _ => Ok(()),
     }
 }
@@ -98,12 +96,12 @@ fn given(globals: &Globals) -> [Given; 17] {
     ]
 }
 
-fn wrong(flag: &str, work: &Work) -> Failure {
-    let hint = match (flag, work) {
-        ("--tag", Work::Common(Common::Robots(Robots::Add(_)))) => {
+fn wrong(flag: &str, task: &Task) -> Failure {
+    let hint = match (flag, task) {
+        ("--tag", Task::Common(Common::Robots(Robots::Add(_)))) => {
             "--with-tag gives the new robot a tag; --tag chooses robots".to_owned()
         }
-        ("--robot" | "--tag" | "--all", Work::Common(Common::Robots(Robots::List))) => {
+        ("--robot" | "--tag" | "--all", Task::Common(Common::Robots(Robots::List))) => {
             "the list has all robots; `armctl status` takes --robot and --tag".to_owned()
         }
         _ => format!("remove {flag}"),

@@ -3,24 +3,18 @@
 use std::ffi::OsString;
 
 use clap::error::ErrorKind;
-use clap::{ArgMatches, Args as _, Command, CommandFactory as _, FromArgMatches, Subcommand};
+use clap::{ArgMatches, Command, CommandFactory as _, FromArgMatches, Subcommand};
 
 use super::misplaced;
-use crate::cli::{Cli, OfToyo, OfYerc, OfYrcx, Top, Words};
-use crate::command::Noun as _;
+use crate::cli::{Cli, FamilyWord, Top, Words};
 use crate::command::common::Common;
-use crate::command::toyo::Toyo;
-use crate::command::yerc::Yerc;
-use crate::command::yrcx::{Unit, Yrcx};
+use crate::command::families;
 use crate::settings::target::Family;
 
 /// Reads command lines. To lay out all commands takes longer than all the rest of a short one, so a line is tried on the
 /// words that it names alone. What was laid out as a whole serves the next line, too.
 #[derive(Debug, Default)]
 pub struct Parser {
-    yerc: Option<Command>,
-    yrcx: Option<Command>,
-    toyo: Option<Command>,
     all: Option<Command>,
     /// What was laid out for the last line alone.
     last: Option<Command>,
@@ -42,15 +36,7 @@ impl Parser {
     /// knows more to say about it.
     pub fn parse(&mut self, args: &[OsString]) -> Result<Cli, clap::Error> {
         let narrowed = match first(args) {
-            Some(First::Family(Family::Yerc)) => {
-                named::<OfYerc>(&mut self.last, args).map(|words| words.into_top(Top::Yerc))
-            }
-            Some(First::Family(Family::Yrcx)) => {
-                named::<OfYrcx>(&mut self.last, args).map(|words| words.into_top(Top::Yrcx))
-            }
-            Some(First::Family(Family::Toyo)) => {
-                named::<OfToyo>(&mut self.last, args).map(|words| words.into_top(Top::Toyo))
-            }
+            Some(First::Family(family)) => named(&mut self.last, family, args).map(|words| words.into_top(Top::Family)),
             Some(First::Common) => {
                 read(&mut Words::<Common>::command(), args).ok().map(|words| words.into_top(Top::Common))
             }
@@ -65,14 +51,7 @@ impl Parser {
 
     /// Whose command a word is, where it may be one of this family.
     pub fn owner(&mut self, word: &str, family: Option<Family>) -> Owner {
-        let of_family = family.is_some_and(|family| {
-            let all = match family {
-                Family::Yerc => laid_out::<OfYerc>(&mut self.yerc),
-                Family::Yrcx => laid_out::<OfYrcx>(&mut self.yrcx),
-                Family::Toyo => laid_out::<OfToyo>(&mut self.toyo),
-            };
-            all.find_subcommand(family.name()).is_some_and(|own| own.find_subcommand(word).is_some())
-        });
+        let of_family = family.is_some_and(|family| families::of(family).has_command(word));
         if of_family {
             Owner::Family
         } else if laid_out::<Top>(&mut self.all).find_subcommand(word).is_some() {
@@ -112,33 +91,11 @@ fn first(args: &[OsString]) -> Option<First> {
     })
 }
 
-/// A family whose words can be laid out as far as a line names them.
-trait Narrow: Subcommand {
-    fn lay_out(is_named: &dyn Fn(&str) -> bool) -> Command;
-}
-
-impl Narrow for OfYerc {
-    fn lay_out(is_named: &dyn Fn(&str) -> bool) -> Command {
-        Yerc::lay_out(Command::new(Family::Yerc.name()), is_named)
-    }
-}
-
-impl Narrow for OfYrcx {
-    fn lay_out(is_named: &dyn Fn(&str) -> bool) -> Command {
-        Yrcx::lay_out(Unit::augment_args(Command::new(Family::Yrcx.name())), is_named)
-    }
-}
-
-impl Narrow for OfToyo {
-    fn lay_out(is_named: &dyn Fn(&str) -> bool) -> Command {
-        Toyo::lay_out(Command::new(Family::Toyo.name()), is_named)
-    }
-}
-
 /// The line, read on the words that it names; `None` where that is not enough.
-fn named<C: Narrow>(last: &mut Option<Command>, args: &[OsString]) -> Option<Words<C>> {
+fn named(last: &mut Option<Command>, family: Family, args: &[OsString]) -> Option<Words<FamilyWord>> {
     let is_named = |name: &str| args.iter().any(|word| word == name);
-    let command = last.insert(Words::<Nothing>::command().subcommand(C::lay_out(&is_named)));
+    let word = families::of(family).lay_out(Command::new(family.name()), &is_named);
+    let command = last.insert(Words::<Nothing>::command().subcommand(word));
     read(command, args).ok()
 }
 
@@ -190,22 +147,24 @@ mod tests {
     #[test]
     fn what_is_named_is_laid_out_as_in_the_whole() {
         let whole = Cli::command();
-        let all = [OfYerc::lay_out(&|_| true), OfYrcx::lay_out(&|_| true), OfToyo::lay_out(&|_| true)];
-        for family in all {
-            let wanted = whole.find_subcommand(family.get_name()).unwrap();
-            assert_eq!(shape(&family), shape(wanted));
+        let lay_out = |family: Family, is_named: &dyn Fn(&str) -> bool| {
+            families::of(family).lay_out(Command::new(family.name()), is_named)
+        };
+        for family in Family::ALL {
+            let wanted = whole.find_subcommand(family.name()).unwrap();
+            assert_eq!(shape(&lay_out(family, &|_| true)), shape(wanted));
         }
-        let narrow = OfYerc::lay_out(&|name| ["job", "select"].contains(&name));
+        let narrow = lay_out(Family::Yerc, &|name| ["job", "select"].contains(&name));
         assert_eq!(narrow.get_subcommands().count(), 1);
     }
 
     #[test]
     fn a_line_is_read_on_the_words_it_names() {
         let args = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
-        assert!(named::<OfYerc>(&mut None, &args("armctl yerc --sim job select --line 3 WELD -q")).is_some());
-        assert!(named::<OfYrcx>(&mut None, &args("armctl --sim yrcx --unit 2 point get 5")).is_some());
+        assert!(named(&mut None, Family::Yerc, &args("armctl yerc --sim job select --line 3 WELD -q")).is_some());
+        assert!(named(&mut None, Family::Yrcx, &args("armctl --sim yrcx --unit 2 point get 5")).is_some());
         for left_to_the_whole in ["armctl yerc", "armctl yerc stat", "armctl yerc status -h", "armctl yerc repl"] {
-            let is_read = named::<OfYerc>(&mut None, &args(left_to_the_whole)).is_some();
+            let is_read = named(&mut None, Family::Yerc, &args(left_to_the_whole)).is_some();
             assert_eq!(is_read, left_to_the_whole == "armctl yerc", "{left_to_the_whole}");
         }
     }

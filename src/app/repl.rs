@@ -22,15 +22,16 @@ use self::prompt::{Prompt, Seen, look};
 use self::terminal::Terminal;
 use super::batch::{self, refuse_repetition};
 use super::parser::Parser;
-use super::ready::{Need, Ready, Wanted, sources};
+use super::prepared::{Invocation, Need, PreparedCommand, sources};
 use super::{refuse, screen, tell, words};
 use crate::cli::{Globals, Words};
-use crate::command::holding::{Holder, HolderThread};
-use crate::command::interrupt::{again, asked_to_end, catch_interrupts, interruptible};
-use crate::command::line::Line;
-use crate::command::overview::Fleet;
-use crate::command::run::{Stopped, begin_trace};
-use crate::command::{self, Entry, Family as _};
+use crate::command::families;
+use crate::command::fleet::session::host::{self, ManagerThread};
+use crate::command::frame::interrupt::{again, asked_to_end, catch_interrupts, interruptible};
+use crate::command::frame::run::{RunError, begin_trace};
+use crate::command::frame::script_line::Line;
+use crate::command::frame::session_manager::SessionManager;
+use crate::command::{ConnectMode, Entry};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
@@ -42,15 +43,15 @@ pub fn can_type() -> bool {
 }
 
 /// Nothing but the name of a family was typed where nobody can type: what its commands are.
-pub fn usage(screen: &Screen, prefix: &[String]) -> Stopped {
+pub fn usage(screen: &Screen, prefix: &[String]) -> RunError {
     if let Err(help) = Parser::default().parse(&family_help(prefix)) {
         screen.usage(&help.render());
     }
-    Stopped { told: true, ..Failure::usage("a command is missing").into() }
+    RunError { told: true, ..Failure::usage("a command is missing").into() }
 }
 
 /// Runs lines until somebody leaves, or the script ends.
-pub async fn run(globals: Globals, prefix: Vec<String>) -> Result<(), Stopped> {
+pub async fn run(globals: Globals, prefix: Vec<String>) -> Result<(), RunError> {
     refuse_repetition(&globals)?;
     catch_interrupts();
     let repl = Repl::new(globals, prefix)?;
@@ -96,29 +97,34 @@ impl Repl {
     }
 
     /// Lines from a terminal.
-    async fn converse(mut self) -> Result<(), Stopped> {
+    async fn converse(mut self) -> Result<(), RunError> {
         let terminal = Terminal::save();
         let (mut editor, say) = Editor::start(&self.screen, Assistant::new(&self.meaning, &self.globals))?;
-        let (holder, thread) = Holder::start(say)?;
-        let outcome = self.prompt(&mut editor, &terminal, &holder).await;
+        let (manager, thread) = host::start(say)?;
+        let outcome = self.prompt(&mut editor, &terminal, &manager).await;
         thread.end().await;
         outcome
     }
 
-    async fn prompt(&mut self, editor: &mut Editor, terminal: &Terminal, holder: &Holder) -> Result<(), Stopped> {
+    async fn prompt(
+        &mut self,
+        editor: &mut Editor,
+        terminal: &Terminal,
+        manager: &SessionManager,
+    ) -> Result<(), RunError> {
         // What stops the robot when it ends is taken by the command that needs it, once that was confirmed.
         if let Some(robot) = &self.robot
             && !self.globals.dry_run
-            && !matches!(Fleet::entry(robot, command::Need::Command), Entry::Stops(_))
+            && !matches!(families::of(robot.family).entry(robot, ConnectMode::Control), Entry::Stops(_))
         {
-            line_of(holder, "repl").hold(robot, self.globals.trace.as_deref(), &self.screen).await?;
+            line_of(manager, "repl").hold(robot, self.globals.trace.as_deref(), &self.screen).await?;
         }
         self.screen.note("Tab completes, `help` lists the commands, `exit` or Ctrl-D leaves.");
         // Ctrl-C puts a line away; where there is none, it is not yet the wish to leave, but twice is.
         let mut is_second = false;
         loop {
             let seen = match &self.robot {
-                Some(robot) if !self.globals.dry_run => look(robot, &line_of(holder, "repl"), &self.screen).await,
+                Some(robot) if !self.globals.dry_run => look(robot, &line_of(manager, "repl"), &self.screen).await,
                 _ => Seen::NotAsked,
             };
             let prompt = Prompt::new(self.meaning.prefix(), self.robot.as_ref(), &seen, self.screen.stdout_color());
@@ -145,7 +151,7 @@ impl Repl {
             is_second = false;
             // What is pasted may be several lines.
             for line in text.lines() {
-                match Box::pin(self.run_line(line, holder)).await {
+                match Box::pin(self.run_line(line, manager)).await {
                     Next::Line => {}
                     Next::Failed(_) => break,
                     Next::Leave => return Ok(()),
@@ -158,28 +164,28 @@ impl Repl {
     }
 
     /// Lines from a pipe or a file, up to the first that fails.
-    async fn script(mut self) -> Result<(), Stopped> {
+    async fn script(mut self) -> Result<(), RunError> {
         let screen = self.screen;
-        let (holder, thread): (Holder, HolderThread) = Holder::start(move |text| screen.note(text))?;
-        let outcome = self.lines(&holder).await;
+        let (manager, thread): (SessionManager, ManagerThread) = host::start(move |text| screen.note(text))?;
+        let outcome = self.lines(&manager).await;
         thread.end().await;
         outcome
     }
 
-    async fn lines(&mut self, holder: &Holder) -> Result<(), Stopped> {
+    async fn lines(&mut self, manager: &SessionManager) -> Result<(), RunError> {
         let mut stdin = BufReader::new(tokio::io::stdin());
         let mut number = 0;
         loop {
             number += 1;
             let Some(line) = interruptible(line(&mut stdin, number)).await?? else { return Ok(()) };
-            match Box::pin(self.run_line(&line, holder)).await {
+            match Box::pin(self.run_line(&line, manager)).await {
                 Next::Line => {}
                 Next::Failed(kind) => {
                     let failure = Failure::new(kind, format!("stopped at line {number}"));
                     if !self.screen.is_json() {
                         self.screen.note(&failure.message);
                     }
-                    return Err(Stopped { told: true, ..failure.into() });
+                    return Err(RunError { told: true, ..failure.into() });
                 }
                 Next::Leave => return Ok(()),
             }
@@ -187,7 +193,7 @@ impl Repl {
     }
 
     /// Runs a line, and tells if it fails.
-    async fn run_line(&mut self, text: &str, holder: &Holder) -> Next {
+    async fn run_line(&mut self, text: &str, manager: &SessionManager) -> Next {
         let words = match words::split(text) {
             Ok(words) => words,
             Err(why) => {
@@ -209,15 +215,15 @@ impl Repl {
         let own = globals.clone();
         let globals = globals.within(&self.globals);
         let screen = screen(&globals);
-        let line = line_of(holder, text);
+        let line = line_of(manager, text);
         let done = match command.into() {
-            Wanted::Work(work) => match Ready::new(own, Some(&self.globals), work, Some(line)) {
+            Invocation::Task(task) => match PreparedCommand::new(own, Some(&self.globals), task, Some(line)) {
                 Ok(ready) => Box::pin(ready.go()).await,
                 Err(failure) => Err(failure.into()),
             },
-            Wanted::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
-            Wanted::Prompt(_) => Err(Failure::usage("this is the prompt already").hint("`exit` leaves it").into()),
-            Wanted::Bare(prefix) => Err(usage(&screen, &prefix)),
+            Invocation::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
+            Invocation::Prompt(_) => Err(Failure::usage("this is the prompt already").hint("`exit` leaves it").into()),
+            Invocation::Bare(prefix) => Err(usage(&screen, &prefix)),
         };
         done.map_or_else(|stopped| failed(&screen, stopped), |()| Next::Line)
     }
@@ -244,14 +250,14 @@ async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option
     Ok(Some(text.trim_end_matches(['\n', '\r']).to_owned()))
 }
 
-fn line_of(holder: &Holder, typed: &str) -> Line {
-    Line { typed: Arc::from(typed.trim()), holder: holder.clone(), origin: None, results: None }
+fn line_of(manager: &SessionManager, typed: &str) -> Line {
+    Line { typed: Arc::from(typed.trim()), manager: manager.clone(), origin: None, results: None }
 }
 
-fn failed(screen: &Screen, stopped: Stopped) -> Next {
+fn failed(screen: &Screen, stopped: RunError) -> Next {
     Next::Failed(tell(screen, stopped))
 }
 
-fn ended(how: &str) -> Stopped {
+fn ended(how: &str) -> RunError {
     Failure::new(Kind::Interrupted, how).into()
 }

@@ -1,6 +1,6 @@
 //! A line of text as the words of a command line: what a shell would make of it.
 
-use crate::command::common::batch::is_name;
+use crate::command::frame::batch::is_name;
 
 /// The words of a line: quotes, backslashes and `#` as in a shell. None for a line that is empty or a comment alone.
 pub fn split(line: &str) -> Result<Vec<String>, String> {

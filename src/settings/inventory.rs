@@ -169,7 +169,7 @@ impl Inventory {
                 );
             };
             target.check(family).map_err(|why| at(span, &why).hint("check target and family against each other"))?;
-            if let Some(model) = raw.model.as_ref().filter(|_| family != Family::Yerc) {
+            if let Some(model) = raw.model.as_ref().filter(|_| !family.has_model()) {
                 return Err(at(model.span(), &format!("a {family} robot has no model")).hint("leave `model` away"));
             }
             robots.push(Entry {

@@ -161,14 +161,6 @@ pub struct Sources {
     pub inventory: Inventory,
 }
 
-/// Longest wait for an answer unless set. Over a network a controller answers in 5 to 20 ms, a busy one within seconds;
-/// over a serial line, within one second (TO 1-3).
-const fn timeout(family: Family) -> Duration {
-    match family {
-        Family::Yerc | Family::Yrcx => Duration::from_secs(3),
-        Family::Toyo => Duration::from_millis(1500),
-    }
-}
 /// Repetitions of a read unless set.
 const RETRIES: u32 = 3;
 
@@ -338,7 +330,7 @@ impl Sources {
             name,
             family,
             target,
-            timeout: setting!(timeout, timeout(family)),
+            timeout: setting!(timeout, family.timeout()),
             retries: setting!(retries, RETRIES),
             encoding: setting!(encoding, Encoding::default()),
             model: url_model.unwrap_or_else(|| setting!(model, Model::Dx200)),

@@ -1,12 +1,14 @@
 //! Target URLs: where a robot is, and over which transport.
 
 mod address;
-mod eip;
+pub mod bus;
+pub mod eip;
 
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::time::Duration;
 
 use serialport::{DataBits, Parity, StopBits};
 
@@ -14,7 +16,7 @@ use crate::controller::yerc::Model;
 use crate::failure::Failure;
 
 pub use address::Address;
-pub use eip::{Eip, EipKey, EipRole};
+pub use bus::{BUSES, Bus};
 
 /// A controller family, named like its subcommand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -44,18 +46,33 @@ impl Family {
     pub const fn address(self) -> &'static str {
         match self {
             Self::Yerc => "udp://HOST",
-            Self::Yrcx => "eip://HOST",
+            Self::Yrcx => bus::USUAL.shortest,
             Self::Toyo => "serial:///dev/ttyUSB0 or tcp://HOST:PORT",
         }
     }
 
-    /// The kinds of URL that reach it.
-    const fn schemes(self) -> &'static [&'static str] {
+    /// Longest wait for an answer unless set. Over a network a controller answers in 5 to 20 ms, a busy one within
+    /// seconds; over a serial line, within one second (TO 1-3).
+    pub const fn timeout(self) -> Duration {
         match self {
-            Self::Yerc => &["udp", "sim"],
-            Self::Yrcx => &["eip", "sim"],
-            Self::Toyo => &["serial", "tcp", "sim"],
+            Self::Yerc | Self::Yrcx => Duration::from_secs(3),
+            Self::Toyo => Duration::from_millis(1500),
         }
+    }
+
+    /// Whether its controllers are of one model or another, which settings tell.
+    pub const fn has_model(self) -> bool {
+        matches!(self, Self::Yerc)
+    }
+
+    /// Whether URLs of this kind reach it.
+    fn is_reached_over(self, scheme: &str) -> bool {
+        scheme == "sim"
+            || match self {
+                Self::Yerc => scheme == "udp",
+                Self::Yrcx => BUSES.iter().any(|bus| bus.name == scheme),
+                Self::Toyo => ["serial", "tcp"].contains(&scheme),
+            }
     }
 }
 
@@ -94,8 +111,8 @@ pub enum Place {
     Tcp(Tcp),
     /// `sim:[?model=…&axes=…&baud=…&state=FILE&fault=…&mischief=…]`: the built-in simulator of the family, in this process.
     Sim(Sim),
-    /// `eip://HOST[:44818][?in=100&out=150&config=1&rpi=20ms&…]`.
-    Eip(Eip),
+    /// A URL of one of the [`BUSES`].
+    Bus(Bus),
 }
 
 /// A high-speed Ethernet server on the network.
@@ -162,6 +179,9 @@ pub struct Sim {
     pub fault: Option<String>,
     /// What a yrcx controller does wrong, in the form of `armctl sim yrcx --mischief`.
     pub mischief: Option<String>,
+    /// The fieldbus that a yrcx controller is reached over, of [`bus::simulators`]; without it no network is simulated,
+    /// unless something is to go wrong on it.
+    pub bus: Option<&'static str>,
 }
 
 /// Port of the robot server (spec: frame table; UDP).
@@ -196,7 +216,7 @@ impl Target {
             Place::Serial(_) => "serial",
             Place::Tcp(_) => "tcp",
             Place::Sim(_) => "sim",
-            Place::Eip(_) => "eip",
+            Place::Bus(bus) => bus.scheme.name,
         }
     }
 
@@ -212,7 +232,7 @@ impl Target {
             Place::Serial(serial) => serial.path.rsplit('/').next().unwrap_or_default().to_owned(),
             Place::Tcp(tcp) => tcp.host.clone(),
             Place::Sim(_) => "sim".to_owned(),
-            Place::Eip(eip) => eip.host.clone(),
+            Place::Bus(bus) => bus.short_name().to_owned(),
         }
     }
 
@@ -221,13 +241,13 @@ impl Target {
         match &self.place {
             Place::Udp(udp) => udp.traits,
             Place::Sim(sim) => sim.traits,
-            Place::Serial(_) | Place::Tcp(_) | Place::Eip(_) => YercTraits::default(),
+            Place::Serial(_) | Place::Tcp(_) | Place::Bus(_) => YercTraits::default(),
         }
     }
 
     /// The only family this URL can reach, if it is but one.
     pub fn family(&self) -> Option<Family> {
-        let mut fitting = Family::ALL.into_iter().filter(|family| family.schemes().contains(&self.scheme()));
+        let mut fitting = Family::ALL.into_iter().filter(|family| family.is_reached_over(self.scheme()));
         let first = fitting.next();
         if fitting.next().is_some() { None } else { first }
     }
@@ -237,7 +257,7 @@ impl Target {
     /// # Errors
     /// What does not fit.
     pub fn check(&self, family: Family) -> Result<(), String> {
-        if !family.schemes().contains(&self.scheme()) {
+        if !family.is_reached_over(self.scheme()) {
             return Err(format!("{family} is not reached over {}:", self.scheme()));
         }
         match &self.place {
@@ -269,8 +289,10 @@ impl FromStr for Target {
             "serial" => serial(place, &mut query).map(Place::Serial),
             "tcp" => tcp(place, &mut query).map(Place::Tcp),
             "sim" => sim(place, &mut query).map(Place::Sim),
-            "eip" => eip::parse(place, &mut query).map(Place::Eip),
-            _ => Err(format!("unknown scheme '{scheme}'")),
+            _ => match BUSES.iter().find(|bus| bus.name == scheme) {
+                Some(bus) => Bus::parse(bus, place, &mut query).map(Place::Bus),
+                None => Err(format!("unknown scheme '{scheme}'")),
+            },
         };
         let place = place.map_err(wrong)?;
         query.finish().map_err(wrong)?;
@@ -280,18 +302,20 @@ impl FromStr for Target {
 
 /// The form of a URL of the scheme, or of every scheme.
 fn hint(scheme: &str) -> String {
-    match FORMS.iter().find(|(known, _)| *known == scheme) {
+    let buses = BUSES.iter().map(|bus| (bus.name, bus.form));
+    match FORMS.into_iter().chain(buses).find(|(known, _)| *known == scheme) {
         Some((_, form)) => format!("write {form}; `armctl help targets` explains it"),
-        None => "write udp://HOST, eip://HOST, serial:///dev/ttyUSB0, serial://COM3 or tcp://HOST:PORT for a \
-                 controller, or sim: for the simulator; `armctl help targets` explains them"
-            .to_owned(),
+        None => format!(
+            "write udp://HOST, {}, serial:///dev/ttyUSB0, serial://COM3 or tcp://HOST:PORT for a controller, or sim: for the \
+             simulator; `armctl help targets` explains them",
+            BUSES.each_ref().map(|bus| bus.shortest).join(", ")
+        ),
     }
 }
 
-/// What URLs look like.
-const FORMS: [(&str, &str); 5] = [
+/// What other URLs look like.
+const FORMS: [(&str, &str); 4] = [
     ("udp", "udp://HOST[:10040][?file_port=10041&model=dx200]"),
-    ("eip", "eip://HOST[:44818][?in=100&out=150&config=1&rpi=20ms]"),
     ("serial", "serial:///dev/ttyUSB0[?baud=9600&parity=even&data_bits=8&stop_bits=1], or serial://COM3"),
     ("tcp", "tcp://HOST:PORT[?baud=9600]"),
     ("sim", "sim:[?state=FILE&fault=drop=5%25]"),
@@ -353,6 +377,16 @@ fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
         state: query.take("state").map(PathBuf::from),
         fault: query.take("fault"),
         mischief: query.take("mischief"),
+        bus: query.take("bus").map(|name| bus(&name)).transpose()?,
+    })
+}
+
+/// What a simulator can be on.
+fn bus(name: &str) -> Result<&'static str, String> {
+    let found = bus::simulators().find(|(known, _)| *known == name);
+    found.map(|(known, _)| known).ok_or_else(|| {
+        let all: Vec<&str> = bus::simulators().map(|(known, _)| known).collect();
+        format!("bus is {}, not '{name}'", all.join(" or "))
     })
 }
 
@@ -365,6 +399,7 @@ impl Sim {
             ("axes", self.axes.is_some(), Family::Toyo),
             ("baud", self.baud.is_some(), Family::Toyo),
             ("mischief", self.mischief.is_some(), Family::Yrcx),
+            ("bus", self.bus.is_some(), Family::Yrcx),
         ];
         match given.iter().find(|(_, is_given, owner)| *is_given && *owner != family) {
             Some((key, _, owner)) => Err(format!("'{key}' in a sim: URL is for {owner}, not for {family}")),
@@ -441,6 +476,12 @@ fn port(name: &str, text: &str) -> Result<u16, String> {
 
 /// The part of a URL after `?`.
 struct Query(Vec<(String, String)>);
+
+impl fmt::Display for Query {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join("&"))
+    }
+}
 
 impl Query {
     fn parse(text: &str) -> Result<Self, String> {
@@ -523,6 +564,7 @@ mod tests {
             ("sim:dx200", "means nothing"),
             ("sim:?fault=%4", "damaged"),
             ("sim:?axes=5", "axes is a number from 1 to 4"),
+            ("sim:?bus=can", "bus is eip, not 'can'"),
             ("sim:?baud=fast", "50 to 4000000"),
             ("serial:COM3", "slashes"),
             ("serial://", "port is missing"),
@@ -586,6 +628,8 @@ mod tests {
             ("sim:?model=fs100&move_words=25&state=a.toml", Family::Yerc, None),
             ("sim:?state=a.toml&fault=drop=5%25&mischief=stall", Family::Yrcx, None),
             ("sim:?mischief=stall", Family::Toyo, Some("'mischief' in a sim: URL is for yrcx, not for toyo")),
+            ("sim:?bus=eip", Family::Yrcx, None),
+            ("sim:?bus=eip", Family::Toyo, Some("'bus' in a sim: URL is for yrcx, not for toyo")),
             ("sim:?axes=2", Family::Yerc, Some("'axes' in a sim: URL is for toyo, not for yerc")),
             ("sim:?baud=9600", Family::Yerc, Some("'baud' in a sim: URL is for toyo, not for yerc")),
             ("sim:?model=fs100", Family::Toyo, Some("'model' in a sim: URL is for yerc, not for toyo")),

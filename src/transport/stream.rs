@@ -6,7 +6,7 @@ use tokio::time::Instant;
 
 use super::line::InProcessLine;
 use super::serial::Serial;
-use super::session::client::{Attached, Hindrance};
+use super::session::client::{Attached, SessionBusy};
 use super::sim::Peer;
 use super::tcp::Tcp;
 
@@ -27,8 +27,8 @@ impl<P: Peer> Stream<P> {
     /// Waits until the stream is this process's, but not longer than `until`. The future may be dropped.
     ///
     /// # Errors
-    /// [`Hindrance`], where another process holds the stream.
-    pub async fn take(&mut self, until: Instant) -> Result<(), Hindrance> {
+    /// [`SessionBusy`], where another process holds the stream.
+    pub async fn take(&mut self, until: Instant) -> Result<(), SessionBusy> {
         match self {
             Self::Session(attached) => attached.take(until).await,
             Self::Serial(_) | Self::Tcp(_) | Self::InProcess(_) => Ok(()),
@@ -45,8 +45,8 @@ impl<P: Peer> Stream<P> {
     /// Becomes the only one who moves the robot.
     ///
     /// # Errors
-    /// [`Hindrance`], where another process holds the stream.
-    pub async fn claim_motion(&mut self) -> Result<(), Hindrance> {
+    /// [`SessionBusy`], where another process holds the stream.
+    pub async fn claim_motion(&mut self) -> Result<(), SessionBusy> {
         match self {
             Self::Session(attached) => attached.claim_motion().await,
             Self::Serial(_) | Self::Tcp(_) | Self::InProcess(_) => Ok(()),

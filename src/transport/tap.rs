@@ -24,8 +24,18 @@ pub enum Direction {
     Received,
 }
 
+impl Direction {
+    /// As texts mark it.
+    pub const fn arrow(self) -> &'static str {
+        match self {
+            Self::Sent => "->",
+            Self::Received => "<-",
+        }
+    }
+}
+
 /// `LINKTYPE_RAW`: packets begin with an IP header.
-const LINKTYPE_RAW: u16 = 101;
+pub const LINKTYPE_RAW: u16 = 101;
 /// `LINKTYPE_USER0`: for private use.
 const LINKTYPE_USER0: u16 = 147;
 /// Numbers of the interfaces, in the order of their blocks.
@@ -46,16 +56,22 @@ const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
 /// An open capture file. Every block is written at once and whole, so that several connections can share a file, and
 /// that what was recorded is there however the process ends.
 #[derive(Debug)]
-pub struct Capture<W: Write = File> {
+pub struct CaptureWriter<W: Write = File> {
     out: W,
     /// The number of the next byte of each direction of a TCP stream.
     sequence: HashMap<(SocketAddr, SocketAddr), u32>,
 }
 
-impl Capture {
+impl CaptureWriter {
     /// Starts a section at the end of a file, which is made if it is not there. A file may have any number of them.
     pub fn append(path: &Path) -> io::Result<Self> {
         Self::new(open(path)?)
+    }
+
+    /// Starts a section of packets of this kind: of [`LINKTYPE_RAW`] as [`append`](Self::append) does, or whole frames of a
+    /// link.
+    pub fn append_packets(path: &Path, link_type: u16) -> io::Result<Self> {
+        Self::start(open(path)?, &[link_type])
     }
 
     /// Starts a section for byte streams: TCP and serial lines. tcpdump reads no file with such a section, because it
@@ -69,7 +85,7 @@ fn open(path: &Path) -> io::Result<File> {
     OpenOptions::new().append(true).create(true).open(path)
 }
 
-impl<W: Write> Capture<W> {
+impl<W: Write> CaptureWriter<W> {
     /// Starts a capture of datagrams on any writer.
     pub fn new(out: W) -> io::Result<Self> {
         Self::start(out, &[LINKTYPE_RAW])
@@ -106,13 +122,18 @@ impl<W: Write> Capture<W> {
     /// Records bytes of a TCP stream, of a capture of [`streams`](Self::streams) or datagrams. `time` counts from 1970.
     pub fn segment(&mut self, time: Duration, from: SocketAddr, to: SocketAddr, bytes: &[u8]) -> io::Result<()> {
         for piece in bytes.chunks(MOST_IN_SEGMENT) {
-            let heard = self.sequence.get(&(to, from)).copied().unwrap_or(FIRST);
+            let expected = self.sequence.get(&(to, from)).copied().unwrap_or(FIRST);
             let sent = self.sequence.entry((from, to)).or_insert(FIRST);
-            let segment = tcp(from, to, (*sent, heard), piece);
+            let segment = tcp(from, to, (*sent, expected), piece);
             *sent = sent.wrapping_add(length(piece.len()));
             self.packet(NETWORK, time, &packet(from, to, TCP, segment))?;
         }
         Ok(())
+    }
+
+    /// Records a whole frame of the link type that the section began with. `time` counts from 1970.
+    pub fn frame(&mut self, time: Duration, frame: &[u8]) -> io::Result<()> {
+        self.packet(NETWORK, time, frame)
     }
 
     /// Records bytes of a serial line, of a capture of [`streams`](Self::streams). `time` counts from 1970.
@@ -278,9 +299,21 @@ mod tests {
     }
 
     #[test]
+    fn frames_of_a_link_keep_its_type() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let mut capture = CaptureWriter::append_packets(file.path(), 227).unwrap();
+        capture.frame(Duration::from_micros(7), &[0, 0, 4, 0x2C, 1, 0, 0, 0, 0x4B]).unwrap();
+        drop(capture);
+        let bytes = std::fs::read(file.path()).unwrap();
+        let blocks = blocks(&bytes);
+        assert_eq!((blocks[1].0, &blocks[1].1[..2]), (INTERFACE, &227u16.to_le_bytes()[..]));
+        assert_eq!(content(blocks[2]), (0, &[0, 0, 4, 0x2C, 1, 0, 0, 0, 0x4B][..]));
+    }
+
+    #[test]
     fn a_capture_has_the_blocks_of_the_format() {
         let mut out = Vec::new();
-        let mut capture = Capture::new(&mut out).unwrap();
+        let mut capture = CaptureWriter::new(&mut out).unwrap();
         let (from, to) = addresses();
         capture.datagram(Duration::from_secs(1), from, to, b"YERC!").unwrap();
         let kinds: Vec<u32> = blocks(&out).iter().map(|(kind, _)| *kind).collect();
@@ -298,7 +331,7 @@ mod tests {
     #[test]
     fn the_bytes_of_a_line_have_their_direction_in_front() {
         let mut out = Vec::new();
-        let mut capture = Capture::streams(&mut out).unwrap();
+        let mut capture = CaptureWriter::streams(&mut out).unwrap();
         capture.line(Duration::from_micros(0x0001_0000_0002), Direction::Sent, b"@HSON\r\n").unwrap();
         capture.line(Duration::ZERO, Direction::Received, b"@OK\r\n").unwrap();
         let blocks = blocks(&out);
@@ -318,7 +351,7 @@ mod tests {
         ] {
             let (from, to) = (from.parse().unwrap(), to.parse().unwrap());
             let mut out = Vec::new();
-            let mut capture = Capture::streams(&mut out).unwrap();
+            let mut capture = CaptureWriter::streams(&mut out).unwrap();
             capture.segment(Duration::ZERO, from, to, b"@HSON\r\n").unwrap();
             capture.segment(Duration::ZERO, to, from, b"@OK\r\n").unwrap();
             capture.segment(Duration::ZERO, from, to, &vec![b'x'; MOST_IN_SEGMENT + 1]).unwrap();

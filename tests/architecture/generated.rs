@@ -10,7 +10,7 @@ use super::source::{has_word, root};
 
 #[test]
 fn completions_are_for_all_names_of_the_program() {
-    use armctl::command::common::completions::Shell;
+    use armctl::command::about::completions::Shell;
 
     assert_eq!(names(&root().join("completions")).len(), Shell::value_variants().len(), "completions/");
     for shell in Shell::value_variants() {
@@ -22,13 +22,13 @@ fn completions_are_for_all_names_of_the_program() {
 
 #[test]
 fn man_pages_are_current() {
-    let pages = armctl::command::common::man::pages().expect("the man pages render");
+    let pages = armctl::command::about::man::pages(armctl::cli::Cli::command()).expect("the man pages render");
     is_current("man", &pages.into_iter().collect());
 }
 
 #[test]
 fn schemas_are_current() {
-    let made = armctl::command::common::schema::all().into_iter().map(|entry| {
+    let made = armctl::command::about::schema::all().into_iter().map(|entry| {
         let text = serde_json::to_string_pretty(&(entry.schema)()).expect("a schema is JSON");
         (format!("{}.json", entry.id), format!("{text}\n").into_bytes())
     });
@@ -37,7 +37,7 @@ fn schemas_are_current() {
 
 #[test]
 fn schemas_are_schemas() {
-    for entry in armctl::command::common::schema::all() {
+    for entry in armctl::command::about::schema::all() {
         let schema = (entry.schema)().to_value();
         if let Err(why) = jsonschema::draft202012::meta::validate(&schema) {
             panic!("{}: {why}", entry.id);
@@ -47,7 +47,7 @@ fn schemas_are_schemas() {
 
 #[test]
 fn every_robot_command_has_a_schema_and_help() {
-    let ids: Vec<&str> = armctl::command::common::schema::all().iter().map(|entry| entry.id).collect();
+    let ids: Vec<&str> = armctl::command::about::schema::all().iter().map(|entry| entry.id).collect();
     let known: BTreeSet<&str> = ids.iter().copied().collect();
     assert_eq!(known.len(), ids.len(), "an id is there twice: {ids:?}");
     let root = armctl::cli::Cli::command();
@@ -81,7 +81,7 @@ fn no_flag_of_a_command_is_that_of_every_command() {
 
 #[test]
 fn schemas_describe_reports() {
-    for entry in armctl::command::common::schema::all() {
+    for entry in armctl::command::about::schema::all() {
         let schema = (entry.schema)();
         let says_what = ["properties", "$ref", "oneOf", "anyOf", "items"].iter().any(|key| schema.get(*key).is_some());
         assert!(says_what, "the schema of {} says nothing: {schema:?}", entry.id);

@@ -9,6 +9,9 @@ mod source;
 
 use source::{Source, committed, has_word, root, sources};
 
+use armctl::settings::target::BUSES;
+use armctl::settings::target::bus::Scheme;
+
 /// A part of `src/` (a folder or a file) and the paths that must not occur in it.
 const BORDERS: [(&str, &[&str]); 6] = [
     // Bytes and meaning: no sockets, no clock, no command line, no files, no printing.
@@ -86,47 +89,51 @@ const BORDERS: [(&str, &[&str]); 6] = [
     ("command/", &["crate::app", "tokio::net", "std::net::UdpSocket", "std::net::TcpStream", "std::process"]),
 ];
 
-/// Commands that touch a transport: the link of a family with its trace, what reads captures, sessions, the simulators'
-/// servers, the list of ports, and the peer of tests.
-const LINKS: [&str; 38] = [
-    "command/attach.rs",
-    "command/holding.rs",
-    "command/trace.rs",
-    "command/yerc/link.rs",
-    "command/yerc/reach.rs",
-    "command/yerc/simulated.rs",
-    "command/yerc/trace.rs",
+/// Commands that touch a transport: the link of a family with its trace and its face, what reads captures, sessions, the
+/// simulators' servers, the list of ports, and the peer of tests.
+const LINKS: [&str; 42] = [
+    "command/decode/capture/mod.rs",
+    "command/decode/capture/report.rs",
+    "command/decode/capture/stream.rs",
+    "command/face/mod.rs",
+    "command/fleet/session/close.rs",
+    "command/fleet/session/host.rs",
+    "command/fleet/session/list.rs",
+    "command/fleet/session/open.rs",
+    "command/frame/attach.rs",
+    "command/frame/background.rs",
+    "command/frame/trace.rs",
+    "command/toyo/decode/capture.rs",
+    "command/toyo/face.rs",
     "command/toyo/link.rs",
     "command/toyo/ports.rs",
-    "command/toyo/reach.rs",
+    "command/toyo/connect.rs",
+    "command/toyo/serve.rs",
     "command/toyo/simulated.rs",
     "command/toyo/testing.rs",
     "command/toyo/trace.rs",
-    "command/yrcx/eip/board.rs",
+    "command/yerc/decode/capture.rs",
+    "command/yerc/face.rs",
+    "command/yerc/link.rs",
+    "command/yerc/connect.rs",
+    "command/yerc/serve.rs",
+    "command/yerc/simulated.rs",
+    "command/yerc/trace.rs",
+    "command/yrcx/connect.rs",
+    "command/yrcx/decode/capture.rs",
+    "command/yrcx/decode/images.rs",
+    "command/yrcx/fieldbus.rs",
+    "command/yrcx/link_error.rs",
+    "command/yrcx/face.rs",
     "command/yrcx/gate.rs",
     "command/yrcx/hold.rs",
     "command/yrcx/link.rs",
     "command/yrcx/link/board.rs",
     "command/yrcx/link/driver.rs",
     "command/yrcx/link/shared.rs",
-    "command/yrcx/reach.rs",
     "command/yrcx/simulated.rs",
     "command/yrcx/testing.rs",
     "command/yrcx/trace.rs",
-    "command/common/decode/capture/cip.rs",
-    "command/common/decode/capture/mod.rs",
-    "command/common/decode/capture/stream.rs",
-    "command/common/decode/capture/toyo.rs",
-    "command/common/decode/capture/yerc.rs",
-    "command/common/decode/capture/yrcx.rs",
-    "command/common/robots/discover.rs",
-    "command/common/session/close.rs",
-    "command/common/session/list.rs",
-    "command/common/session/mod.rs",
-    "command/common/session/open.rs",
-    "command/common/sim/toyo.rs",
-    "command/common/sim/yerc.rs",
-    "command/common/sim/yrcx.rs",
 ];
 
 /// Words that write to the terminal or end the process, and the only folder that may have them.
@@ -272,7 +279,9 @@ fn trespasses(source: &Source) -> Vec<String> {
                 wrong.push(format!("{place}: {part} must not mention {path}"));
             }
         }
-        let is_link = LINKS.contains(&source.name.as_str());
+        // The folder of a fieldbus has its name.
+        let in_bus = |scheme: &Scheme| source.name.starts_with(&format!("command/yrcx/{}/", scheme.bus));
+        let is_link = LINKS.contains(&source.name.as_str()) || BUSES.iter().any(in_bus);
         if source.name.starts_with("command/") && !is_link && is_within(&path, "crate::transport") {
             wrong.push(format!("{place}: {path} belongs behind the family's link"));
         }

@@ -5,9 +5,10 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use armctl::transport::eip::adapter::server::{Listen, Server};
-use armctl::transport::eip::adapter::{Mischief, Setup};
+use armctl::transport::eip::adapter::{AdapterFault, Setup};
 use armctl::transport::eip::client::Client;
 use armctl::transport::eip::discovery::list_identity;
+use armctl::transport::eip::error::EipError;
 use armctl::transport::eip::explicit::{Answer, Message};
 use armctl::transport::eip::originator::State;
 use armctl::transport::eip::probe::{self, Connectable, Instances, probe};
@@ -15,7 +16,6 @@ use armctl::transport::eip::reader::{Assembly, Reader, Reading};
 use armctl::transport::eip::scanner::Scanner;
 use armctl::transport::eip::settings::{Multiplier, Settings};
 use armctl::transport::eip::tap::Tap;
-use armctl::transport::eip::trouble::Trouble;
 use armctl::transport::eip::wire::Status;
 use armctl::transport::fault::{FaultSpec, Faults};
 
@@ -60,9 +60,9 @@ async fn what_a_device_shows_can_be_read_beside_its_owner() {
     let client = || Client::new(server.address(), 200 * MS, Tap::default());
     let assembly = Assembly { instance: 100, size: 48 };
     let wrong = Reader::open(client(), Assembly { size: 50, ..assembly }, MS).await;
-    assert_eq!(wrong.unwrap_err(), Trouble::Misfit { found: 48, expected: 50 });
+    assert_eq!(wrong.unwrap_err(), EipError::WrongSize { found: 48, expected: 50 });
     let absent = Reader::open(client(), Assembly { instance: 99, ..assembly }, MS).await;
-    assert!(matches!(absent, Err(Trouble::Refused { .. })), "{absent:?}");
+    assert!(matches!(absent, Err(EipError::Refused { .. })), "{absent:?}");
 
     let scanner = Scanner::start(LOOPBACK).unwrap();
     let owner = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
@@ -76,8 +76,8 @@ async fn what_a_device_shows_can_be_read_beside_its_owner() {
     owner.set_run(1, true).unwrap();
     shows(&mut reader, &|reading| reading.as_deref().is_ok_and(|image| image == [0xA5; 48])).await;
     // A device that goes silent is told, and so is that it is back.
-    server.with(|adapter, _| adapter.misbehave(Some(Mischief::Mute)));
-    shows(&mut reader, &|reading| matches!(reading, Err(Trouble::NoAnswer { .. }))).await;
+    server.with(|adapter, _| adapter.misbehave(Some(AdapterFault::Mute)));
+    shows(&mut reader, &|reading| matches!(reading, Err(EipError::NoAnswer { .. }))).await;
     server.with(|adapter, _| adapter.misbehave(None));
     shows(&mut reader, &Result::is_ok).await;
     reader.close().await;
@@ -144,7 +144,7 @@ async fn refusals_come_back_from_open() {
     );
     let first = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
     let second = scanner.open(server.address(), quick(), Tap::default()).await.unwrap_err();
-    assert_eq!(second, Trouble::Refused { what: "ForwardOpen", status: Status::connection(0x0106, &[]) });
+    assert_eq!(second, EipError::Refused { what: "ForwardOpen", status: Status::connection(0x0106, &[]) });
     first.close().await.unwrap();
     let third = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
     third.close().await.unwrap();
@@ -169,10 +169,10 @@ async fn a_lost_link_is_opened_again() {
     let mut connection = scanner.open(server.address(), settings, Tap::default()).await.unwrap();
     connection.set_image(1, &[7; 48]).unwrap();
     connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!7; 48])).await;
-    server.with(|adapter, _| adapter.misbehave(Some(Mischief::Stall)));
+    server.with(|adapter, _| adapter.misbehave(Some(AdapterFault::Stall)));
     let view = connection.until(|view| view.state == State::Lost).await;
-    assert_eq!(view.trouble, Some(Trouble::Silent { after: 640 * MS }));
-    assert_eq!(connection.set_image(1, &[8; 48]), Err(Trouble::Outdated));
+    assert_eq!(view.trouble, Some(EipError::Silent { after: 640 * MS }));
+    assert_eq!(connection.set_image(1, &[8; 48]), Err(EipError::Outdated));
     server.with(|adapter, _| adapter.misbehave(None));
     connection.until(|view| view.generation == 2 && view.state == State::Open).await;
     let rest: Vec<u8> = resting().iter().map(|byte| !byte).collect();
@@ -185,9 +185,9 @@ async fn nobody_there_is_told() {
     let address = server.address();
     drop(server);
     let scanner = Scanner::start(LOOPBACK).unwrap();
-    assert!(matches!(scanner.open(address, quick(), Tap::default()).await, Err(Trouble::Unreachable { .. })));
+    assert!(matches!(scanner.open(address, quick(), Tap::default()).await, Err(EipError::Unreachable { .. })));
     let mut client = Client::new(address, Duration::from_secs(3), Tap::default());
-    assert!(matches!(client.identity().await, Err(Trouble::Unreachable { .. })));
+    assert!(matches!(client.identity().await, Err(EipError::Unreachable { .. })));
 }
 
 #[tokio::test]
@@ -196,8 +196,8 @@ async fn a_reset_is_told_and_the_next_request_goes_by_a_new_connection() {
     let mut client = Client::new(server.address(), Duration::from_secs(3), Tap::default());
     let message = Message::get(1, 1, 1);
     assert_eq!(client.ask("the vendor", &message).await.unwrap().data, [0x7C, 0x02]);
-    server.with(|adapter, _| adapter.misbehave(Some(Mischief::Reset)));
-    assert_eq!(client.ask("the vendor", &message).await, Err(Trouble::Hangup { what: "the vendor" }));
+    server.with(|adapter, _| adapter.misbehave(Some(AdapterFault::Reset)));
+    assert_eq!(client.ask("the vendor", &message).await, Err(EipError::Hangup { what: "the vendor" }));
     server.with(|adapter, _| adapter.misbehave(None));
     assert_eq!(client.ask("the vendor", &message).await.unwrap().data, [0x7C, 0x02]);
     client.close().await;

@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use armctl::transport::eip::adapter::{Adapter, Assembly, Event, Mischief, Output, Purpose, Setup};
+use armctl::transport::eip::adapter::{Adapter, AdapterFault, Assembly, Event, Output, Purpose, Setup};
+use armctl::transport::eip::error::EipError;
 use armctl::transport::eip::explicit::{Answer, Message};
 use armctl::transport::eip::originator::State;
 use armctl::transport::eip::settings::{Multiplier, Role, Settings};
-use armctl::transport::eip::trouble::Trouble;
 use armctl::transport::eip::wire::{Command, Cyclic, Frame, Identity, Key, Open, Request, RrData, Status};
 
 use super::world::{HERE, MS, Mirror, World, identity, resting, settings, setup};
@@ -22,7 +22,7 @@ fn turned(image: &[u8]) -> Vec<u8> {
 
 fn refusal(world: &World) -> Status {
     match world.view().trouble {
-        Some(Trouble::Refused { status, .. }) => status,
+        Some(EipError::Refused { status, .. }) => status,
         other => panic!("it was not refused: {other:?}"),
     }
 }
@@ -107,7 +107,7 @@ fn a_close_is_announced_idle_and_confirmed() {
     world.originator.set_run(generation, true).unwrap();
     world.run(100 * MS);
     world.originator.close();
-    assert_eq!(world.originator.set_image(generation, &image(1)), Err(Trouble::Ended));
+    assert_eq!(world.originator.set_image(generation, &image(1)), Err(EipError::Ended));
     world.until(1000 * MS, |world| world.originator.is_finished());
     assert_eq!((world.view().state, world.view().trouble), (State::Closed, None));
     assert!(!world.adapter.application().run, "the last image was idle");
@@ -126,8 +126,8 @@ fn a_lost_device_is_found_again_and_begins_at_rest() {
     world.run(200 * MS);
     world.cable = false;
     world.until(400 * MS, |world| world.view().state == State::Lost);
-    assert_eq!(world.view().trouble, Some(Trouble::Silent { after: 320 * MS }));
-    assert_eq!(world.originator.set_image(1, &image(8)), Err(Trouble::Outdated));
+    assert_eq!(world.view().trouble, Some(EipError::Silent { after: 320 * MS }));
+    assert_eq!(world.originator.set_image(1, &image(8)), Err(EipError::Outdated));
     let before = world.adapter.application().history.len();
     world.run(30_000 * MS);
     assert!(matches!(world.adapter.application().events.last(), Some(Event::TimedOut(_))));
@@ -136,7 +136,7 @@ fn a_lost_device_is_found_again_and_begins_at_rest() {
     world.run(1000 * MS);
     assert_eq!(world.view().state, State::Open);
     assert_eq!(world.adapter.application().history[before..], [(resting(), false)], "nothing of before is sent again");
-    assert_eq!(world.originator.set_image(1, &image(8)), Err(Trouble::Outdated));
+    assert_eq!(world.originator.set_image(1, &image(8)), Err(EipError::Outdated));
     assert!(world.originator.set_image(2, &image(8)).is_ok());
 }
 
@@ -144,7 +144,7 @@ fn a_lost_device_is_found_again_and_begins_at_rest() {
 fn every_opening_has_a_number_of_its_own() {
     let mut world = World::open(setup(), settings(), "");
     for generation in 2..6 {
-        world.adapter.misbehave(Some(Mischief::Stall));
+        world.adapter.misbehave(Some(AdapterFault::Stall));
         world.until(400 * MS, |world| world.view().state == State::Lost);
         world.adapter.misbehave(None);
         world.until(20_000 * MS, |world| world.view().generation == generation);
@@ -173,7 +173,7 @@ fn opened(frame: &[u8]) -> Option<Open> {
 fn images_go_on_without_tcp() {
     let mut world = World::open(setup(), settings(), "");
     world.tcp = false;
-    world.originator.hung_up(&Trouble::Hangup { what: "the test" });
+    world.originator.hung_up(&EipError::Hangup { what: "the test" });
     world.run(60_000 * MS);
     assert_eq!((world.view().state, world.view().generation), (State::Open, 1));
     world.tcp = true;
@@ -186,12 +186,12 @@ fn images_go_on_without_tcp() {
 #[test]
 fn the_first_image_may_take_ten_seconds() {
     let mut world = World::new(setup(), settings(), "");
-    world.adapter.misbehave(Some(Mischief::Stall));
+    world.adapter.misbehave(Some(AdapterFault::Stall));
     world.until(100 * MS, |world| world.view().state == State::Open);
     world.run(9_900 * MS);
     assert_eq!((world.view().state, world.view().input), (State::Open, None));
     world.until(200 * MS, |world| world.view().state == State::Lost);
-    assert_eq!(world.view().trouble, Some(Trouble::Silent { after: 10_000 * MS }));
+    assert_eq!(world.view().trouble, Some(EipError::Silent { after: 10_000 * MS }));
 }
 
 #[test]
@@ -217,16 +217,16 @@ fn the_adapter_waits_ten_seconds_for_the_first_image_and_the_time_out_for_the_ne
 fn what_an_adapter_can_do_wrong_is_noticed() {
     // What it does, and whether the connection is lost by it.
     let cases = [
-        (Mischief::Drop, false),
-        (Mischief::Double, false),
-        (Mischief::Stall, true),
-        (Mischief::Stale, true),
-        (Mischief::WrongSequence, true),
-        (Mischief::WrongId, true),
-        (Mischief::WrongSize, true),
-        (Mischief::Reset, false),
-        (Mischief::Mute, false),
-        (Mischief::Garbage, false),
+        (AdapterFault::Drop, false),
+        (AdapterFault::Double, false),
+        (AdapterFault::Stall, true),
+        (AdapterFault::Stale, true),
+        (AdapterFault::WrongSequence, true),
+        (AdapterFault::WrongId, true),
+        (AdapterFault::WrongSize, true),
+        (AdapterFault::Reset, false),
+        (AdapterFault::Mute, false),
+        (AdapterFault::Garbage, false),
     ];
     for (mischief, loses) in cases {
         let mut world = World::open(setup(), settings(), "");
@@ -240,9 +240,9 @@ fn what_an_adapter_can_do_wrong_is_noticed() {
             "{mischief:?} {statistics:?}"
         );
         match mischief {
-            Mischief::Drop => assert!(statistics.lost > 20 && statistics.late > 20),
-            Mischief::Double | Mischief::Stale => assert!(statistics.stale >= 15),
-            Mischief::WrongSize => assert!(statistics.misfit >= 15),
+            AdapterFault::Drop => assert!(statistics.lost > 20 && statistics.late > 20),
+            AdapterFault::Double | AdapterFault::Stale => assert!(statistics.stale >= 15),
+            AdapterFault::WrongSize => assert!(statistics.misfit >= 15),
             _ => {}
         }
     }
@@ -250,11 +250,11 @@ fn what_an_adapter_can_do_wrong_is_noticed() {
 
 #[test]
 fn an_adapter_that_answers_nothing_ends_the_opening() {
-    type IsIt = fn(&Trouble) -> bool;
-    let cases: [(Mischief, IsIt); 3] = [
-        (Mischief::Mute, |trouble| matches!(trouble, Trouble::NoAnswer { what: "RegisterSession", .. })),
-        (Mischief::Reset, |trouble| matches!(trouble, Trouble::Hangup { what: "ForwardOpen" })),
-        (Mischief::Garbage, |trouble| matches!(trouble, Trouble::Malformed { what: "ForwardOpen", .. })),
+    type IsIt = fn(&EipError) -> bool;
+    let cases: [(AdapterFault, IsIt); 3] = [
+        (AdapterFault::Mute, |trouble| matches!(trouble, EipError::NoAnswer { what: "RegisterSession", .. })),
+        (AdapterFault::Reset, |trouble| matches!(trouble, EipError::Hangup { what: "ForwardOpen" })),
+        (AdapterFault::Garbage, |trouble| matches!(trouble, EipError::Malformed { what: "ForwardOpen", .. })),
     ];
     for (mischief, is_it) in cases {
         let mut world = World::new(setup(), settings(), "");
@@ -271,12 +271,12 @@ fn nobody_there_is_told_at_once() {
     let mut world = World::new(setup(), settings(), "");
     world.tcp = false;
     world.until(100 * MS, |world| world.originator.is_finished());
-    assert!(matches!(world.view().trouble, Some(Trouble::Unreachable { .. })));
+    assert!(matches!(world.view().trouble, Some(EipError::Unreachable { .. })));
     let mut world = World::new(setup(), settings(), "");
     world.cable = false;
     world.until(3000 * MS, |world| world.originator.is_finished());
     let after = Duration::from_secs(3);
-    assert_eq!(world.view().trouble, Some(Trouble::NoAnswer { what: "the TCP connection", after }));
+    assert_eq!(world.view().trouble, Some(EipError::NoAnswer { what: "the TCP connection", after }));
 }
 
 /// A lost answer to ForwardOpen: the device may hold the connection, so it is closed in any case.
@@ -288,7 +288,7 @@ fn an_opening_of_unknown_outcome_is_closed() {
     world.run(2900 * MS);
     world.cable = true;
     world.until(10_000 * MS, |world| world.originator.is_finished());
-    assert!(matches!(world.view().trouble, Some(Trouble::NoAnswer { what: "ForwardOpen", .. })));
+    assert!(matches!(world.view().trouble, Some(EipError::NoAnswer { what: "ForwardOpen", .. })));
     let events = &world.adapter.application().events;
     assert!(matches!(events[..], [Event::Opened(_), Event::Closed(_)]), "{events:?}");
 }

@@ -7,10 +7,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use armctl::transport::eip::adapter::{Adapter, Application, Event, Output, Setup};
+use armctl::transport::eip::error::EipError;
 use armctl::transport::eip::originator::{Action, Numbers, Originator, State, View};
 use armctl::transport::eip::session::{Ask, Token};
 use armctl::transport::eip::settings::{Multiplier, Settings};
-use armctl::transport::eip::trouble::Trouble;
 use armctl::transport::eip::wire::{Command, Cyclic, Identity, Revision};
 use armctl::transport::eip::{IO_PORT, Now, PORT};
 use armctl::transport::fault::{FaultSpec, Faults};
@@ -106,7 +106,7 @@ pub struct World {
     pub tcp: bool,
     /// Whether anything gets through at all.
     pub cable: bool,
-    pub answers: Vec<(Token, Result<Vec<u8>, Trouble>)>,
+    pub answers: Vec<(Token, Result<Vec<u8>, EipError>)>,
     /// Every frame that was sent on TCP, with the way it went.
     pub frames: Vec<(bool, Vec<u8>)>,
     /// Every cyclic datagram that was sent to the adapter.
@@ -275,7 +275,7 @@ impl World {
             }
             Packet::Refused(connection) if connection == current => {
                 let text = "refused".to_owned();
-                self.originator.hung_up(&Trouble::Unreachable { kind: std::io::ErrorKind::ConnectionRefused, text });
+                self.originator.hung_up(&EipError::Unreachable { kind: std::io::ErrorKind::ConnectionRefused, text });
             }
             Packet::ToAdapter(connection, bytes) if connection == current || bytes[0] == 0x66 => {
                 self.adapter.received(self.now, connection.into(), &bytes);
@@ -285,7 +285,7 @@ impl World {
             }
             Packet::HangUp(connection) if connection == current => {
                 self.adapter.hung_up(connection.into());
-                self.originator.hung_up(&Trouble::Hangup { what: "the test" });
+                self.originator.hung_up(&EipError::Hangup { what: "the test" });
             }
             Packet::ImageOut(to, bytes) if to == SocketAddrV4::new(THERE, IO_PORT) => {
                 self.adapter.hear(self.now, SocketAddrV4::new(HERE, IO_PORT), &bytes);

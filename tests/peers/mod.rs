@@ -13,7 +13,7 @@ mod mock;
 use std::net::SocketAddr;
 
 use armctl::command::yerc::link::{Link, Yerc};
-use armctl::command::{Access, Family as _, Need};
+use armctl::command::{Access, ConnectMode, Family as _};
 use armctl::controller::Risk;
 use armctl::controller::yerc::Model;
 use armctl::output::{ColorChoice, Format, Screen};
@@ -30,7 +30,7 @@ async fn connect_with(url: &str, timeout: Option<std::time::Duration>) -> Link {
     let mut sources = Sources { selection, ..Sources::default() };
     sources.flags.timeout = timeout;
     let robots = sources.robots(Some(Family::Yerc)).unwrap();
-    let access = Access { granted: armctl::gate::Grant::of(Risk::Motion), ..Access::reading(Need::Command) };
+    let access = Access { granted: armctl::gate::Grant::of(Risk::Motion), ..Access::reading(ConnectMode::Control) };
     let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
     Yerc::connect(&robots[0], access, &screen).await.unwrap()
 }

@@ -51,7 +51,7 @@ fn validator(id: &str) -> Result<Arc<Validator>, String> {
 }
 
 fn schema(id: &str) -> Result<Value, String> {
-    let entry = armctl::command::common::schema::all().into_iter().find(|entry| entry.id == id);
+    let entry = armctl::command::about::schema::all().into_iter().find(|entry| entry.id == id);
     Ok((entry.ok_or_else(|| format!("`armctl schema` does not know {id}"))?.schema)().to_value())
 }
 

@@ -13,9 +13,9 @@ use tokio::time::timeout;
 
 use super::Candidate;
 use crate::app::parser::Parser;
-use crate::app::ready::{Wanted, Work};
-use crate::command::authority::Authority;
-use crate::command::{Access, AnyCommand, Context, Family as CommandFamily};
+use crate::app::prepared::{Invocation, Task};
+use crate::command::frame::authority::Authority;
+use crate::command::{Access, AnyContext};
 use crate::output::{ColorChoice, Format, Screen, escape};
 use crate::settings::target::Family;
 use crate::settings::{Robot, Sessions, Setting, Sources};
@@ -158,23 +158,18 @@ impl Asker {
             return None;
         }
         let args: Vec<_> = ["armctl"].iter().chain(words).map(Into::into).collect();
-        match Wanted::from(Parser::default().parse(&args).ok()?.command) {
-            Wanted::Work(Work::Yerc(command)) => self.report(&*command).await,
-            Wanted::Work(Work::Yrcx(_, command)) => self.report(&*command).await,
-            _ => None,
-        }
-    }
-
-    async fn report<F: CommandFamily>(&self, command: &dyn AnyCommand<F>) -> Option<Value> {
+        let Invocation::Task(Task::Family(_, command)) = Parser::default().parse(&args).ok()?.command.into() else {
+            return None;
+        };
         let typed = Some(Arc::from("completion of a command line"));
-        let access = Access { typed, ..Access::reading(command.need()) };
+        let access = Access { typed, ..Access::reading(command.connect_mode()) };
         let screen = Screen::new(Format::Json, ColorChoice::Never, true, 0).silenced();
         let robot = &self.robot;
-        let mut link = F::connect(robot, access, &screen).await.ok()?;
+        let mut connection = command.connect(robot, access, &screen).await.ok()?;
         let authority = Authority::reading(&screen, robot);
-        let context = Context { robot, link: &mut link, screen: &screen, several: false, authority };
+        let context = AnyContext { robot, connection: &mut *connection, screen: &screen, several: false, authority };
         let report = command.run(context).await;
-        F::close(link, &screen).await.ok()?;
+        connection.close(&screen).await.ok()?;
         report.ok()?.data().ok()
     }
 }

@@ -9,7 +9,7 @@ use std::ffi::OsString;
 use clap::ValueEnum as _;
 
 use super::{Candidate, complete};
-use crate::command::common::completions::Shell;
+use crate::command::about::completions::Shell;
 
 /// The variable that turns a command line into a question.
 const ASKED: &str = "ARMCTL_COMPLETE";

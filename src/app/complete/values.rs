@@ -9,20 +9,18 @@ use clap::{ArgMatches, Args as _, Command, FromArgMatches as _};
 
 use super::Candidate;
 use super::live::{self, Wish};
-use crate::app::ready::{Need, sources};
+use crate::app::prepared::{Need, sources};
 use crate::cli::Globals;
 use crate::command::ValueKind;
-use crate::command::common::{help, schema};
-use crate::controller::toyo;
+use crate::command::about::{help, schema};
+use crate::command::families::{self, FAMILIES};
 use crate::controller::toyo::table::instructions::INSTRUCTIONS;
 use crate::controller::toyo::table::palletizing::RECORDS;
 use crate::controller::toyo::table::parameters::PARAMETERS;
-use crate::controller::yerc::status;
 use crate::controller::yrcx::signal::{Side, Signal};
-use crate::controller::yrcx::{alarm, table};
+use crate::controller::yrcx::table;
 use crate::settings::Sources;
 use crate::settings::inventory::{Inventory, Location};
-use crate::settings::target::Family;
 use crate::transport::session::place::{Place, Spot};
 
 /// What the rest of the line says about robots and settings.
@@ -97,10 +95,12 @@ fn all(kind: ValueKind, context: &Context) -> Vec<Candidate> {
         ValueKind::RobotOrUrl => [robots(context), urls()].concat(),
         ValueKind::Tag => tags(context),
         ValueKind::Url => urls(),
-        ValueKind::Family => FAMILIES.map(|(family, about)| Candidate::new(family.name(), about)).into(),
+        ValueKind::Family => FAMILIES.map(|face| Candidate::new(face.family().name(), face.title())).into(),
         ValueKind::HelpWord => help::topics().map(|(name, about)| Candidate::new(name, about)).collect(),
         ValueKind::Schema => schema::all().iter().map(|entry| Candidate::new(entry.id, "")).collect(),
-        ValueKind::Code(family) => codes(family),
+        ValueKind::Code(family) => {
+            families::of(family).codes().into_iter().map(|(code, name)| Candidate::new(code, name)).collect()
+        }
         ValueKind::YercJob => context.live(Wish::Jobs),
         ValueKind::YercFile => context.live(Wish::Files),
         ValueKind::YrcxTask => context.live(Wish::Tasks),
@@ -141,32 +141,9 @@ fn tags(context: &Context) -> Vec<Candidate> {
 
 /// How target URLs begin. What follows is nobody's guess.
 fn urls() -> Vec<Candidate> {
-    let urls = [
-        Candidate::new("sim:", "the built-in simulator"),
-        Candidate::new("udp://", "yerc: name or address of the controller"),
-        Candidate::new("eip://", "yrcx: name or address of the network board"),
-        Candidate::new("serial://", "toyo: a port of this machine, as in serial:///dev/ttyUSB0 or serial://COM3"),
-        Candidate::new("tcp://", "toyo: HOST:PORT of a serial device server"),
-    ];
-    urls.map(Candidate::begun).into()
-}
-
-const FAMILIES: [(Family, &str); 3] =
-    [(Family::Yerc, "Yaskawa FS100 / DX200"), (Family::Yrcx, "OMRON / Yamaha YRCX"), (Family::Toyo, "Toyo")];
-
-fn codes(family: Family) -> Vec<Candidate> {
-    match family {
-        Family::Yerc => {
-            let statuses = status::all_statuses().map(|row| Candidate::new(format!("0x{:02X}", row.code), row.name));
-            statuses
-                .chain(status::all_added().map(|row| Candidate::new(format!("0x{:04X}", row.code), row.name)))
-                .collect()
-        }
-        Family::Yrcx => alarm::KNOWN.iter().map(|known| Candidate::new(known.alarm.to_string(), known.text)).collect(),
-        Family::Toyo => {
-            toyo::errors::all().map(|code| Candidate::new(format!("{:02X}", code.code), code.name)).collect()
-        }
-    }
+    let simulator = ("sim:".to_owned(), "the built-in simulator");
+    let urls = FAMILIES.iter().flat_map(|face| face.urls());
+    std::iter::once(simulator).chain(urls).map(|(url, about)| Candidate::new(url, about).begun()).collect()
 }
 
 /// What references to variables of a yerc controller begin with.

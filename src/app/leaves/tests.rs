@@ -5,16 +5,17 @@ use clap::CommandFactory as _;
 use clap::Parser as _;
 
 use super::*;
-use crate::app::ready::{Wanted, Work};
+use crate::app::prepared::{Invocation, Task};
 use crate::cli::Cli;
+use crate::command::AnyCommand;
 use crate::command::common::Common;
-use crate::command::run::Run;
-use crate::command::{AnyCommand, Family};
+use crate::command::frame::run::Run;
 use crate::failure::{Failure, Kind};
 use crate::gate::Intent;
 use crate::output::redraw::Redraw;
 use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::inventory::Inventory;
+use crate::settings::target::Family;
 use crate::settings::{Selection, Sources};
 
 const STOPS: [&str; 4] = ["yerc hold on", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
@@ -51,7 +52,7 @@ fn run(selection: Selection) -> Run {
         screen: Screen::new(Format::Json, ColorChoice::Never, true, 0),
         sources: Sources { selection, inventory, ..Sources::default() },
         gate: crate::gate::Gate::default(),
-        repeat: crate::command::run::Repeat::default(),
+        repeat: crate::command::frame::run::Repeat::default(),
         filter: None,
         trace: None,
         line: None,
@@ -73,7 +74,7 @@ struct Seen {
 }
 
 fn seen(line: &str) -> Result<Seen, String> {
-    fn of<F: Family>(command: &dyn AnyCommand<F>, family: &str) -> Seen {
+    fn of(command: &dyn AnyCommand, family: &str) -> Seen {
         Seen {
             intent: command.intent(None),
             alone: run(named(family)).check_gate(command),
@@ -83,14 +84,15 @@ fn seen(line: &str) -> Result<Seen, String> {
     }
     let words = std::iter::once("armctl").chain(line.split(' '));
     let cli = Cli::try_parse_from(words).map_err(|error| format!("{line}: {error}"))?;
-    Ok(match Wanted::from(cli.command) {
-        Wanted::Work(Work::Yerc(command)) => of(&*command, "yerc"),
-        Wanted::Work(Work::Yrcx(_, command)) => of(&*command, "yrcx"),
-        Wanted::Work(Work::Toyo(command)) => of(&*command, "toyo"),
-        Wanted::Work(Work::Common(Common::Status(command))) => of(&command, "toyo"),
-        Wanted::Work(Work::Common(Common::Backup(command))) => of(&command, "toyo"),
-        Wanted::Work(Work::Common(Common::Restore(command))) => of(&command, "toyo"),
-        Wanted::Work(Work::Common(Common::Diff(command))) => of(&command, "toyo"),
+    Ok(match Invocation::from(cli.command) {
+        Invocation::Task(Task::Family(_, command)) => {
+            let family = command.family().map_or("toyo", Family::name);
+            of(&*command, family)
+        }
+        Invocation::Task(Task::Common(Common::Status(command))) => of(&command, "toyo"),
+        Invocation::Task(Task::Common(Common::Backup(command))) => of(&command, "toyo"),
+        Invocation::Task(Task::Common(Common::Restore(command))) => of(&command, "toyo"),
+        Invocation::Task(Task::Common(Common::Diff(command))) => of(&command, "toyo"),
         _ => return Err(format!("{line} is for no robot")),
     })
 }

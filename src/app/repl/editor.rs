@@ -12,7 +12,7 @@ use tokio::sync::mpsc;
 
 use super::assistant::Assistant;
 use super::prompt::Prompt;
-use crate::command::local::state_folder;
+use crate::command::frame::local::state_folder;
 use crate::failure::Failure;
 use crate::output::{Screen, escape};
 

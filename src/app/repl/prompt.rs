@@ -4,8 +4,9 @@ use std::time::Duration;
 
 use tokio::time::timeout;
 
-use crate::command::line::Line;
-use crate::command::overview::{self, OverviewReport};
+use crate::command::face::overview::OverviewReport;
+use crate::command::fleet::status;
+use crate::command::frame::script_line::Line;
 use crate::output::render::painted;
 use crate::output::view::{Cell, Tone};
 use crate::output::{Screen, escape};
@@ -17,7 +18,7 @@ const PATIENCE: Duration = Duration::from_millis(500);
 /// How the robot is, asked over the link that is held.
 pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Seen {
     let screen = screen.silenced();
-    match timeout(PATIENCE, overview::look(robot, line, &screen)).await {
+    match timeout(PATIENCE, status::look(robot, line, &screen)).await {
         Ok(Ok(state)) => Seen::State(state),
         _ => Seen::Silent,
     }

@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Toyo;
 use super::link::wrong;
 use super::numbers::small;
 use crate::command::{Command, Context, Report};
@@ -22,11 +22,11 @@ use crate::output::view::{Cell, View};
 pub struct Bus {}
 
 impl Command for Bus {
-    type Family = Family;
+    type Family = Toyo;
     type Report = CcLink;
     const ID: &'static str = "toyo.bus";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<CcLink, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<CcLink, Failure> {
         let page = |form| Request::in_form(table::Command::Mbus, form, Vec::new()).map_err(|error| wrong(&error));
         let (settings, errors) = (page(0)?, page(1)?);
         context.link.dry_run(&[settings.clone(), errors.clone()])?;

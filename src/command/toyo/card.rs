@@ -4,9 +4,9 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Toyo;
 use super::waiting::{Accepted, Work};
-use crate::command::dry_run::{Known as _, unknown};
+use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
@@ -16,7 +16,7 @@ use crate::output::view::{Cell, Tone, View};
 
 commands! {
     /// The memory card.
-    pub enum Card of Family {
+    pub enum Card {
         /// Read everything from the card, over what the controller holds
         Read(Read),
         /// Write everything that the controller holds to the card
@@ -41,7 +41,7 @@ pub struct Write {
 }
 
 impl Command for Read {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Transferred;
     const ID: &'static str = "toyo.card.read";
 
@@ -53,7 +53,7 @@ impl Command for Read {
         "replace programs, tables and parameters of the controller by those on the memory card".to_owned()
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Transferred, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
         let work = Accepted {
             work: Work::Card,
             order: table::Command::Rmca,
@@ -65,7 +65,7 @@ impl Command for Read {
 }
 
 impl Command for Write {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Transferred;
     const ID: &'static str = "toyo.card.write";
 
@@ -77,7 +77,7 @@ impl Command for Write {
         "overwrite what is on the memory card".to_owned()
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Transferred, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
         let work = Accepted {
             work: Work::Card,
             order: table::Command::Wmca,
@@ -88,7 +88,7 @@ impl Command for Write {
     }
 }
 
-async fn transfer(context: Context<'_, Family>, work: Accepted, no_wait: bool) -> Result<Transferred, Failure> {
+async fn transfer(context: Context<'_, Toyo>, work: Accepted, no_wait: bool) -> Result<Transferred, Failure> {
     let link = context.link;
     link.order(&Request::bare(work.order)).await?;
     if no_wait {

@@ -1,9 +1,9 @@
 //! The layers of a controller for `armctl robots check`.
 
-use super::Family;
 use super::info;
 use super::link::Link;
-use crate::command::checks::{Layer, Layers};
+use super::link::Toyo;
+use crate::command::face::layers::{Layer, Layers};
 use crate::command::{Access, Family as _};
 use crate::controller::toyo::errors;
 use crate::controller::toyo::status::RunMode;
@@ -17,12 +17,12 @@ const LAYERS: &[&str] =
 /// Looks at them; reads only.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
     let mut layers = Layers::new(robot.label(), LAYERS);
-    match Family::connect(robot, access, screen).await {
+    match Toyo::connect(robot, access, screen).await {
         Err(failure) => layers.fail("line", &failure),
         Ok(mut link) => {
             layers.ok("line", format!("{} is open", robot.target.value));
             look(&mut link, &mut layers).await;
-            Family::close(link, screen).await?;
+            Toyo::close(link, screen).await?;
         }
     }
     Ok(layers.finish())

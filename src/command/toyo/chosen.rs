@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::command::local::state_folder;
+use crate::command::frame::local::state_folder;
 use crate::files;
 
 /// What was chosen for one robot.

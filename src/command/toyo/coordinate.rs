@@ -2,9 +2,9 @@
 
 use clap::Args;
 
-use super::Family;
+use super::link::Toyo;
 use super::link::wrong;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::{Command, Context, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
@@ -14,7 +14,7 @@ use crate::failure::Failure;
 
 commands! {
     /// Coordinates that the host supplies.
-    pub enum Coordinate of Family {
+    pub enum Coordinate {
         /// Supply coordinates to an RSMV, which moves there
         Set(Set),
     }
@@ -68,7 +68,7 @@ impl Set {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.coordinate.set";
 
@@ -80,7 +80,7 @@ impl Command for Set {
         format!("have the next RSMV of task {} move to {}", field("task").meaning(&self.task), self.aim())
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let Self { x, y, z, r, task, speed } = self;
         let values = [task, x, y, z, r, speed].map(Clone::clone).into();
         let request = Request::new(table::Command::Mrss, values).map_err(|error| wrong(&error))?;

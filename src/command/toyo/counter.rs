@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::items::{self, Item, read_each};
+use super::link::Toyo;
 use super::numbers::{Numbers, not_held, number, read_back, small};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -18,7 +18,7 @@ use crate::output::view::{Table, View};
 
 commands! {
     /// What can be done with counters.
-    pub enum Counter of Family {
+    pub enum Counter {
         /// Read counters 1 to 99
         Get(Get),
         /// Set a counter
@@ -51,11 +51,11 @@ fn fields() -> &'static [Field] {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Counters;
     const ID: &'static str = "toyo.counter.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Counters, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Counters, Failure> {
         let numbers = Numbers::of(&self.counters, &fields()[0]);
         let requests = numbers.iter().map(|number| Request::of(table::Command::Mcnt, [Value::Number(*number)]));
         let requests: Vec<Request> = requests.collect();
@@ -68,7 +68,7 @@ impl Command for Get {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Count;
     const ID: &'static str = "toyo.counter.set";
 
@@ -76,7 +76,7 @@ impl Command for Set {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Count, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Count, Failure> {
         let Self { counter, value } = *self;
         let values = [Value::Number(counter), Value::Number(value)];
         let (link, order) = (context.link, Request::of(table::Command::Mcst, values));

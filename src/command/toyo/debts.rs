@@ -11,7 +11,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use serde::{Deserialize, Serialize};
 
 use super::link::Moving;
-use crate::command::local::state_folder;
+use crate::command::frame::local::state_folder;
 use crate::files;
 
 /// What is changed and not put back.

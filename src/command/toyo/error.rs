@@ -4,11 +4,11 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::link::Link;
+use super::link::Toyo;
 use super::status::ErrorCode;
 use super::waiting::{becomes, status_page};
-use crate::command::dry_run::unknown;
+use crate::command::frame::dry_run::unknown;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::errors;
@@ -21,7 +21,7 @@ use crate::output::view::{Cell, Table, Tone, View};
 
 commands! {
     /// Errors.
-    pub enum Error of Family {
+    pub enum Error {
         /// The error that is present, with cause and remedy
         Show(Show),
         /// The errors of the past, the latest first
@@ -38,11 +38,11 @@ commands! {
 pub struct Show {}
 
 impl Command for Show {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Present;
     const ID: &'static str = "toyo.error.show";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Present, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Present, Failure> {
         let link = context.link;
         if link.is_dry() {
             link.plan(&status_page(0), "whether there is an error");
@@ -106,11 +106,11 @@ pub struct History {
 }
 
 impl Command for History {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Past;
     const ID: &'static str = "toyo.error.history";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Past, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Past, Failure> {
         let link = context.link;
         let question = |number| Request::of(table::Command::Ehtr, [Value::Number(number)]);
         if link.is_dry() {
@@ -206,7 +206,7 @@ impl Report for Past {
 pub struct Cancel {}
 
 impl Command for Cancel {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Cancelled;
     const ID: &'static str = "toyo.error.cancel";
 
@@ -214,7 +214,7 @@ impl Command for Cancel {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Cancelled, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Cancelled, Failure> {
         let link = context.link;
         link.order(&Request::bare(table::Command::Cerr)).await?;
         if becomes(link, (0, "whether it is gone"), |status| !status.has_error()).await? {
@@ -252,11 +252,11 @@ impl Report for Cancelled {
 pub struct Point {}
 
 impl Command for Point {
-    type Family = Family;
+    type Family = Toyo;
     type Report = PointReport;
     const ID: &'static str = "toyo.error.point";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<PointReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<PointReport, Failure> {
         let record = context.link.read(&Request::bare(table::Command::Merp)).await?;
         let point = record.text("point").map(str::trim).filter(|point| !point.is_empty());
         Ok(PointReport { point: point.map(ToOwned::to_owned) })

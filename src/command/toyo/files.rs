@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use crate::command::local::Target;
+use crate::command::frame::local::Target;
 use crate::controller::toyo::findings::Finding;
 use crate::failure::Failure;
 use crate::files;

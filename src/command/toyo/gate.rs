@@ -6,8 +6,8 @@ use std::time::Duration;
 use serde_json::Value;
 
 use super::testing::{Bench, Fate, Heard, gated, plan, text};
-use crate::command::Noun as _;
-use crate::command::testing::{QUIET, frames};
+use crate::command::CommandSet as _;
+use crate::command::frame::testing::{QUIET, frames};
 use crate::controller::Risk::{self, Destroy, Motion, Read, Write};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::commands::Row;
@@ -110,7 +110,7 @@ fn every_command_is_here() {
         LINES.iter().map(|(line, _)| id(line)).collect()
     };
     let desk = ["toyo.ports", "toyo.program.check", "toyo.sim.run"];
-    let missing: Vec<&str> = super::Toyo::schemas().iter().map(|entry| entry.id).collect();
+    let missing: Vec<&str> = super::commands::Commands::schemas().iter().map(|entry| entry.id).collect();
     let missing: Vec<&str> = missing.into_iter().filter(|id| !here.contains(id) && !desk.contains(id)).collect();
     assert!(missing.is_empty(), "{missing:?}");
 }

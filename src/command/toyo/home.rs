@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Toyo;
 use super::position::Place;
 use super::waiting::{Accepted, Work};
 use crate::command::{Command, Context, Report};
@@ -45,7 +45,7 @@ impl Home {
 }
 
 impl Command for Home {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Homed;
     const ID: &'static str = "toyo.home";
 
@@ -60,7 +60,7 @@ impl Command for Home {
         }
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Homed, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Homed, Failure> {
         let link = context.link;
         let (order, accepted) = self.order();
         link.order(&order).await?;

@@ -2,10 +2,10 @@
 
 use clap::Args;
 
-use super::Family;
+use super::link::Toyo;
 use super::orders::not_so;
 use super::waiting::becomes;
-use crate::command::orders::{Done, Switch};
+use crate::command::frame::orders::{Done, Switch};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
@@ -23,7 +23,7 @@ pub struct Host {
 }
 
 impl Command for Host {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.host";
 
@@ -31,7 +31,7 @@ impl Command for Host {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (command, is_on, done) = match self.to {
             Switch::On => (table::Command::Hson, true, "the host commands; the start input does not"),
             Switch::Off => (table::Command::Hsof, false, "the start input commands again; the host does not"),

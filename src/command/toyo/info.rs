@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::link::Link;
+use super::link::Toyo;
 use super::numbers::small;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::field::Value;
@@ -24,11 +24,11 @@ pub struct Info {}
 const STATIONS: [u8; 5] = [0, 1, 2, 3, 4];
 
 impl Command for Info {
-    type Family = Family;
+    type Family = Toyo;
     type Report = About;
     const ID: &'static str = "toyo.info";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<About, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<About, Failure> {
         let link = context.link;
         let system = Request::bare(table::Command::Sysp);
         let version = |station: u8| Request::of(table::Command::Cver, [Value::Number(station.into())]);

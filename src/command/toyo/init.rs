@@ -6,11 +6,11 @@ use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::link::Link;
+use super::link::Toyo;
 use super::task;
 use super::waiting::status_page;
-use crate::command::dry_run::{Known as _, unknown};
+use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -71,7 +71,7 @@ impl What {
 }
 
 impl Command for Init {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Cleared;
     const ID: &'static str = "toyo.init";
 
@@ -88,7 +88,7 @@ impl Command for Init {
         Confirmation::Word(self.what.row().0)
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Cleared, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Cleared, Failure> {
         let Context { link, screen, .. } = context;
         let (name, number, words) = self.what.row();
         let clear = Request::of(table::Command::Mint, [Value::Word(number)]);

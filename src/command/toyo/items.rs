@@ -9,7 +9,7 @@ use super::cells::THERE;
 use super::link::{Link, Refusal};
 use super::refusal;
 use super::values::NOT_IN_MANUAL;
-use crate::command::dry_run::unknown;
+use crate::command::frame::dry_run::unknown;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::failure::{Failure, Kind};

@@ -10,14 +10,14 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::{Instant, sleep, sleep_until, timeout_at};
 
-use super::Family;
 use super::letters::Letters;
+use super::link::Toyo;
 use super::link::{Link, Moving, jog};
 use super::position::{Place, titled};
 use super::refusal;
 use super::waiting::{LOOK_EVERY, position, present_error, status_page};
-use crate::command::dry_run::Reason;
-use crate::command::interrupt::abandoned;
+use crate::command::frame::dry_run::Reason;
+use crate::command::frame::interrupt::abandoned;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
@@ -319,7 +319,7 @@ async fn try_look(link: &mut Link) -> Result<(bool, Place), Cut> {
 }
 
 impl Command for Jog {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Jogged;
     const ID: &'static str = "toyo.jog";
 
@@ -336,7 +336,7 @@ impl Command for Jog {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Jogged, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Jogged, Failure> {
         if self.within.is_some() && self.speed == Speed::Inch {
             return Err(Failure::usage("an inching step takes no time").hint("leave --for out; --steps makes several"));
         }

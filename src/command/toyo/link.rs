@@ -15,15 +15,15 @@ use serde_json::json;
 use tokio::time::Instant;
 
 use super::chosen::Chosen;
+use super::connect;
 use super::debts::{Debts, Left};
 use super::letters::Letters;
 use super::position::Place;
-use super::reach;
 use super::refusal;
 use super::trace::Trace;
 use super::wear::Wear;
-use crate::command::attach::hindered;
-use crate::command::dry_run::{Plan, Reason, unknown};
+use crate::command::frame::attach::session_busy;
+use crate::command::frame::dry_run::{Plan, Reason, unknown};
 use crate::command::{Access, Family};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
@@ -139,13 +139,13 @@ impl Family for Toyo {
     type Link = Link;
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
-        let way = reach::way(robot)?;
+        let endpoint = connect::endpoint(robot)?;
         let transport = if access.dry_run {
             Transport::Notes(Plan::default())
         } else {
-            Transport::Stream(Box::new(Box::pin(reach::open(robot, &access, screen)).await?))
+            Transport::Stream(Box::new(Box::pin(connect::open(robot, &access, screen)).await?))
         };
-        let mut link = Link::new(robot, &access, screen, transport, way.character())?;
+        let mut link = Link::new(robot, &access, screen, transport, endpoint.character())?;
         link.again = Some((robot.clone(), access));
         Ok(link)
     }
@@ -165,7 +165,7 @@ impl Family for Toyo {
         link.moving == Some(Moving::Jog)
     }
 
-    fn rehearsed(link: &mut Link) -> Plan {
+    fn planned(link: &mut Link) -> Plan {
         link.plan_end();
         match &mut link.transport {
             Transport::Notes(plan) => std::mem::take(plan),
@@ -462,7 +462,7 @@ impl Link {
             }
             stream.take(until).await
         };
-        turn.await.map_err(|hindrance| hindered(&self.label, &hindrance))
+        turn.await.map_err(|hindrance| session_busy(&self.label, &hindrance))
     }
 
     async fn drive_alone(&mut self, risk: Risk) -> Result<Ended, Failure> {

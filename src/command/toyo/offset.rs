@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::Family;
+use super::link::Toyo;
 use super::position::Place;
 use crate::command::{Command, Context};
 use crate::controller::toyo::request::Request;
@@ -14,11 +14,11 @@ use crate::failure::Failure;
 pub struct Offset {}
 
 impl Command for Offset {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Place;
     const ID: &'static str = "toyo.offset";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Place, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Place, Failure> {
         let record = context.link.read(&Request::bare(table::Command::Moff)).await?;
         Ok(Place::of(&record))
     }

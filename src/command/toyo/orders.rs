@@ -4,11 +4,11 @@ use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::link::Moving;
+use super::link::Toyo;
 use super::position::Place;
 use super::waiting::becomes;
-use crate::command::orders::{Done, Switch};
+use crate::command::frame::orders::{Done, Switch};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
@@ -26,7 +26,7 @@ pub struct Servo {
 }
 
 impl Command for Servo {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.servo";
 
@@ -41,7 +41,7 @@ impl Command for Servo {
         }
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let link = context.link;
         let (command, is_on) = match self.to {
             Switch::On => (table::Command::Svon, true),
@@ -118,7 +118,7 @@ pub struct Mode {
 }
 
 impl Command for Mode {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.mode";
 
@@ -126,7 +126,7 @@ impl Command for Mode {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (link, mode) = (context.link, self.mode);
         link.order(&Request::bare(mode.command())).await?;
         if becomes(link, (2, "whether it is in force"), |status| mode.is_in_force(status)).await? {
@@ -146,7 +146,7 @@ pub(super) fn not_so(what: &str) -> Failure {
 pub struct Reset {}
 
 impl Command for Reset {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.reset";
 
@@ -154,7 +154,7 @@ impl Command for Reset {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         context.link.order(&Request::bare(table::Command::Rest)).await?;
         Ok(Done::new("the controller was reset; errors are cancelled by `toyo error cancel`"))
     }
@@ -171,7 +171,7 @@ pub struct Stop {
 }
 
 impl Command for Stop {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Stopped;
     const ID: &'static str = "toyo.stop";
 
@@ -183,7 +183,7 @@ impl Command for Stop {
         true
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Stopped, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stopped, Failure> {
         let moving = if self.jog { Moving::Jog } else { Moving::Program };
         let place = context.link.stop(moving).await?;
         Ok(Stopped { position: Place::of(&place) })

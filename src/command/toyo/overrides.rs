@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::cells::{Cell, Cells};
+use super::link::Toyo;
 use super::link::wrong;
 use super::numbers::{number, small};
 use crate::command::{Command, Context, Report, commands};
@@ -18,7 +18,7 @@ use crate::output::view::View;
 
 commands! {
     /// What can be done with the override.
-    pub enum Override of Family {
+    pub enum Override {
         /// Read the override
         Get(Get),
         /// Write the override to the EEPROM; it counts while no program runs
@@ -52,18 +52,18 @@ fn percent(text: &str) -> Result<i32, String> {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Percent;
     const ID: &'static str = "toyo.override.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Percent, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Percent, Failure> {
         let answer = context.link.read(&Request::bare(table::Command::Rovr)).await?;
         Ok(Percent { override_percent: small(&answer, field().name) })
     }
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Written;
     const ID: &'static str = "toyo.override.set";
 
@@ -71,7 +71,7 @@ impl Command for Set {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Written, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Written, Failure> {
         let value = Value::Number(self.percent);
         let wanted = table::Command::Rovr.row().answers[0].record(vec![value.clone()]);
         let cell = Cell {

@@ -2,7 +2,7 @@
 
 use super::link::Link;
 use super::position::Place;
-use crate::command::overview::{OverviewReport, PositionMm};
+use crate::command::face::overview::{OverviewReport, PositionMm};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::{RunMode, Status};
 use crate::controller::toyo::table::Command;

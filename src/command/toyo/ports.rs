@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::{Desk, Report};
+use crate::command::{OfflineCommand, Report};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::view::{Cell, Table, View};
@@ -18,7 +18,7 @@ use crate::transport::ports::{self, PortInfo, PortKind};
 )]
 pub struct Ports {}
 
-impl Desk for Ports {
+impl OfflineCommand for Ports {
     type Report = List;
     const ID: &'static str = "toyo.ports";
 

@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
@@ -17,11 +17,11 @@ use crate::output::view::{Cell, Section, View};
 pub struct Position {}
 
 impl Command for Position {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Stands;
     const ID: &'static str = "toyo.position";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Stands, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stands, Failure> {
         let link = context.link;
         let letters = link.letters().await?;
         let record = link.read(&Request::bare(table::Command::Mpst)).await?;

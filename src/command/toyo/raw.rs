@@ -4,17 +4,18 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::decode::FieldRow;
 use super::link::Link;
 use super::numbers::small;
-use crate::command::common::decode::toyo::{FieldRow, field_table};
+use crate::command::decode::{field_table, problem_lines};
+use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::describe::{Sender, describe};
 use crate::controller::toyo::request::{Answer, BlockError, Request};
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Section, View};
+use crate::output::view::View;
 
 /// Sends a block as it is: no host ON, no comparison, no waiting for what it does.
 #[derive(Debug, Args)]
@@ -65,7 +66,7 @@ impl Block {
 }
 
 impl Command for Raw {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Exchange;
     const ID: &'static str = "toyo.raw";
 
@@ -78,7 +79,7 @@ impl Command for Raw {
         format!("send {} ({about})", self.block.text())
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Exchange, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Exchange, Failure> {
         let link = context.link;
         let answer = match &self.block {
             Block::Known(request) => {
@@ -148,9 +149,9 @@ impl Exchange {
 
 impl Report for Exchange {
     fn view(&self) -> View {
-        let problem = self.problem.as_ref().map(|problem| format!("\nproblem: {problem}")).unwrap_or_default();
+        let problem = problem_lines(&self.problem);
         let view = View::text(format!("{}\n{}{problem}", self.answer, self.title));
-        if self.fields.is_empty() { view } else { view.and(Section::Table(field_table(&self.fields))) }
+        if self.fields.is_empty() { view } else { view.and(field_table(&self.fields)) }
     }
 
     fn failure(&self) -> Option<Failure> {

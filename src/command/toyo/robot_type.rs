@@ -4,9 +4,9 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Toyo;
 use super::numbers::number;
-use crate::command::dry_run::{Known as _, unknown};
+use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
@@ -38,7 +38,7 @@ fn fields() -> &'static [Field] {
 }
 
 impl Command for RobotType {
-    type Family = Family;
+    type Family = Toyo;
     type Report = InForce;
     const ID: &'static str = "toyo.robot-type";
 
@@ -54,7 +54,7 @@ impl Command for RobotType {
         Confirmation::Word("type")
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<InForce, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<InForce, Failure> {
         let Self { axis, robot_type } = *self;
         let order = Request::of(table::Command::Type, [Value::Number(axis), Value::Number(robot_type)]);
         let Some(answer) = context.link.order_for(&order).await.known()? else {

@@ -7,10 +7,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::cells::Cells;
 use super::items::{self, Item, read_each};
 use super::link;
+use super::link::Toyo;
 use super::numbers::{Numbers, number};
 use super::stores::{self, Store, Work, parameter_cell, parameter_sketch};
 use super::values::{Changes, in_a_line, shown};
@@ -26,7 +26,7 @@ use crate::output::view::{Cell, Table, View};
 
 commands! {
     /// Speeds that programs name by their row.
-    pub enum SpeedTable of Family {
+    pub enum SpeedTable {
         /// Read rows: 1-5,20; without any, all 20
         Get(Get<Speed>),
         /// Write a row: 5 250
@@ -36,7 +36,7 @@ commands! {
 
 commands! {
     /// Acceleration times that programs name by their row.
-    pub enum AccelTable of Family {
+    pub enum AccelTable {
         /// Read rows: 1-5,20; without any, all 20
         Get(Get<Accel>),
         /// Write a row: 5 0.25
@@ -46,7 +46,7 @@ commands! {
 
 commands! {
     /// Torque limits that programs name by their row.
-    pub enum TorqueTable of Family {
+    pub enum TorqueTable {
         /// Read rows: 1-3; without any, all 8
         Get(Get<Torque>),
         /// Write a row: 3 2.5 2.0
@@ -171,11 +171,11 @@ pub fn row_field(table: &'static Parameter) -> &'static Field {
 }
 
 impl<K: Kind> Command for Get<K> {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Rows<K>;
     const ID: &'static str = K::IDS[0];
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Rows<K>, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Rows<K>, Failure> {
         let table = table::<K>();
         let rows = Numbers::of(&self.rows, row_field(table));
         let requests: Result<Vec<Request>, _> =
@@ -188,7 +188,7 @@ impl<K: Kind> Command for Get<K> {
 }
 
 impl<K: Kind> Command for Set<K> {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Stored<K>;
     const ID: &'static str = K::IDS[1];
 
@@ -204,7 +204,7 @@ impl<K: Kind> Command for Set<K> {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Stored<K>, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored<K>, Failure> {
         let Context { link, screen, authority, .. } = context;
         let table = table::<K>();
         let changes = Changes::read(&format!("row {}", self.row), &table.body(), &self.values)?;

@@ -4,11 +4,11 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::link::Link;
+use super::link::Toyo;
 use super::position::Place;
 use super::waiting::{Accepted, End, Work, step};
-use crate::command::dry_run::{Known as _, Reason, unknown};
+use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -21,7 +21,7 @@ use crate::output::view::{Cell, Tone, View};
 
 commands! {
     /// Programs, and moves to a point.
-    pub enum Run of Family {
+    pub enum Run {
         /// Start the sequential program
         Sequential(Sequential),
         /// Start palletizing
@@ -48,7 +48,7 @@ pub struct Sequential {
 }
 
 impl Command for Sequential {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Ran;
     const ID: &'static str = "toyo.run.sequential";
 
@@ -63,7 +63,7 @@ impl Command for Sequential {
         }
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Ran, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Ran, Failure> {
         let start = Request::of(table::Command::Spst, [Value::Number(self.step.unwrap_or(0))]);
         go(context, &start, self.no_wait).await
     }
@@ -81,7 +81,7 @@ pub struct Palletizing {
 }
 
 impl Command for Palletizing {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Ran;
     const ID: &'static str = "toyo.run.palletizing";
 
@@ -93,7 +93,7 @@ impl Command for Palletizing {
         format!("run {}", chosen("palletizing", self.program))
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Ran, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Ran, Failure> {
         choose(context.link, table::Command::Spln, self.program).await?;
         go(context, &Request::bare(table::Command::Ppst), self.no_wait).await
     }
@@ -112,7 +112,7 @@ pub struct Easy {
 }
 
 impl Command for Easy {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Ran;
     const ID: &'static str = "toyo.run.easy";
 
@@ -124,7 +124,7 @@ impl Command for Easy {
         format!("run {}", chosen("easy", self.program))
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Ran, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Ran, Failure> {
         choose(context.link, table::Command::Sesn, self.program).await?;
         go(context, &Request::bare(table::Command::Sesy), self.no_wait).await
     }
@@ -143,7 +143,7 @@ pub struct Point {
 }
 
 impl Command for Point {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Ran;
     const ID: &'static str = "toyo.run.point";
 
@@ -155,7 +155,7 @@ impl Command for Point {
         format!("move the axes to point {} of the coordinate table", self.point)
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Ran, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Ran, Failure> {
         go(context, &Request::of(table::Command::Extp, [Value::Number(self.point)]), self.no_wait).await
     }
 }
@@ -175,7 +175,7 @@ async fn choose(link: &mut Link, command: table::Command, program: Option<i32>) 
 }
 
 /// Starts, and unless told otherwise waits for the end.
-async fn go(context: Context<'_, Family>, start: &Request, no_wait: bool) -> Result<Ran, Failure> {
+async fn go(context: Context<'_, Toyo>, start: &Request, no_wait: bool) -> Result<Ran, Failure> {
     let link = context.link;
     link.order(start).await?;
     if no_wait {

@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::errors;
 use crate::controller::toyo::status::{self, ProgramKind, RunMode};
@@ -16,11 +16,11 @@ use crate::output::view::{Cell, Tone, View};
 pub struct Status {}
 
 impl Command for Status {
-    type Family = Family;
+    type Family = Toyo;
     type Report = StatusReport;
     const ID: &'static str = "toyo.status";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<StatusReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<StatusReport, Failure> {
         Ok(StatusReport::of(context.link.status().await?))
     }
 }

@@ -4,7 +4,7 @@ use super::cells::{Cell, Cells};
 use super::items::plan_twice;
 use super::link::Link;
 use super::values::{self, Shown};
-use crate::command::interrupt::interruptible;
+use crate::command::frame::interrupt::interruptible;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::{Misfit, Record};
 use crate::controller::toyo::request::Request;

@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::link::Link;
+use super::link::Toyo;
 use super::numbers::{not_held, number, read_back, small};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -17,7 +17,7 @@ use crate::output::view::View;
 
 commands! {
     /// What can be done with the current task.
-    pub enum Task of Family {
+    pub enum Task {
         /// Which task is the current one
         Get(Get),
         /// Choose the task whose program and points are read, written and cleared
@@ -49,17 +49,17 @@ pub async fn current(link: &mut Link) -> Result<u8, Failure> {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Current;
     const ID: &'static str = "toyo.task.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Current, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Current, Failure> {
         Ok(Current { task: current(context.link).await? })
     }
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Current;
     const ID: &'static str = "toyo.task.set";
 
@@ -67,7 +67,7 @@ impl Command for Set {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Current, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Current, Failure> {
         let (link, order) = (context.link, Request::of(table::Command::Ctsk, [Value::Number(self.task)]));
         link.order(&order).await?;
         let chosen = u8::try_from(self.task).unwrap_or(u8::MAX);

@@ -9,14 +9,15 @@ use std::time::Duration;
 use clap::Parser as _;
 use serde_json::Value;
 
-use super::Family;
 use super::link::Link;
+use super::link::Toyo;
 use super::link::fence::FENCE;
 use super::simulated::Simulated;
-use crate::cli::{Cli, OfToyo, Top, Verb};
-use crate::command::authority::Authority;
-use crate::command::testing::{QUIET, context, everything, frames, planned};
-use crate::command::{AnyCommand, Context, Family as _, Noun as _};
+use crate::cli::{Cli, FamilyWord, Top};
+use crate::command::face::words::{Typed, Wish};
+use crate::command::frame::authority::Authority;
+use crate::command::frame::testing::{self, QUIET, context, everything, frames, planned};
+use crate::command::{AnyCommand, Context, Family as _};
 use crate::controller::Risk;
 use crate::controller::toyo::simulator::Start;
 use crate::failure::Failure;
@@ -60,7 +61,7 @@ pub(super) fn all_blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
 /// The report of a dry run.
 pub(super) fn plan(words: &[&str]) -> Result<Value, Failure> {
     let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
-    planned(&robot, &*command, |_| ())
+    planned::<Toyo>(&robot, &*command, |_| ())
 }
 
 /// The block of a frame of it.
@@ -166,7 +167,7 @@ impl Bench {
     /// Runs `armctl toyo WORDS…` until Ctrl-C comes after a while; what is said then.
     pub(super) fn interrupted(&mut self, words: &[&str], after: Duration) -> Result<String, Failure> {
         self.left(words, after);
-        self.runtime.block_on(Family::halt(&mut self.link))
+        self.runtime.block_on(Toyo::halt(&mut self.link))
     }
 
     /// Runs `armctl toyo WORDS…` for a while and leaves it there; whether that must not be.
@@ -175,11 +176,11 @@ impl Bench {
         let Self { runtime, robot, link } = self;
         runtime.block_on(async {
             let context = context(robot, link);
-            if let Ok(done) = tokio::time::timeout(after, command.run(context)).await {
+            if let Ok(done) = tokio::time::timeout(after, testing::run::<Toyo>(&*command, context)).await {
                 panic!("{words:?} has ended before: {:?}", done.map(|report| report.data()));
             }
         });
-        Family::must_halt(&self.link)
+        Toyo::must_halt(&self.link)
     }
 
     /// Lets time pass.
@@ -198,14 +199,14 @@ impl Bench {
 
     /// Closes the link.
     pub(super) fn close(self) -> Result<(), Failure> {
-        self.runtime.block_on(Family::close(self.link, &quiet()))
+        self.runtime.block_on(Toyo::close(self.link, &quiet()))
     }
 
     /// A simulator by its URL.
     pub(super) fn new(target: &str) -> Self {
         let runtime = runtime();
         let (robot, _) = resolved(target, &["status"]).expect("a robot");
-        let link = runtime.block_on(Family::connect(&robot, everything(), &quiet())).expect("a link");
+        let link = runtime.block_on(Toyo::connect(&robot, everything(), &quiet())).expect("a link");
         Self { runtime, robot, link }
     }
 
@@ -213,7 +214,7 @@ impl Bench {
     pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link } = self;
-        let report = runtime.block_on(command.run(context(robot, link)))?;
+        let report = runtime.block_on(testing::run::<Toyo>(&*command, context(robot, link)))?;
         Ok((report.data()?, report.failure()))
     }
 
@@ -226,7 +227,7 @@ impl Bench {
         self.link.grant(grant.clone());
         let authority = Authority::new(Gate::default(), &QUIET, &robot, intent.risk, grant);
         let context = Context { robot: &robot, link: &mut self.link, screen: &QUIET, several: false, authority };
-        let came = self.runtime.block_on(command.run(context)).and_then(|report| report.data());
+        let came = self.runtime.block_on(testing::run::<Toyo>(&*command, context)).and_then(|report| report.data());
         self.link.grant(Grant::of(Risk::Motion));
         came
     }
@@ -250,14 +251,14 @@ fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
 }
 
 /// Robot and command of a line.
-fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Family>>), Failure> {
+fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Toyo))?.remove(0);
-    let Top::Toyo(OfToyo::Toyo { verb: Some(Verb::Command(verb)) }) = cli.command else {
-        unreachable!("the words follow toyo")
-    };
-    Ok((robot, verb.command()))
+    match cli.command {
+        Top::Family(FamilyWord { typed: Typed { wish: Wish::Command(command), .. }, .. }) => Ok((robot, command)),
+        _ => unreachable!("the words follow toyo"),
+    }
 }
 
 /// Where tests write: nowhere.

@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::items::{self, Item, read_each};
+use super::link::Toyo;
 use super::numbers::{Numbers, small};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::toyo::field::{Field, Value};
@@ -17,7 +17,7 @@ use crate::output::view::{Cell, Table, View};
 
 commands! {
     /// What can be done with timers: the protocol only reads them.
-    pub enum Timer of Family {
+    pub enum Timer {
         /// Read timers 1 to 9
         Get(Get),
     }
@@ -37,11 +37,11 @@ fn field() -> &'static Field {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Timers;
     const ID: &'static str = "toyo.timer.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Timers, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Timers, Failure> {
         let numbers = Numbers::of(&self.timers, field());
         let requests = numbers.iter().map(|number| Request::of(table::Command::Mtmr, [Value::Number(*number)]));
         let requests: Vec<Request> = requests.collect();

@@ -5,7 +5,7 @@ use super::io::{Bank as Ports, INPUTS, OUTPUTS, ports_of};
 use super::link::{Link, Toyo};
 use super::overview::report;
 use super::position::Place;
-use crate::command::sample::{Alarm, Axis, Bank, Depth, Eight, Lamp, Sample, Whole, clocked};
+use crate::command::face::sample::{Alarm, Axis, Bank, Depth, Eight, Lamp, Sample, Whole, clocked};
 use crate::command::{Access, Family as _};
 use crate::controller::toyo::errors;
 use crate::controller::toyo::layout::Record;

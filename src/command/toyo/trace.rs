@@ -2,8 +2,8 @@
 
 use std::net::SocketAddr;
 
-use crate::command::{Access, trace};
-use crate::controller::text::hex;
+use crate::command::Access;
+use crate::command::frame::trace;
 use crate::controller::toyo::describe::{Sender, summary};
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
@@ -17,11 +17,9 @@ pub struct Trace {
     /// Own address and that of the device server, where there is one.
     ends: Option<(SocketAddr, SocketAddr)>,
     /// Characters of the controller since its last line end.
-    coming: Vec<u8>,
+    pending: Vec<u8>,
     /// The last request: `@OK` and `@NG` do not say what they answer.
     asked: Option<Request>,
-    /// Lines that wait to be written.
-    held: Option<Vec<String>>,
 }
 
 /// Longest piece that is kept for a line of text.
@@ -34,7 +32,7 @@ impl Trace {
             Some(_) => trace::Trace::of_network(access, screen)?,
             None => trace::Trace::of_lines(access, screen)?,
         };
-        Ok(Self { record, ends, coming: Vec::new(), asked: None, held: None })
+        Ok(Self { record, ends, pending: Vec::new(), asked: None })
     }
 
     /// Records characters.
@@ -42,12 +40,7 @@ impl Trace {
         if bytes.is_empty() {
             return;
         }
-        let ends = self.ends;
-        self.record.capture(|capture, time| match (ends, direction) {
-            (Some((own, other)), Direction::Sent) => capture.segment(time, own, other, bytes),
-            (Some((own, other)), Direction::Received) => capture.segment(time, other, own, bytes),
-            (None, _) => capture.line(time, direction, bytes),
-        });
+        self.record.piece(direction, self.ends, bytes);
         if self.record.level() > 0 {
             match direction {
                 Direction::Sent => self.sent(bytes),
@@ -56,16 +49,14 @@ impl Trace {
         }
     }
 
-    /// Writes nothing until [`Trace::release`]: stderr can block for as long as nobody reads it.
+    /// See [`trace::Trace::hold`].
     pub fn hold(&mut self) {
-        self.held.get_or_insert_default();
+        self.record.hold();
     }
 
-    /// Writes what was held.
+    /// See [`trace::Trace::release`].
     pub fn release(&mut self) {
-        for line in self.held.take().unwrap_or_default() {
-            self.record.line(&line);
-        }
+        self.record.release();
     }
 
     /// Tells whether the record is whole.
@@ -77,15 +68,15 @@ impl Trace {
     /// A request goes out whole.
     fn sent(&mut self, bytes: &[u8]) {
         self.flush();
-        self.line(Sender::Host, bytes);
+        self.line(Direction::Sent, bytes);
         self.asked = Request::parse(&text(bytes)).ok();
     }
 
     /// Characters come in pieces of any size; a line of text is for a whole block.
     fn received(&mut self, bytes: &[u8]) {
         for byte in bytes {
-            self.coming.push(*byte);
-            if *byte == b'\n' || self.coming.len() >= MOST {
+            self.pending.push(*byte);
+            if *byte == b'\n' || self.pending.len() >= MOST {
                 self.flush();
             }
         }
@@ -93,21 +84,20 @@ impl Trace {
 
     /// What came without a line end, before something else is told.
     fn flush(&mut self) {
-        let coming = std::mem::take(&mut self.coming);
-        if !coming.is_empty() {
-            self.line(Sender::Controller, &coming);
+        let pending = std::mem::take(&mut self.pending);
+        if !pending.is_empty() {
+            self.line(Direction::Received, &pending);
         }
     }
 
-    fn line(&mut self, sender: Sender, bytes: &[u8]) {
-        let arrow = if sender == Sender::Host { "->" } else { "<-" };
+    fn line(&mut self, direction: Direction, bytes: &[u8]) {
+        let sender = match direction {
+            Direction::Sent => Sender::Host,
+            Direction::Received => Sender::Controller,
+        };
         let text = text(bytes);
-        let line = format!("{arrow} {text}  # {}", summary(&text, sender, self.asked.as_ref()));
-        let line = if self.record.level() > 1 { format!("{line}\n   {}", hex(bytes)) } else { line };
-        match &mut self.held {
-            Some(held) => held.push(line),
-            None => self.record.line(&line),
-        }
+        let summary = summary(&text, sender, self.asked.as_ref());
+        self.record.message(direction, &format!("{text}  # {summary}"), bytes);
     }
 }
 
@@ -118,13 +108,13 @@ fn text(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::Need;
+    use crate::command::ConnectMode;
     use crate::output::{ColorChoice, Format};
 
     /// What a capture file holds of a request and its answer.
     fn recorded(ends: Option<(SocketAddr, SocketAddr)>) -> Vec<u8> {
         let file = tempfile::NamedTempFile::new().unwrap();
-        let access = Access { trace: Some(file.path().to_owned()), ..Access::reading(Need::Command) };
+        let access = Access { trace: Some(file.path().to_owned()), ..Access::reading(ConnectMode::Control) };
         let mut trace = Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 0), ends).unwrap();
         trace.record(Direction::Sent, b"@HSON\r\n");
         trace.record(Direction::Received, b"");
@@ -151,17 +141,5 @@ mod tests {
         assert!(holds(&record, &sent) && holds(&record, &received), "{record:?}");
         assert!(holds(&record, b"@HSON\r\n") && holds(&record, b"@OK\r\n"), "{record:?}");
         assert!(!holds(&record, b"\x01@OK\r\n"));
-    }
-
-    #[test]
-    fn text_waits_while_it_is_held() {
-        let access = Access::reading(Need::Command);
-        let mut trace = Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 2), None).unwrap();
-        trace.hold();
-        trace.record(Direction::Sent, b"@HSON\r\n");
-        trace.record(Direction::Received, b"@OK\r\n");
-        assert_eq!(trace.held.as_ref().map(Vec::len), Some(2));
-        trace.release();
-        assert_eq!(trace.held, None);
     }
 }

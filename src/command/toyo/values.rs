@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::link::Link;
-use crate::command::dry_run::{Known as _, unknown};
+use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::{Field, Form, Number, Value};
 use crate::controller::toyo::layout::{Layout, Record, UNLISTED};

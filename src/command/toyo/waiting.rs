@@ -7,7 +7,7 @@ use tokio::time::Instant;
 use super::link::Link;
 use super::position::Place;
 use super::refusal;
-use crate::command::dry_run::{Reason, unknown};
+use crate::command::frame::dry_run::{Reason, unknown};
 use crate::controller::toyo::errors;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;

@@ -11,7 +11,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use crate::command::local::state_folder;
+use crate::command::frame::local::state_folder;
 use crate::files;
 
 /// Writes of one cell over one link that are no accident any more.

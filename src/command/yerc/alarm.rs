@@ -4,15 +4,17 @@ use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::each::{Denied, Outcome, Round};
 use super::link::Link;
+use super::link::Yerc;
 use super::numbers::within;
 use super::orders::usage;
-use crate::command::dry_run::Reason;
-use crate::command::items::{self, ItemError, ItemOutcome};
-use crate::command::orders::Done;
-use crate::command::{Command, Context, Report, commands, sample};
+use crate::command::face::sample;
+use crate::command::frame::dry_run::Reason;
+use crate::command::frame::items;
+use crate::command::frame::items::{ItemError, ItemOutcome};
+use crate::command::frame::orders::Done;
+use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -24,7 +26,7 @@ use crate::output::view::{Cell, Table, Tone, View};
 
 commands! {
     /// Alarms.
-    pub enum Alarm of Family {
+    pub enum Alarm {
         /// The alarms that are present
         List(List),
         /// The alarms of the past, the latest of each class first
@@ -48,11 +50,11 @@ pub struct List {
 pub(super) const SLOTS: u8 = 4;
 
 impl Command for List {
-    type Family = Family;
+    type Family = Yerc;
     type Report = ActiveAlarms;
     const ID: &'static str = "yerc.alarm.list";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<ActiveAlarms, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<ActiveAlarms, Failure> {
         let link = context.link;
         let mut texts = !self.no_texts;
         let question = |slot, texts| ReadAlarm::new(slot, texts).map_err(usage);
@@ -122,11 +124,11 @@ pub struct History {
 const LAST: u8 = 100;
 
 impl Command for History {
-    type Family = Family;
+    type Family = Yerc;
     type Report = PastAlarms;
     const ID: &'static str = "yerc.alarm.history";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<PastAlarms, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<PastAlarms, Failure> {
         let link = context.link;
         let mut texts = !self.no_texts;
         let numbers = self.from..=self.from.saturating_add(self.limit - 1).min(LAST);
@@ -220,7 +222,7 @@ macro_rules! order {
         pub struct $name {}
 
         impl Command for $name {
-            type Family = Family;
+            type Family = Yerc;
             type Report = Done;
             const ID: &'static str = $id;
 
@@ -228,7 +230,7 @@ macro_rules! order {
                 $query.risk()
             }
 
-            async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+            async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
                 context.link.ask(&$query).await?;
                 Ok(Done::new($done))
             }

@@ -7,12 +7,13 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::each::existing;
+use super::link::Yerc;
 use super::orders::usage;
 use super::position::ByAxis;
-use crate::command::dry_run::{Known as _, unknown};
-use crate::command::items::{self, ItemError};
+use crate::command::frame::dry_run::{Known as _, unknown};
+use crate::command::frame::items;
+use crate::command::frame::items::ItemError;
 use crate::command::{Command, Context, Report};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -66,11 +67,11 @@ pub struct AxesOf {
 }
 
 impl Command for AxesOf {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Configuration;
     const ID: &'static str = "yerc.axes";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Configuration, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Configuration, Failure> {
         let link = context.link;
         let (model, encoding) = (link.model, link.encoding);
         let groups: Vec<Group> = match self.group {
@@ -172,11 +173,11 @@ macro_rules! by_axis {
         }
 
         impl Command for $name {
-            type Family = Family;
+            type Family = Yerc;
             type Report = $report;
             const ID: &'static str = $id;
 
-            async fn run(&self, context: Context<'_, Family>) -> Result<$report, Failure> {
+            async fn run(&self, context: Context<'_, Yerc>) -> Result<$report, Failure> {
                 let link = context.link;
                 let question = $query::new(link.model, self.group).map_err(usage)?;
                 let Some(axes) = link.ask(&question).await.known()? else {

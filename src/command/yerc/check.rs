@@ -1,8 +1,8 @@
 //! The layers of a controller for `armctl robots check`.
 
-use super::Family;
 use super::link::Link;
-use crate::command::checks::{Layer, Layers};
+use super::link::Yerc;
+use crate::command::face::layers::{Layer, Layers};
 use crate::command::{Access, Family as _};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::StatusBit;
@@ -16,12 +16,12 @@ const LAYERS: &[&str] = &["name", "answer", "software", "mode", "command remote"
 /// Looks at them; reads only.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
     let mut layers = Layers::new(robot.label(), LAYERS);
-    match Family::connect(robot, access, screen).await {
+    match Yerc::connect(robot, access, screen).await {
         Err(failure) => layers.fail("name", &failure),
         Ok(mut link) => {
             layers.ok("name", robot.target.value.to_string());
             look(&mut link, &mut layers).await;
-            Family::close(link, screen).await?;
+            Yerc::close(link, screen).await?;
         }
     }
     Ok(layers.finish())

@@ -2,7 +2,7 @@
 //! configuration (0x74), asked once on a link, tells which of them exist.
 
 use super::link::Link;
-use crate::command::dry_run::Reason;
+use crate::command::frame::dry_run::Reason;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{Axes, AxisNames, MAX_AXES};
 use crate::controller::yerc::query::{Coordinates, Query as _, ReadAxes};

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::testing::{Bench, DX200, dry_run, resolved};
 use crate::cli::Cli;
-use crate::command::testing::QUIET;
+use crate::command::frame::testing::QUIET;
 use crate::controller::Risk::{self, Destroy, Motion, Read, Write};
 use crate::controller::text::unhex;
 use crate::controller::yerc::request::Request;

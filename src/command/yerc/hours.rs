@@ -4,12 +4,13 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::axes::{Groups, groups_of};
 use super::each::{Outcome, existing};
+use super::link::Yerc;
 use super::numbers::within;
 use super::orders::usage;
-use crate::command::items::{self, ItemError, ItemOutcome};
+use crate::command::frame::items;
+use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -55,11 +56,11 @@ impl Hours {
 }
 
 impl Command for Hours {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Times;
     const ID: &'static str = "yerc.hours";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Times, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Times, Failure> {
         let link = context.link;
         let (model, encoding) = (link.model, link.encoding);
         let question = |counter| Ok((counter, ReadManagementTime::new(model, counter)?));

@@ -4,12 +4,13 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::axes::{Groups, groups_of};
 use super::each::existing;
+use super::link::Yerc;
 use super::numbers::within;
 use super::orders::usage;
-use crate::command::items::{self, ItemError, ItemOutcome};
+use crate::command::frame::items;
+use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -52,11 +53,11 @@ const fn applications(model: Model) -> u8 {
 }
 
 impl Command for Info {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Versions;
     const ID: &'static str = "yerc.info";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Versions, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Versions, Failure> {
         let link = context.link;
         let (model, encoding) = (link.model, link.encoding);
         let question = |part| Ok((part, ReadSystemInfo::new(model, part)?));

@@ -8,16 +8,17 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::Instant;
 
-use super::Family;
 use super::chosen::Chosen;
 use super::each::{Denied, Outcome};
 use super::link::Link;
+use super::link::Yerc;
 use super::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost, plan_alarm};
 use super::numbers::within;
 use super::orders::{refuse_controls, usage};
 use crate::command::ValueKind;
-use crate::command::dry_run::unknown;
-use crate::command::items::{self, ItemError};
+use crate::command::frame::dry_run::unknown;
+use crate::command::frame::items;
+use crate::command::frame::items::ItemError;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::text::{Encoding, Name, integer};
@@ -33,7 +34,7 @@ use crate::settings::duration;
 
 commands! {
     /// Jobs.
-    pub enum Job of Family {
+    pub enum Job {
         /// What runs: job, line, step and speed override of a task
         Show(Show),
         /// Choose the job that a start will run
@@ -71,11 +72,11 @@ impl FromStr for Tasks {
 }
 
 impl Command for Show {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Jobs;
     const ID: &'static str = "yerc.job.show";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Jobs, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Jobs, Failure> {
         let link = context.link;
         let encoding = link.encoding;
         let jobs = match self.task {
@@ -230,7 +231,7 @@ fn without_suffix(name: &str) -> &str {
 }
 
 impl Command for Select {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Selected;
     const ID: &'static str = "yerc.job.select";
 
@@ -238,7 +239,7 @@ impl Command for Select {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Selected, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Selected, Failure> {
         let link = context.link;
         let name = without_suffix(&self.name);
         if name != self.name {
@@ -281,7 +282,7 @@ pub struct Start {
 }
 
 impl Command for Start {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Started;
     const ID: &'static str = "yerc.job.start";
 
@@ -297,7 +298,7 @@ impl Command for Start {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Started, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Started, Failure> {
         let link = context.link;
         let chosen = Chosen::ask(link).await?;
         let is_asked = context.authority.asks();

@@ -7,13 +7,13 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
+use super::connect::{self, Transport};
 use super::fitted::Fitted;
-use super::reach::{self, Transport};
 pub use super::refusal::{Asked, Refusal};
 use super::simulated::channel;
 use super::trace::Trace;
-use crate::command::attach::hindered;
-use crate::command::dry_run::{Plan, Reason, unknown};
+use crate::command::frame::attach::session_busy;
+use crate::command::frame::dry_run::{Plan, Reason, unknown};
 use crate::command::{Access, Family};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -30,7 +30,7 @@ use crate::gate::Grant;
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target;
-use crate::transport::session::client::Hindrance;
+use crate::transport::session::client::SessionBusy;
 use crate::transport::tap::Direction;
 
 /// The yerc family.
@@ -88,7 +88,7 @@ impl Family for Yerc {
     type Link = Link;
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
-        let (transport, model) = reach::open(robot, &access, screen).await?;
+        let (transport, model) = connect::open(robot, &access, screen).await?;
         let timeout = robot.timeout.value;
         let attempt = Policy::default().attempt.min(timeout);
         Ok(Link {
@@ -131,7 +131,7 @@ impl Family for Yerc {
         Ok("the robot was stopped: HOLD is on; `yerc hold off` releases it".to_owned())
     }
 
-    fn rehearsed(link: &mut Link) -> Plan {
+    fn planned(link: &mut Link) -> Plan {
         match &mut link.transport {
             Transport::Notes(plan) => std::mem::take(plan),
             Transport::Udp(_) | Transport::Sim(_) | Transport::Session(_) => Plan::default(),
@@ -363,7 +363,7 @@ impl Link {
         }
         if request.risk() == Risk::Motion {
             if let Transport::Session(attached) = &mut self.transport {
-                attached.claim_motion().await.map_err(|hindrance| hindered(&self.label, &hindrance))?;
+                attached.claim_motion().await.map_err(|busy| session_busy(&self.label, &busy))?;
             }
             self.has_moved = true;
         }
@@ -391,9 +391,9 @@ impl Link {
         let Transport::Session(attached) = &mut self.transport else { return Ok(()) };
         let until = Instant::now() + self.policy.deadline;
         attached
-            .take_for(reach::number(channel(division)), until)
+            .take_for(connect::number(channel(division)), until)
             .await
-            .map_err(|hindrance| hindered(&self.label, &hindrance))
+            .map_err(|busy| session_busy(&self.label, &busy))
     }
 
     fn give_turn(&mut self) {
@@ -508,7 +508,7 @@ impl Link {
         let port = match &self.transport {
             Transport::Udp(udp) => udp.peer(channel).port().to_string(),
             Transport::Session(attached) => match attached.ended() {
-                Some(why) => return hindered(&self.label, &Hindrance::Ended(why.to_owned())),
+                Some(why) => return session_busy(&self.label, &SessionBusy::Ended(why.to_owned())),
                 None => "of the session".to_owned(),
             },
             Transport::Sim(_) | Transport::Notes(_) => return Failure::io(&self.label, error),

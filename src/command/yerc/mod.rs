@@ -4,7 +4,12 @@ mod alarm;
 mod axes;
 mod check;
 mod chosen;
+pub mod commands;
+mod connect;
+pub mod decode;
 mod each;
+mod explain;
+pub mod face;
 pub mod file;
 mod fitted;
 #[cfg(test)]
@@ -22,9 +27,9 @@ mod overview;
 mod parts;
 mod position;
 mod raw;
-mod reach;
 mod refusal;
 mod register;
+mod serve;
 pub mod simulated;
 mod status;
 #[cfg(test)]
@@ -33,56 +38,3 @@ pub mod top;
 mod trace;
 mod var;
 mod writes;
-
-pub use check::check;
-pub use link::Yerc as Family;
-pub use overview::overview;
-pub use reach::hold;
-
-use crate::command::{Verbs, commands};
-
-commands! {
-    /// What can be asked of an FS100 or DX200.
-    pub enum Yerc of Family {
-        /// Mode, cycle, servo, hold, alarm: every status bit
-        Status(status::Status),
-        /// Alarms: list, history, reset, cancel
-        Alarm(Verbs<alarm::Alarm>),
-        /// Jobs: show, select, start
-        Job(Verbs<job::Job>),
-        /// Files: list, get, put, delete, diff, backup, restore, cmos
-        File(Verbs<file::File>),
-        /// Where a control group stands: pulses, base coordinates, form
-        Position(position::Position),
-        /// The axes of each control group
-        Axes(axes::AxesOf),
-        /// How far each axis is from where it should be
-        PositionError(axes::PositionError),
-        /// The torque of each axis
-        Torque(axes::Torque),
-        /// Variables: get, set, dump, restore
-        Var(Verbs<var::Var>),
-        /// Signals: get, set
-        Io(Verbs<io::Io>),
-        /// Registers: get, set
-        Register(Verbs<register::Register>),
-        /// Switch servo power
-        Servo(orders::Servo),
-        /// Hold the robot, or let it go on
-        Hold(orders::Hold),
-        /// Lock or unlock the pendant and the operation signals
-        Hlock(orders::Hlock),
-        /// Choose step, one cycle or continuous
-        Cycle(orders::Cycle),
-        /// Show a message on the pendant
-        Say(orders::Say),
-        /// Move a robot or station
-        Move(Verbs<moves::Move>),
-        /// Running times: power, servo, playback, motion, applications
-        Hours(hours::Hours),
-        /// Software version, robot models, parameters
-        Info(info::Info),
-        /// Send any request and explain the answer
-        Raw(raw::Raw),
-    }
-}

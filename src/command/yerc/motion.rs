@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::alarm;
 use super::link::Link;
 use super::orders::usage;
-use crate::command::dry_run::Reason;
+use crate::command::frame::dry_run::Reason;
 use crate::controller::yerc::payload::{ControllerStatus, StatusBit};
 use crate::controller::yerc::query::{Query as _, ReadAlarm};
 use crate::failure::{Failure, Kind};

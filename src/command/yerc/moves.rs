@@ -10,11 +10,11 @@ use self::arguments::{
     station_pulses, told,
 };
 use self::going::{Goal, Going, Moved};
-use super::Family;
 use super::link::Link;
+use super::link::Yerc;
 use super::orders::usage;
 use crate::command::yerc::numbers::within;
-use crate::command::{Command, Context, Verbs, commands};
+use crate::command::{Command, Context, Subcommands, commands};
 use crate::controller::Risk;
 use crate::controller::units;
 use crate::controller::yerc::Model;
@@ -25,7 +25,7 @@ use crate::failure::Failure;
 
 commands! {
     /// Motions.
-    pub enum Move of Family {
+    pub enum Move {
         /// To a position, each axis on its own way
         Joint(Joint),
         /// To a position, in a straight line
@@ -33,13 +33,13 @@ commands! {
         /// By a distance, in a straight line
         Relative(Relative),
         /// To pulses: joint, linear
-        Pulse(Verbs<Pulse>),
+        Pulse(Subcommands<Pulse>),
     }
 }
 
 commands! {
     /// Motions to pulses.
-    pub enum Pulse of Family {
+    pub enum Pulse {
         /// Each axis on its own way
         Joint(PulseJoint),
         /// In a straight line
@@ -148,7 +148,7 @@ macro_rules! motion {
         }
 
         impl Command for $name {
-            type Family = Family;
+            type Family = Yerc;
             type Report = Moved;
             const ID: &'static str = $id;
 
@@ -161,7 +161,7 @@ macro_rules! motion {
                 $intent
             }
 
-            async fn run(&self, context: Context<'_, Family>) -> Result<Moved, Failure> {
+            async fn run(&self, context: Context<'_, Yerc>) -> Result<Moved, Failure> {
                 let $this = self;
                 let $link = &*context.link;
                 let going = $going?;

@@ -2,8 +2,8 @@
 
 use clap::{Args, ValueEnum};
 
-use super::Family;
-use crate::command::orders::{Done, Switch};
+use super::link::Yerc;
+use crate::command::frame::orders::{Done, Switch};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yerc::payload::CycleMode;
@@ -26,7 +26,7 @@ macro_rules! order {
         }
 
         impl Command for $name {
-            type Family = Family;
+            type Family = Yerc;
             type Report = Done;
             const ID: &'static str = $id;
 
@@ -44,7 +44,7 @@ macro_rules! order {
                 $is_stop
             })?
 
-            async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+            async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
                 let $this = self;
                 context.link.ask(&$query).await?;
                 Ok(Done::new($done))
@@ -113,7 +113,7 @@ pub struct Say {
 }
 
 impl Command for Say {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Done;
     const ID: &'static str = "yerc.say";
 
@@ -121,7 +121,7 @@ impl Command for Say {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
         refuse_controls("the message", &self.text)?;
         let bytes = context.link.encode("the message", &self.text)?;
         context.link.ask(&query::Say::new(&bytes).map_err(usage)?).await?;

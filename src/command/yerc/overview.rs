@@ -2,7 +2,7 @@
 
 use super::link::Link;
 use super::status;
-use crate::command::overview::{OverviewReport, PositionMm};
+use crate::command::face::overview::{OverviewReport, PositionMm};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{ControllerStatus, Position, StatusBit};
 use crate::controller::yerc::query::{Coordinates, ReadPosition, ReadStatus};

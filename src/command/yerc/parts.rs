@@ -4,7 +4,7 @@ use std::collections::{HashMap, VecDeque};
 
 use super::each::{Denied, Outcome, Round};
 use super::link::Link;
-use crate::command::dry_run::{Reason, unknown};
+use crate::command::frame::dry_run::{Reason, unknown};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::variables::PlannedRead;
 use crate::failure::{Failure, Kind};

@@ -6,12 +6,13 @@ use clap::{Args, ValueEnum};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Serialize, Serializer};
 
-use super::Family;
 use super::fitted::Fitted;
 use super::link::Link;
+use super::link::Yerc;
 use super::orders::usage;
-use crate::command::dry_run::{Known as _, unknown};
-use crate::command::items::{self, ItemError, ItemOutcome};
+use crate::command::frame::dry_run::{Known as _, unknown};
+use crate::command::frame::items;
+use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
@@ -42,11 +43,11 @@ enum Which {
 }
 
 impl Command for Position {
-    type Family = Family;
+    type Family = Yerc;
     type Report = PositionReport;
     const ID: &'static str = "yerc.position";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<PositionReport, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<PositionReport, Failure> {
         let link = context.link;
         let which = match (self.coordinates, self.group) {
             (Some(which), _) => which,

@@ -7,11 +7,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::Instant;
 
-use super::Family;
+use super::decode::{FieldRow, parse_hex};
 use super::file::download_failed;
 use super::link::{self, Link, Refusal};
 use super::register::unsigned;
-use crate::command::common::decode::yerc::{FieldRow, field_table, parse_hex};
+use crate::command::decode::field_table;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::hex;
@@ -22,7 +23,7 @@ use crate::controller::yerc::status;
 use crate::controller::yerc::table::{BATCH_BACKUP_PATH, Row, service};
 use crate::controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, MAX_DATA, Status};
 use crate::failure::Failure;
-use crate::output::view::{Cell, Section, View};
+use crate::output::view::{Cell, View};
 
 /// A request as it is.
 #[derive(Debug, Args)]
@@ -92,7 +93,7 @@ impl Raw {
 }
 
 impl Command for Raw {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Answer;
     const ID: &'static str = "yerc.raw";
 
@@ -113,7 +114,7 @@ impl Command for Raw {
         )
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Answer, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Answer, Failure> {
         let Context { link, screen, .. } = context;
         let request = self.request();
         if !self.file && request.division() == Division::File {
@@ -264,7 +265,7 @@ impl Report for Answer {
             ("meaning", self.meaning.as_str().into()),
             ("data", if self.data_hex.is_empty() { "-".into() } else { self.data_hex.as_str().into() }),
         ]);
-        if self.fields.is_empty() { view } else { view.and(Section::Table(field_table(&self.fields))) }
+        if self.fields.is_empty() { view } else { view.and(field_table(&self.fields)) }
     }
 
     fn failure(&self) -> Option<Failure> {

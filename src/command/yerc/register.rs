@@ -7,11 +7,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Yerc;
 use super::orders::usage;
 use super::parts::{Parts, read_in_parts};
 use super::writes::{Order, runs, write_all};
-use crate::command::items::{self, ItemError, ItemOutcome};
+use crate::command::frame::items;
+use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yerc::variables::{WriteRegisterStep, parse_numbers, plan_register_reads, plan_register_writes};
@@ -20,7 +21,7 @@ use crate::output::view::{Cell, Table, View};
 
 commands! {
     /// What can be done with registers.
-    pub enum Register of Family {
+    pub enum Register {
         /// Read registers: 0 to 999
         Get(Get),
         /// Write registers: 0 to 559
@@ -87,11 +88,11 @@ pub fn unsigned(text: &str) -> Option<u32> {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Registers;
     const ID: &'static str = "yerc.register.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Registers, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Registers, Failure> {
         let mut seen = HashSet::new();
         let numbers = self.registers.iter().flat_map(|numbers| numbers.0.iter().copied());
         let numbers: Vec<u16> = numbers.filter(|number| seen.insert(*number)).collect();
@@ -110,7 +111,7 @@ impl Command for Get {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Yerc;
     type Report = WrittenRegisters;
     const ID: &'static str = "yerc.register.set";
 
@@ -118,7 +119,7 @@ impl Command for Set {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<WrittenRegisters, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenRegisters, Failure> {
         let Context { link, screen, .. } = context;
         let mut seen = HashSet::new();
         if let Some(twice) = self.assignments.iter().find(|assignment| !seen.insert(assignment.number)) {

@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
 use crate::controller::yerc::query::ReadStatus;
@@ -16,11 +16,11 @@ use crate::output::view::{Cell, Tone, View};
 pub struct Status {}
 
 impl Command for Status {
-    type Family = Family;
+    type Family = Yerc;
     type Report = StatusReport;
     const ID: &'static str = "yerc.status";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<StatusReport, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<StatusReport, Failure> {
         Ok(context.link.ask(&ReadStatus).await?.into())
     }
 }

@@ -3,11 +3,13 @@
 use clap::Parser as _;
 use serde_json::Value;
 
-use super::Family;
 use super::link::Link;
-use crate::cli::{Cli, OfYerc, Top, Verb};
-use crate::command::testing::{self, context, everything, planned};
-use crate::command::{AnyCommand, Family as _, Noun as _};
+use super::link::Yerc;
+use crate::cli::{Cli, FamilyWord, Top};
+use crate::command::face::words::{Typed, Wish};
+use crate::command::frame::testing;
+use crate::command::frame::testing::{context, everything, planned};
+use crate::command::{AnyCommand, Family as _};
 use crate::controller::text::hex;
 use crate::failure::Failure;
 use crate::output::{ColorChoice, Format, Screen};
@@ -33,7 +35,7 @@ pub(super) fn intent(words: &str) -> String {
 /// fails with the parser's message.
 pub(super) fn dry_run(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
     let (robot, command) = resolved(target, words)?;
-    Ok(testing::frames(&planned(&robot, &*command, |_| ())?))
+    Ok(testing::frames(&planned::<Yerc>(&robot, &*command, |_| ())?))
 }
 
 /// The frames of a dry run, in hexadecimal, without the header: command, instance, attribute, service, padding, data.
@@ -74,11 +76,11 @@ pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Fa
     for words in lines {
         let (robot, command) = resolved(&target, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap();
         if link.is_none() {
-            link = Some(Family::connect(&robot, everything(), &quiet()).await.unwrap());
+            link = Some(Yerc::connect(&robot, everything(), &quiet()).await.unwrap());
         }
         let link = link.as_mut().expect("connected by the first line");
         let context = context(&robot, link);
-        reports.push(match command.run(context).await {
+        reports.push(match testing::run::<Yerc>(&*command, context).await {
             Ok(report) => report.failure().map_or_else(|| report.data(), Err),
             Err(failure) => Err(failure),
         });
@@ -99,7 +101,7 @@ impl Bench {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
         let (robot, _) = resolved(target, &["status"]).expect("a robot");
-        let link = runtime.block_on(Family::connect(&robot, everything(), &quiet())).expect("a link");
+        let link = runtime.block_on(Yerc::connect(&robot, everything(), &quiet())).expect("a link");
         Self { runtime, robot, link }
     }
 
@@ -107,7 +109,7 @@ impl Bench {
     pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link } = self;
-        let report = runtime.block_on(command.run(context(robot, link)))?;
+        let report = runtime.block_on(testing::run::<Yerc>(&*command, context(robot, link)))?;
         Ok((report.data()?, report.failure()))
     }
 
@@ -126,15 +128,15 @@ fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
 }
 
 /// Robot and command of a line.
-pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Family>>), Failure> {
+pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let flags = Options { encoding: cli.globals.encoding, ..Options::default() };
     let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(Name::Yerc))?.remove(0);
-    let Top::Yerc(OfYerc::Yerc { verb: Some(Verb::Command(verb)) }) = cli.command else {
-        unreachable!("the words follow yerc")
-    };
-    Ok((robot, verb.command()))
+    match cli.command {
+        Top::Family(FamilyWord { typed: Typed { wish: Wish::Command(command), .. }, .. }) => Ok((robot, command)),
+        _ => unreachable!("the words follow yerc"),
+    }
 }
 
 /// Where tests write: nowhere.

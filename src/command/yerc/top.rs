@@ -4,7 +4,7 @@ use super::alarm::{SLOTS, present};
 use super::link::{Link, Yerc};
 use super::overview::report;
 use super::position::{CARTESIAN_AXES, ROBOT_AXES, decimal};
-use crate::command::sample::{Axis, Bank, Depth, Eight, Lamp, Sample, Whole, clocked};
+use crate::command::face::sample::{Axis, Bank, Depth, Eight, Lamp, Sample, Whole, clocked};
 use crate::command::{Access, Family as _};
 use crate::controller::units;
 use crate::controller::yerc::group::Group;

@@ -1,7 +1,7 @@
 //! Several writes in a row, with an exact account of what was done when one of them fails.
 
 use super::link::Link;
-use crate::command::interrupt::interruptible;
+use crate::command::frame::interrupt::interruptible;
 use crate::controller::yerc::query::Query;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;

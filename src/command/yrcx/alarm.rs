@@ -5,7 +5,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Yrcx;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::signal::output;
@@ -15,7 +15,7 @@ use crate::output::view::View;
 
 commands! {
     /// What can be done about alarms.
-    pub enum Alarm of Family {
+    pub enum Alarm {
         /// Reset the alarm
         Reset(Reset),
     }
@@ -29,7 +29,7 @@ commands! {
 pub struct Reset {}
 
 impl Command for Reset {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = WasReset;
     const ID: &'static str = "yrcx.alarm.reset";
 
@@ -37,7 +37,7 @@ impl Command for Reset {
         table::Command::AlarmReset.row().risk
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<WasReset, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasReset, Failure> {
         let Context { link, screen, .. } = context;
         let order = link.draft(table::Command::AlarmReset)?.build()?;
         link.run(&order).await?;
@@ -47,7 +47,15 @@ impl Command for Reset {
         let image = link.look().await?;
         let report = WasReset { alarm: output::ALARM.is_on(&image), servo_on: output::SERVO_ON.is_on(&image) };
         if !report.servo_on {
-            screen.note(if link.is_held() { POWER_OFF } else { POWER_OFF_AND_AGAIN });
+            if link.is_held() {
+                screen.note(POWER_OFF);
+            } else {
+                let alarm = link.link_alarm();
+                screen.note(&format!(
+                    "hint: motor power is off, and the end of this connection raises alarm {alarm} again: keep one open with \
+                     `armctl session open`, then `yrcx alarm reset` and `yrcx recover`"
+                ));
+            }
         }
         Ok(report)
     }
@@ -55,10 +63,6 @@ impl Command for Reset {
 
 /// What comes next where an alarm has switched the motors off.
 const POWER_OFF: &str = "hint: motor power is off: `yrcx recover` clears the emergency stop and switches the servos on";
-
-/// The same where the end of the connection is the next alarm.
-const POWER_OFF_AND_AGAIN: &str = "hint: motor power is off, and the end of this connection raises alarm 12.551 again: keep one \
-    open with `armctl session open`, then `yrcx alarm reset` and `yrcx recover`";
 
 /// An alarm that was reset.
 #[derive(Debug, Serialize, JsonSchema)]

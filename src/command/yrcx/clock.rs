@@ -6,10 +6,10 @@ use jiff::civil::{Date, DateTime, Time};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
-use super::link::Link;
+use super::link::{Link, Yrcx};
 use super::several::ask_each;
-use crate::command::items::{self, ItemError};
+use crate::command::frame::items;
+use crate::command::frame::items::ItemError;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Order;
@@ -20,7 +20,7 @@ use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with the controller's clock.
-    pub enum Clock of Family {
+    pub enum Clock {
         /// Read date and time
         Get(Get),
         /// Set date and time: now, 2026-03-01T08:45:00, 2026-03-01 or 08:45
@@ -38,11 +38,11 @@ const CENTURY: i16 = 2000;
 pub struct Get {}
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Reading;
     const ID: &'static str = "yrcx.clock.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Reading, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Reading, Failure> {
         let Context { link, screen, .. } = context;
         let order = |command| Ok::<_, Failure>(link.draft(command)?.build()?);
         let orders = [order(table::Command::DateGet)?, order(table::Command::TimeGet)?];
@@ -207,7 +207,7 @@ fn digits<N: std::str::FromStr>(text: &str, count: usize) -> Option<N> {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = WasSet;
     const ID: &'static str = "yrcx.clock.set";
 
@@ -215,7 +215,7 @@ impl Command for Set {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<WasSet, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasSet, Failure> {
         let link = context.link;
         let (date, time) = match self.moment {
             Moment::Given { date, time } => (date, time),

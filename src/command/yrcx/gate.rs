@@ -6,13 +6,14 @@ use std::time::Duration;
 
 use serde_json::Value;
 
+use super::commands::Commands;
 use super::link::Link;
+use super::link::Yrcx;
 use super::simulated::in_process;
 use super::testing::{planned_line, resolved};
-use super::{Family, Yrcx};
-use crate::command::authority::Authority;
-use crate::command::testing::QUIET;
-use crate::command::{Access, AnyCommand, Context, Need, Noun as _};
+use crate::command::frame::authority::Authority;
+use crate::command::frame::testing::{self, QUIET};
+use crate::command::{Access, AnyCommand, CommandSet as _, ConnectMode, Context};
 use crate::controller::Risk;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
 use crate::controller::yrcx::signal::{Side, Signal, resting};
@@ -166,7 +167,7 @@ fn lines() -> impl Iterator<Item = (&'static str, Risk)> {
 const AT_DESK: [&str; 1] = ["yrcx.io.map"];
 
 /// A controller that nothing is sent to, and the command of a line.
-fn real(line: &str) -> (Robot, Box<dyn AnyCommand<Family>>) {
+fn real(line: &str) -> (Robot, Box<dyn AnyCommand>) {
     let line: Vec<&str> = line.split(' ').collect();
     resolved("eip://127.0.0.1", &line).unwrap_or_else(|failure| panic!("{line:?}: {failure}"))
 }
@@ -179,7 +180,7 @@ fn every_leaf_has_the_risk_that_it_shall_have() {
         assert_eq!(command.intent(None).risk, risk, "{line}");
         seen.insert(command.id());
     }
-    let all: BTreeSet<&str> = Yrcx::schemas().iter().map(|entry| entry.id).collect();
+    let all: BTreeSet<&str> = Commands::schemas().iter().map(|entry| entry.id).collect();
     assert_eq!(all.difference(&seen).collect::<Vec<_>>(), Vec::<&&str>::new(), "these have no line");
 }
 
@@ -379,7 +380,7 @@ impl Bench {
         let (simulated, _) = resolved("sim:", &["status"]).unwrap();
         let shown = Arc::default();
         let peer = Noting(in_process(&Sim::default()).unwrap(), Image::default(), Arc::clone(&shown));
-        let access = Access::reading(Need::Command);
+        let access = Access::reading(ConnectMode::Control);
         let link = runtime.block_on(Link::to_peer(&simulated, &access, &QUIET, Box::new(peer))).unwrap();
         // The gate is to take it for a real one.
         let (robot, _) = real("status");
@@ -396,7 +397,7 @@ impl Bench {
         link.set_grant(grant.clone());
         let authority = Authority::new(gate, &QUIET, robot, intent.risk, grant);
         let context = Context { robot, link, screen: &QUIET, several: false, authority };
-        let report = runtime.block_on(command.run(context))?;
+        let report = runtime.block_on(testing::run::<Yrcx>(&*command, context))?;
         report.failure().map_or_else(|| report.data(), Err)
     }
 

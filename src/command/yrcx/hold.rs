@@ -2,7 +2,7 @@
 
 use tokio::time::Instant;
 
-use super::reach::{Way, way};
+use super::connect::endpoint;
 use super::trace::Recorder;
 use crate::command::Access;
 use crate::controller::yrcx::answer::Status;
@@ -11,25 +11,20 @@ use crate::controller::yrcx::signal::{input, output, resting};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
-use crate::settings::target::EipRole;
 use crate::transport::session::host::held::{Held, Images, Rules};
 
 /// Opens it for a session to hold.
 pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<(Images, Option<Recorder>), Failure> {
-    let way = way(robot)?;
-    let (link, recorder) = way.open(robot, access, screen).await?;
-    let mut first = resting().to_bytes().to_vec();
-    first.resize(way.output_size(), 0);
+    let endpoint = endpoint(robot)?;
+    let (link, recorder) = endpoint.open(robot, access, screen).await?;
+    let size = link.output_size();
+    let has_commands = Image::has_commands(size);
     let rules = Rules {
-        is_owner: !matches!(&way, Way::Eip(eip) if eip.role != EipRole::Owner),
-        exclusive: 2 * COMMAND_WORDS,
-        command: 2,
-        resting: first,
-        rest: |before| {
-            let mut after = after_loss(&image(before)).to_bytes().to_vec();
-            after.resize(before.len(), 0);
-            after
-        },
+        is_owner: endpoint.is_owner(),
+        exclusive: if has_commands { 2 * COMMAND_WORDS } else { 0 },
+        command: if has_commands { 2 } else { 0 },
+        resting: resting().to_link(size),
+        rest: |before| after_loss(&image(before)).to_link(before.len()),
         under_way: |_, seen| {
             let seen = image(seen);
             Status::of(seen.0[0]) == Status::Running || output::PROGRAM_RUNNING.is_on(&seen)
@@ -59,7 +54,7 @@ pub fn silent(label: &str) -> Failure {
         .hint("check the link: `-v` counts what came")
 }
 
-/// The image at the beginning of what is shown.
+/// The image of what is shown.
 fn image(bytes: &[u8]) -> Image {
-    bytes.get(..Image::BYTES).and_then(Image::from_bytes).unwrap_or_default()
+    Image::from_link(bytes).unwrap_or_default()
 }

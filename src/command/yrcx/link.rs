@@ -11,23 +11,24 @@ mod output;
 mod shared;
 mod words;
 
+use std::fmt;
 use std::time::Duration;
 
 use serde_json::json;
 use tokio::time::Instant;
 
-use super::eip::board::Board;
+use super::connect::{self, Endpoint};
+use super::fieldbus::Board;
 use super::hold;
 use super::io::named;
 use super::overwrite::Replaced;
-use super::reach;
 use super::refusal;
 use super::trace::{Recorder, Trace};
-use crate::command::attach::{attach, is_held};
-use crate::command::dry_run::{Plan, Reason, unknown};
-use crate::command::{Access, Entry, Family, Need};
+use crate::command::frame::attach::{attach, is_held};
+use crate::command::frame::dry_run::{Plan, Reason, unknown};
+use crate::command::{Access, ConnectMode, Entry, Family};
 use crate::controller::Risk;
-use crate::controller::yrcx::alarm::STOP_INPUT;
+use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use crate::controller::yrcx::answer::Answer;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Output, Words};
 use crate::controller::yrcx::order::{Draft, Order};
@@ -41,8 +42,8 @@ use crate::failure::Failure;
 use crate::gate::Grant;
 use crate::output::Screen;
 use crate::settings::Robot;
-use crate::settings::target::{self, EipRole, Place};
-use crate::transport::image::ImageLink;
+use crate::settings::target;
+use crate::transport::image::{ImageLink, Traffic};
 
 /// The yrcx family.
 #[derive(Debug)]
@@ -53,8 +54,10 @@ pub struct Yrcx;
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct Link {
     transport: Transport,
-    /// Bytes of what is shown.
+    /// Bytes of what is shown; 0 where nothing is.
     size: usize,
+    /// What a controller raises when the link is lost.
+    link_alarm: Alarm,
     is_simulated: bool,
     /// Whether this connection may show something; else it only sees.
     is_owner: bool,
@@ -108,8 +111,8 @@ enum Transport {
     Image(Box<ImageLink>),
     /// A dry run: what would be sent is noted.
     Notes(Plan),
-    /// Not at all: only the network board is asked.
-    Board(Box<Board>),
+    /// Not at all: only the device on the fieldbus is asked. With it goes what must live as long.
+    Board(Box<dyn Board>, Option<Box<dyn fmt::Debug>>),
 }
 
 /// What a link saw, for `-v`.
@@ -165,23 +168,22 @@ impl Family for Yrcx {
     type Link = Link;
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
-        let way = reach::way(robot)?;
+        let endpoint = connect::endpoint(robot)?;
         if access.dry_run {
             let mut link = Link::new(robot, &access, screen, Transport::Notes(Plan::default()), None)?;
-            let opens_session = access.need == Need::Command && robot.hold.value && !robot.read_only.value;
+            let opens_session = access.mode == ConnectMode::Control && robot.hold.value && !robot.read_only.value;
             link.is_held |= opens_session || is_held(robot);
             return Ok(link);
         }
-        if access.need == Need::Messages {
-            let (board, recorder) = way.board(robot, &access, screen).await?;
-            return Link::new(robot, &access, screen, Transport::Board(Box::new(board)), recorder);
+        if access.mode == ConnectMode::Explicit {
+            let ((board, kept), recorder) = endpoint.board(robot, &access, screen).await?;
+            return Link::new(robot, &access, screen, Transport::Board(board, kept), recorder);
         }
         let (image, recorder) = match Box::pin(attach(robot, &access, screen)).await? {
             Some(attached) => (ImageLink::in_session(attached), None),
-            None => Box::pin(way.open(robot, &access, screen)).await?,
+            None => Box::pin(endpoint.open(robot, &access, screen)).await?,
         };
         let mut link = Link::new(robot, &access, screen, Transport::Image(Box::new(image)), recorder)?;
-        link.size = way.output_size();
         link.join(robot);
         match link.begin().await {
             Ok(()) => Ok(link),
@@ -233,25 +235,26 @@ impl Family for Yrcx {
         link.is_jogging()
     }
 
-    fn rehearsed(link: &mut Link) -> Plan {
+    fn planned(link: &mut Link) -> Plan {
         match &mut link.transport {
             Transport::Notes(plan) => std::mem::take(plan),
-            Transport::Image(_) | Transport::Board(_) => Plan::default(),
+            Transport::Image(_) | Transport::Board(..) => Plan::default(),
         }
     }
 
-    fn entry(robot: &Robot, need: Need) -> Entry {
-        let takes_control = match &robot.target.value.place {
-            Place::Sim(_) => false,
-            Place::Eip(eip) => eip.role == EipRole::Owner && need == Need::Command,
-            Place::Udp(_) | Place::Serial(_) | Place::Tcp(_) => need == Need::Command,
+    fn entry(robot: &Robot, mode: ConnectMode) -> Entry {
+        let fieldbus = match connect::endpoint(robot) {
+            Ok(Endpoint::Bus(bus, fieldbus)) if bus.is_owner && mode == ConnectMode::Control => fieldbus,
+            _ => return Entry::Harmless,
         };
-        if !takes_control {
-            Entry::Harmless
-        } else if is_held(robot) {
+        if is_held(robot) {
             Entry::ThroughSession
         } else {
-            Entry::Stops(STOPS)
+            Entry::Stops(format!(
+                "take the command connection and drop it at the end, which stops the robot: motor power goes off, with \
+                 alarm {} (`armctl session open` keeps a connection open)",
+                fieldbus.link_alarm()
+            ))
         }
     }
 
@@ -260,30 +263,30 @@ impl Family for Yrcx {
         link.tell_statistics(screen);
         let closed = match link.transport {
             Transport::Image(image) => image.close().await,
-            Transport::Board(board) => {
+            Transport::Board(board, kept) => {
                 board.close().await;
+                // The other end must not go before it is told.
+                drop(kept);
                 Ok(())
             }
             Transport::Notes(_) => return Ok(()),
         };
-        if let Err(trouble) = closed {
-            screen.detail(1, &format!("{}: the connection was not closed properly: {trouble}", link.label));
+        if let Err(error) = closed {
+            screen.detail(1, &format!("{}: the connection was not closed properly: {error}", link.label));
         }
         if link.is_owner && !link.is_simulated && !link.is_shared {
-            screen.note(&format!("{}: {CLOSED}", link.label));
+            let alarm = link.link_alarm;
+            let lasting = Alarm::new(alarm.group, alarm.category + 1);
+            screen.note(&format!(
+                "{}: the connection is closed, which a controller takes for a fault of the link: it stops, and raises \
+                 alarm {alarm} or {lasting} (`armctl help safety`); `armctl session open -r NAME` keeps one open",
+                link.label
+            ));
         }
         let recorded = link.trace.finish().and(link.recorder.map_or(Ok(()), Recorder::finish));
         left.and(recorded)
     }
 }
-
-/// Said before a connection is taken that no session holds.
-const STOPS: &str = "take the command connection and drop it at the end, which stops the robot: motor power goes off, with \
-                     alarm 12.551 (`armctl session open` keeps a connection open)";
-
-/// Said when the connection to a real controller ends.
-const CLOSED: &str = "the connection is closed, which a controller takes for a fault of the link: it stops, and raises \
-                      alarm 12.551 or 12.552 (`armctl help safety`); `armctl session open -r NAME` keeps one open";
 
 impl Link {
     /// A link to a peer in this process.
@@ -308,15 +311,16 @@ impl Link {
         recorder: Option<Recorder>,
     ) -> Result<Self, Failure> {
         let timeout = robot.timeout.value;
-        let is_owner = match &robot.target.value.place {
-            Place::Eip(eip) => eip.role == EipRole::Owner && access.need == Need::Command,
-            _ => access.need != Need::Messages,
+        let endpoint = connect::endpoint(robot)?;
+        let is_owner = match endpoint {
+            Endpoint::Bus(bus, _) => bus.is_owner && access.mode == ConnectMode::Control,
+            Endpoint::Sim(_) => access.mode != ConnectMode::Explicit,
         };
         let is_simulated = robot.target.value.is_simulated();
         let is_network = !is_simulated
             && match &transport {
                 Transport::Image(image) => image.shown().is_none(),
-                Transport::Notes(_) | Transport::Board(_) => true,
+                Transport::Notes(_) | Transport::Board(..) => true,
             };
         let policy = Policy {
             ready: timeout,
@@ -329,9 +333,13 @@ impl Link {
         Ok(Self {
             trace: Trace::open(access, screen, is_network)?,
             recorder,
+            size: match &transport {
+                Transport::Image(image) => image.output_size(),
+                Transport::Notes(_) | Transport::Board(..) => Image::BYTES,
+            },
             transport,
+            link_alarm: endpoint.fieldbus().link_alarm(),
             is_simulated,
-            size: Image::BYTES,
             is_owner,
             output: Output::new(resting()),
             shown: None,
@@ -553,6 +561,16 @@ impl Link {
         self.is_owner
     }
 
+    /// What a controller raises when the link is lost.
+    pub fn link_alarm(&self) -> Alarm {
+        self.link_alarm
+    }
+
+    /// Whether the fieldbus carries the words of remote commands, or signals alone.
+    pub fn has_commands(&self) -> bool {
+        self.size == 0 || Image::has_commands(self.size)
+    }
+
     /// Refuses `--unit` where it means nothing.
     pub fn no_unit(&self, why: &str) -> Result<(), Failure> {
         if self.unit == 0 {
@@ -656,18 +674,10 @@ impl Link {
         let Totals { commands, waited, losses } = self.totals;
         let Transport::Image(image) = &self.transport else { return };
         screen.detail(1, &format!("{commands} remote commands, {waited:.1?} from sending to their ends"));
-        let Some((counted, intervals)) = image.statistics() else { return };
+        let Some(Traffic { sent, received, intervals, mut odd }) = image.traffic() else { return };
         let every = intervals.map(|(to, from)| format!(" every {to:?} and {from:?}")).unwrap_or_default();
-        let text = format!("{} images sent, {} received{every}", counted.sent, counted.received);
-        screen.detail(1, &text);
-        let odd = [
-            (counted.lost, "lost"),
-            (counted.late, "late"),
-            (counted.stale, "stale"),
-            (counted.misfit, "of a wrong size"),
-            (counted.skipped, "not sent in time"),
-            (losses.into(), "losses of the link"),
-        ];
+        screen.detail(1, &format!("{sent} images sent, {received} received{every}"));
+        odd.push((losses.into(), "losses of the link"));
         let odd: Vec<String> =
             odd.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
         if !odd.is_empty() {

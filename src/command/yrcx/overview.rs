@@ -2,7 +2,7 @@
 
 use super::link::Link;
 use super::status::position_mm;
-use crate::command::overview::{OverviewReport, PositionMm};
+use crate::command::face::overview::{OverviewReport, PositionMm};
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::{input, output};
@@ -11,6 +11,10 @@ use crate::failure::Failure;
 /// Why there is no position.
 const NOT_ASKED: &str =
     "servos and position are remote commands, which take command of the controller: `yrcx status --full`, or a session";
+
+/// The same where there are no remote commands.
+const NO_COMMANDS: &str =
+    "servos and position are remote commands, for which the fieldbus unit has no words (I/O size \"Compact\")";
 
 /// The same while a session gives somebody else's command.
 const BUSY: &str =
@@ -29,6 +33,9 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
 pub(super) fn not_asked(link: &Link, image: &Image) -> Option<&'static str> {
     if link.is_shared() && Status::of(image.0[0]) == Status::Running {
         return Some(BUSY);
+    }
+    if !link.has_commands() {
+        return Some(NO_COMMANDS);
     }
     (!link.commands()).then_some(NOT_ASKED)
 }

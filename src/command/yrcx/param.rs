@@ -4,11 +4,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::link;
+use super::link::Yrcx;
 use super::numbers::single;
 use super::overwrite::Stored;
 use super::several::{Rows, Several, ask_each};
 use super::single::Single;
-use super::{Family, link};
 use crate::command::ValueKind;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::nearest::nearest;
@@ -21,7 +22,7 @@ use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with parameters.
-    pub enum Param of Family {
+    pub enum Param {
         /// Read parameters: WEIGHT, or TOLE --axis 1,3
         Get(Get),
         /// Set a parameter: TOLE 1000 --axis 3
@@ -65,11 +66,11 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Parameters;
     const ID: &'static str = "yrcx.param.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Parameters, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Parameters, Failure> {
         let Context { link, screen, .. } = context;
         let axes: Vec<Option<u8>> =
             if self.axis.is_empty() { vec![None] } else { self.axis.iter().copied().map(Some).collect() };

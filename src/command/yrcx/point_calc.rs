@@ -2,10 +2,10 @@
 
 use clap::{ArgGroup, Args};
 
+use super::link;
 use super::numbers::single;
 use super::overwrite::Stored;
 use super::single::Single;
-use super::{Family, link};
 use crate::command::commands;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
@@ -14,7 +14,7 @@ use crate::failure::Failure;
 
 commands! {
     /// What the controller can do with points and shifts that it has.
-    pub enum PointCalc of Family {
+    pub enum PointCalc {
         /// Copy a point: 100 --to 1
         Copy(Copy),
         /// Add a point to another one: 100 --to 1

@@ -4,12 +4,13 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::link;
+use super::link::Yrcx;
 use super::numbers::{named, single};
 use super::several::{Rows, Several, ask_each};
 use super::single::Single;
-use super::{Family, link};
 use crate::command::ValueKind;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table;
@@ -19,7 +20,7 @@ use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with ports.
-    pub enum Port of Family {
+    pub enum Port {
         /// Read ports or signals: DI2, DO12, DO2.1
         Get(Get),
         /// Switch a port or a signal: DO12 7, DO2.1 on
@@ -109,11 +110,11 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Ports;
     const ID: &'static str = "yrcx.port.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Ports, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Ports, Failure> {
         let Context { link, screen, .. } = context;
         let order = |place: &Place| place.order(link.draft(table::Command::PortGet)?).map_err(Failure::usage);
         let orders = self.places.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;

@@ -4,8 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
-use crate::command::{Command, Context, Need, Report};
+use super::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::procedure::Procedure;
 use crate::failure::Failure;
@@ -20,7 +20,7 @@ macro_rules! procedures {
             pub struct $name {}
 
             impl Command for $name {
-                type Family = Family;
+                type Family = Yrcx;
                 type Report = CarriedOut;
                 const ID: &'static str = $id;
 
@@ -36,11 +36,11 @@ macro_rules! procedures {
                     $is_stop
                 })?
 
-                fn need(&self) -> Need {
-                    if Procedure::$procedure().only_awaits() { Need::Sight } else { Need::Command }
+                fn connect_mode(&self) -> ConnectMode {
+                    if Procedure::$procedure().only_awaits() { ConnectMode::Monitor } else { ConnectMode::Control }
                 }
 
-                async fn run(&self, context: Context<'_, Family>) -> Result<CarriedOut, Failure> {
+                async fn run(&self, context: Context<'_, Yrcx>) -> Result<CarriedOut, Failure> {
                     let elapsed = context.link.carry_out(Procedure::$procedure()).await?;
                     let elapsed_ms = u64::try_from(elapsed.as_millis()).unwrap_or(u64::MAX);
                     Ok(CarriedOut { done: $done, elapsed_ms })

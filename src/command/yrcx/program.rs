@@ -4,10 +4,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::link;
 use super::single::Single;
-use super::{Family, link};
 use crate::command::ValueKind;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::{Report, commands};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::{COMMON_LINES, Command};
@@ -17,7 +17,7 @@ use crate::output::view::View;
 
 commands! {
     /// What can be done with programs.
-    pub enum Program of Family {
+    pub enum Program {
         /// Register a program in a task
         Select(Select),
         /// Run a program, or all of them

@@ -4,9 +4,11 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::decode::FieldRow;
 use super::refusal::refused;
-use super::{Family, link, overwrite};
-use crate::command::common::decode::yrcx::{FieldRow, field_table};
+use super::{link, overwrite};
+use crate::command::decode::{field_table, problem_lines};
+use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::answer::Answer;
@@ -15,7 +17,7 @@ use crate::controller::yrcx::image::{COMMAND_WORDS, Words};
 use crate::controller::yrcx::order::Order;
 use crate::failure::Failure;
 use crate::gate::Confirmation;
-use crate::output::view::{Section, View};
+use crate::output::view::View;
 
 /// Sends words that the manual allows.
 #[derive(Debug, Args)]
@@ -56,7 +58,7 @@ pub fn words(text: &str) -> Result<Words, String> {
 }
 
 impl Command for Raw {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Exchange;
     const ID: &'static str = "yrcx.raw";
 
@@ -72,7 +74,7 @@ impl Command for Raw {
         overwrite::confirmation(self.wi.command())
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Exchange, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Exchange, Failure> {
         context.link.no_unit("the words name the robot")?;
         if self.confirmation() == Confirmation::WhenKnown {
             overwrite::confirm(context.link, &context.authority, &self.wi).await?;
@@ -121,9 +123,9 @@ impl Exchange {
 
 impl Report for Exchange {
     fn view(&self) -> View {
-        let problems: String = self.problems.iter().map(|problem| format!("\nproblem: {problem}")).collect();
+        let problems = problem_lines(&self.problems);
         let view = View::text(format!("{}\n{}{problems}", self.wo.join(" "), self.title));
-        view.and(Section::Table(field_table(&self.fields)))
+        view.and(field_table(&self.fields))
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -76,9 +76,20 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
 }
 
 /// Commands that end what an alarm is about.
-const WAYS_OUT: [(&str, &[Alarm]); 2] = [
-    (": `yrcx io set stop=on`", &[STOP_INPUT]),
-    ("; `yrcx recover` ends the alarm", &[Alarm::new(12, 551), Alarm::new(12, 552), Alarm::new(12, 600)]),
+const WAYS_OUT: [(&str, &[Alarm]); 2] =
+    [(": `yrcx io set stop=on`", &[STOP_INPUT]), ("; `yrcx recover` ends the alarm", &RECOVERABLE)];
+
+/// Alarms of a lost link, on each fieldbus, and of an emergency stop.
+const RECOVERABLE: [Alarm; 9] = [
+    Alarm::new(12, 541),
+    Alarm::new(12, 542),
+    Alarm::new(12, 551),
+    Alarm::new(12, 552),
+    Alarm::new(12, 561),
+    Alarm::new(12, 562),
+    Alarm::new(12, 571),
+    Alarm::new(12, 572),
+    Alarm::new(12, 600),
 ];
 
 /// What a relative motion that was stopped does when it is given again (4.2.2, 4.2.4); empty for others.
@@ -133,11 +144,21 @@ pub fn unanswered(label: &str, row: &Row, outcome: &Outcome, stop: Option<bool>)
     }
 }
 
+/// A remote command where the fieldbus carries signals alone.
+pub fn no_commands(label: &str, row: &Row) -> Failure {
+    let message =
+        format!("{label}: the fieldbus unit carries signals alone (I/O size \"Compact\"), and {} is words", row.id);
+    Failure::new(Kind::RefusedHere, message).hint(
+        "set the unit's I/O size to Normal for remote commands; signals work: `yrcx status`, `yrcx io`, `yrcx run`, \
+         `yrcx stop`, `yrcx recover`",
+    )
+}
+
 fn not_sent(label: &str, row: &Row, hindrance: Hindrance) -> Failure {
     let (why, hint) = match hindrance {
         Hindrance::NoImage => (
             "the controller shows nothing".to_owned(),
-            "check the link: `-v` counts what came; in_size and in of the URL may be wrong",
+            "check the link: `-v` counts what came; the sizes in the URL may be wrong (`armctl robots check`)",
         ),
         Hindrance::LinkLost => {
             ("the link is down".to_owned(), "look at the controller; the link opens again by itself")

@@ -2,12 +2,11 @@
 
 use clap::Args;
 
-use super::Family;
 use super::arguments::Hand as HandSystem;
 use super::link;
 use super::single::Single;
 use crate::command::commands;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
@@ -15,7 +14,7 @@ use crate::failure::Failure;
 
 commands! {
     /// What can be done about the shift.
-    pub enum Shift of Family {
+    pub enum Shift {
         /// Select a shift of the coordinates
         Select(ShiftSelect),
     }
@@ -23,7 +22,7 @@ commands! {
 
 commands! {
     /// What can be done about the hand.
-    pub enum Hand of Family {
+    pub enum Hand {
         /// Select the hand at the robot's end
         Select(HandSelect),
     }
@@ -31,7 +30,7 @@ commands! {
 
 commands! {
     /// What can be done about the arm.
-    pub enum Arm of Family {
+    pub enum Arm {
         /// Select the hand system that coordinates are reached in
         Select(ArmSelect),
     }

@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use super::arguments::Which;
 use super::link;
 use super::single::Single;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;

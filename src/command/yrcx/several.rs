@@ -3,12 +3,12 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
+use super::link::Yrcx;
 use super::link::{Given, Link};
 use super::numbers::Numbers;
 use super::refusal::refused;
 use crate::command::Context;
-use crate::command::items::{ItemError, ItemOutcome, verdict};
+use crate::command::frame::items::{ItemError, ItemOutcome, verdict};
 use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use crate::controller::yrcx::answer::Answer;
 use crate::controller::yrcx::order::Order;
@@ -67,7 +67,7 @@ async fn ask(link: &mut Link, order: &Order) -> (Result<Values, Failure>, bool) 
 
 /// Reads what has these numbers, which stand in the field `key` of the command; `nouns` names what it is, one and many.
 pub async fn read_numbers<V>(
-    context: Context<'_, Family>,
+    context: Context<'_, Yrcx>,
     [noun, nouns]: [&str; 2],
     (command, key): (Command, Key),
     numbers: &[Numbers],

@@ -1,7 +1,7 @@
 //! Commands that give one remote command each: most of them do.
 
-use super::Family;
 use super::link::Done;
+use super::link::Yrcx;
 use super::overwrite;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -36,7 +36,7 @@ pub trait Single {
 }
 
 impl<S: Single> Command for S {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = S::Report;
     const ID: &'static str = S::ID;
 
@@ -52,7 +52,7 @@ impl<S: Single> Command for S {
         overwrite::confirmation(Single::command(self))
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<S::Report, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<S::Report, Failure> {
         let draft = context.link.draft(Single::command(self))?;
         let order = self.fill(draft).build()?;
         self.report(&overwrite::give(context.link, &context.authority, &order).await?)

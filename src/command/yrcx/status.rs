@@ -4,15 +4,15 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::info::{AxisServo, servos};
 use super::link::Link;
+use super::link::Yrcx;
 use super::overview::not_asked;
 use super::position::{Position, Unit};
 use super::several::ask_each;
-use crate::command::dry_run::Reason;
-use crate::command::items::{ItemError, verdict};
-use crate::command::{Command, Context, Need, Report};
+use crate::command::frame::dry_run::Reason;
+use crate::command::frame::items::{ItemError, verdict};
+use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::yrcx::answer::{Answer, Status as CommandStatus};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::output;
@@ -35,15 +35,15 @@ pub struct Status {
 }
 
 impl Command for Status {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = StatusReport;
     const ID: &'static str = "yrcx.status";
 
-    fn need(&self) -> Need {
-        if self.full { Need::Command } else { Need::Sight }
+    fn connect_mode(&self) -> ConnectMode {
+        if self.full { ConnectMode::Control } else { ConnectMode::Monitor }
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<StatusReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<StatusReport, Failure> {
         let Context { link, screen, .. } = context;
         let servo = link.draft(table::Command::ServoStatus)?.build()?;
         let position = link.draft(table::Command::PositionMm)?.build()?;

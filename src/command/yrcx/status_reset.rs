@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::link;
 use super::single::Single;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::controller::yrcx::table::Command;
 use crate::failure::Failure;
 

@@ -7,11 +7,13 @@ use std::time::Duration;
 use clap::Parser as _;
 use serde_json::Value;
 
-use super::Family;
 use super::link::Link;
-use crate::cli::{Cli, OfYrcx, Top, Verb};
-use crate::command::testing::{self, context, planned};
-use crate::command::{Access, AnyCommand, Family as _, Need, Noun as _};
+use super::link::Yrcx;
+use crate::cli::{Cli, FamilyWord, Top};
+use crate::command::face::words::{Typed, Wish};
+use crate::command::frame::testing;
+use crate::command::frame::testing::{context, planned};
+use crate::command::{Access, AnyCommand, ConnectMode, Family as _};
 use crate::controller::Risk;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Words};
 use crate::controller::yrcx::signal::output;
@@ -130,14 +132,14 @@ pub(super) fn written(line: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
 /// All that `armctl yrcx WORDS…` would send.
 pub(super) fn frames(words: &[&str]) -> Result<Vec<Value>, Failure> {
     let (robot, command) = resolved(DRY, words)?;
-    Ok(testing::frames(&planned(&robot, &*command, |link| link.set_unit(unit(words)))?))
+    Ok(testing::frames(&planned::<Yrcx>(&robot, &*command, |link| link.set_unit(unit(words)))?))
 }
 
 /// The report of a dry run of a line.
 pub(super) fn planned_line(target: &str, line: &str) -> Result<Value, Failure> {
     let words: Vec<&str> = line.split(' ').collect();
     let (robot, command) = resolved(target, &words)?;
-    planned(&robot, &*command, |link| link.set_unit(unit(&words)))
+    planned::<Yrcx>(&robot, &*command, |link| link.set_unit(unit(&words)))
 }
 
 /// A real controller that nothing is sent to.
@@ -185,20 +187,51 @@ impl ImagePeer for Handle {
     }
 }
 
+/// The same behind a fieldbus that carries signals alone.
+#[derive(Debug)]
+struct SignalsAlone(Handle);
+
+impl ImagePeer for SignalsAlone {
+    fn input(&mut self, now: Duration, image: Option<&[u8]>) {
+        let whole = image.map(|bytes| {
+            assert_eq!(bytes.len(), Image::SIGNAL_BYTES);
+            Image::from_link(bytes).unwrap().to_bytes()
+        });
+        self.0.input(now, whole.as_ref().map(|bytes| &bytes[..]));
+    }
+
+    fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
+        self.0.output(now).map(|bytes| Image::from_link(&bytes).unwrap().to_link(Image::SIGNAL_BYTES))
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        self.0.wake()
+    }
+}
+
 impl Bench {
     pub(super) fn new(scripted: Scripted) -> Self {
         Self::granted(scripted, Risk::Motion)
     }
 
+    /// A controller whose fieldbus carries signals alone.
+    pub(super) fn signals_alone(scripted: Scripted) -> Self {
+        Self::over(scripted, Risk::Motion, |handle| Box::new(SignalsAlone(handle)))
+    }
+
     /// A link that may do so much and no more.
     pub(super) fn granted(scripted: Scripted, granted: Risk) -> Self {
+        Self::over(scripted, granted, |handle| Box::new(handle))
+    }
+
+    fn over(scripted: Scripted, granted: Risk, end: impl FnOnce(Handle) -> Box<dyn ImagePeer>) -> Self {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
         let peer = Shared::new(scripted.into());
-        let access = Access { granted: Grant::of(granted), ..Access::reading(Need::Command) };
+        let access = Access { granted: Grant::of(granted), ..Access::reading(ConnectMode::Control) };
         let screen = quiet();
-        let opening = Link::to_peer(&robot, &access, &screen, Box::new(Handle(Shared::clone(&peer))));
+        let opening = Link::to_peer(&robot, &access, &screen, end(Handle(Shared::clone(&peer))));
         let link = runtime.block_on(opening).expect("a link");
         Self { runtime, robot, link, peer }
     }
@@ -214,7 +247,7 @@ impl Bench {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link, .. } = self;
         link.set_unit(unit(words));
-        let report = runtime.block_on(command.run(context(robot, link)))?;
+        let report = runtime.block_on(testing::run::<Yrcx>(&*command, context(robot, link)))?;
         Ok((report.data()?, report.failure()))
     }
 
@@ -229,14 +262,14 @@ impl Bench {
         let Self { runtime, robot, link, .. } = self;
         link.set_unit(unit(words));
         runtime.block_on(async {
-            let run = command.run(context(robot, link));
+            let run = testing::run::<Yrcx>(&*command, context(robot, link));
             tokio::time::timeout(after, run).await.is_err()
         })
     }
 
     /// What Ctrl-C does to a motion.
     pub(super) fn halt(&mut self) -> Result<String, Failure> {
-        self.runtime.block_on(Family::halt(&mut self.link))
+        self.runtime.block_on(Yrcx::halt(&mut self.link))
     }
 
     /// Changes the controller from outside, or looks at it.
@@ -246,7 +279,7 @@ impl Bench {
 
     /// Ends the link, and returns the controller.
     pub(super) fn into_peer(self) -> Scripted {
-        self.runtime.block_on(Family::close(self.link, &quiet())).expect("it closes");
+        self.runtime.block_on(Yrcx::close(self.link, &quiet())).expect("it closes");
         std::sync::Arc::into_inner(self.peer).expect("the link is gone").into_inner().unwrap()
     }
 }
@@ -389,20 +422,20 @@ fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
 }
 
 /// Robot and command of a line.
-pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand<Family>>), Failure> {
+pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
     let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Yrcx))?.remove(0);
-    let Top::Yrcx(OfYrcx::Yrcx { verb: Some(Verb::Command(verb)), .. }) = cli.command else {
-        unreachable!("the words follow yrcx")
-    };
-    Ok((robot, verb.command()))
+    match cli.command {
+        Top::Family(FamilyWord { typed: Typed { wish: Wish::Command(command), .. }, .. }) => Ok((robot, command)),
+        _ => unreachable!("the words follow yrcx"),
+    }
 }
 
 /// The robot of `--unit`.
 fn unit(words: &[&str]) -> u8 {
     match parsed(DRY, words).map(|cli| cli.command) {
-        Ok(Top::Yrcx(OfYrcx::Yrcx { unit, .. })) => unit.number(),
+        Ok(Top::Family(FamilyWord { typed, .. })) => typed.unit,
         _ => 0,
     }
 }

@@ -12,8 +12,8 @@ use super::info::{AlarmReport, servos};
 use super::link::{Link, Yrcx};
 use super::overview::{not_asked, report};
 use super::position::{Position, Unit};
-use crate::command::overview::{OverviewReport, PositionMm};
-use crate::command::sample::{Alarm, Axis, Bank, Depth, Eight, Lamp, Sample, Whole};
+use crate::command::face::overview::{OverviewReport, PositionMm};
+use crate::command::face::sample::{Alarm, Axis, Bank, Depth, Eight, Lamp, Sample, Whole};
 use crate::command::{Access, Family as _};
 use crate::controller::yrcx::answer::{Answer, Status};
 use crate::controller::yrcx::image::Image;
@@ -60,8 +60,8 @@ impl Eye {
     /// Opens it; nothing but reads can leave, and no connection is opened that the controller would miss.
     pub async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         let mut robot = robot.clone();
-        if let Place::Eip(eip) = &mut robot.target.value.place {
-            eip.rpi = eip.rpi.max(LOOKS);
+        if let Place::Bus(bus) = &mut robot.target.value.place {
+            bus.calm = LOOKS;
         }
         let link = Yrcx::connect(&robot, access, screen).await?;
         Ok(Self { link, told: Told::default(), next: 0, asked: None })

@@ -1,21 +1,21 @@
 //! Images in the record of the traffic: as text when they change, as packets whenever they pass.
 
-use std::net::SocketAddr;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, SyncSender};
 use std::thread::JoinHandle;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
-use crate::command::{Access, trace};
+use crate::command::Access;
+use crate::command::frame::trace;
 use crate::controller::text::hex;
 use crate::controller::yrcx::changes::changes;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::Side;
 use crate::failure::Failure;
 use crate::output::Screen;
-use crate::transport::eip::tap::{Passed, Tap};
+use crate::transport::image::tap::{Passed, Tap};
 use crate::transport::tap::Direction;
 
 /// What the images of one link say, as text. Where there is no network, the images themselves are recorded as well.
@@ -41,23 +41,20 @@ impl Trace {
 
     /// An image was shown to the controller.
     pub fn sent(&mut self, image: &Image) {
-        self.text.capture(|capture, time| capture.line(time, Direction::Sent, &image.to_bytes()));
         let before = self.sent.replace(*image);
-        self.changes("->", Side::Input, before.as_ref(), image);
+        self.image(Direction::Sent, Side::Input, before.as_ref(), image);
     }
 
     /// The controller showed an image.
     pub fn received(&mut self, image: &Image) {
-        self.text.capture(|capture, time| capture.line(time, Direction::Received, &image.to_bytes()));
         let before = self.received.replace(*image);
-        self.changes("<-", Side::Output, before.as_ref(), image);
+        self.image(Direction::Received, Side::Output, before.as_ref(), image);
     }
 
     /// A message went to the network board, or came from it.
-    pub fn message(&self, direction: Direction, bytes: &[u8], about: &str) {
+    pub fn message(&mut self, direction: Direction, bytes: &[u8], about: &str) {
         if self.text.level() > 0 {
-            let arrow = if direction == Direction::Sent { "->" } else { "<-" };
-            self.text.line(&format!("{arrow} {}  # {about}", hex(bytes)));
+            self.text.line(direction, &format!("{}  # {about}", hex(bytes)));
         }
     }
 
@@ -66,10 +63,11 @@ impl Trace {
         self.text.finish()
     }
 
-    fn changes(&self, arrow: &str, side: Side, before: Option<&Image>, image: &Image) {
+    fn image(&mut self, direction: Direction, side: Side, before: Option<&Image>, image: &Image) {
+        self.text.piece(direction, None, &image.to_bytes());
         if self.text.level() > 0 {
             for change in changes(side, before, image) {
-                self.text.line(&format!("{arrow} {}", change.line(self.text.level() > 1)));
+                self.text.line(direction, &change.line(self.text.level() > 1));
             }
         }
     }
@@ -83,37 +81,25 @@ const MOST_WAITING: usize = 65_536;
 pub struct Recorder {
     writer: JoinHandle<Result<(), Failure>>,
     /// `None` says that there is no more.
-    packets: SyncSender<Option<Packet>>,
+    packets: SyncSender<Option<(Duration, Passed)>>,
     /// Packets that there was no room for.
     lost: Arc<AtomicU64>,
 }
 
-/// A packet on its way to the file.
-#[derive(Debug)]
-struct Packet {
-    time: Duration,
-    is_tcp: bool,
-    from: SocketAddr,
-    to: SocketAddr,
-    bytes: Vec<u8>,
-}
-
 impl Recorder {
-    /// Begins to record what passes the tap, if that is wanted.
-    pub fn start(access: &Access, screen: &Screen) -> Result<Option<(Self, Tap)>, Failure> {
+    /// Begins to record what passes the tap, if that is wanted; `link_type` is the kind of packets, as in a capture file.
+    pub fn start(access: &Access, screen: &Screen, link_type: u16) -> Result<Option<(Self, Tap)>, Failure> {
         if access.trace.as_deref().is_none_or(|path| path == Path::new("-")) {
             return Ok(None);
         }
-        let mut record = trace::Trace::of_network(access, screen)?;
-        let (packets, coming) = mpsc::sync_channel::<Option<Packet>>(MOST_WAITING);
+        let mut record = trace::Trace::of_packets(access, screen, link_type)?;
+        let (packets, coming) = mpsc::sync_channel::<Option<(Duration, Passed)>>(MOST_WAITING);
         let writer = std::thread::Builder::new().name("trace".to_owned()).spawn(move || {
-            while let Ok(Some(Packet { time, is_tcp, from, to, bytes })) = coming.recv() {
-                record.capture(|capture, _| {
-                    if is_tcp {
-                        capture.segment(time, from, to, &bytes)
-                    } else {
-                        capture.datagram(time, from, to, &bytes)
-                    }
+            while let Ok(Some((time, passed))) = coming.recv() {
+                record.capture(|capture, _| match passed {
+                    Passed::Datagram { from, to, bytes } => capture.datagram(time, from, to, &bytes),
+                    Passed::Segment { from, to, bytes } => capture.segment(time, from, to, &bytes),
+                    Passed::Frame(bytes) => capture.frame(time, &bytes),
                 });
             }
             record.finish()
@@ -121,16 +107,10 @@ impl Recorder {
         let writer = writer.map_err(|error| Failure::io("trace", &error))?;
         let lost = Arc::new(AtomicU64::new(0));
         let (counted, sender) = (Arc::clone(&lost), packets.clone());
-        let tap = Tap::new(move |passed: &Passed<'_>| {
-            let packet = Packet {
-                time: SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default(),
-                is_tcp: passed.is_tcp,
-                from: passed.from.into(),
-                to: passed.to.into(),
-                bytes: passed.bytes.to_vec(),
-            };
+        let tap = Tap::new(move |passed| {
+            let time = trace::now();
             // A disk that is minutes behind loses packets, not the robot.
-            if sender.try_send(Some(packet)).is_err() {
+            if sender.try_send(Some((time, passed))).is_err() {
                 counted.fetch_add(1, Ordering::Relaxed);
             }
         });
@@ -141,11 +121,10 @@ impl Recorder {
     pub fn finish(self) -> Result<(), Failure> {
         // A writer that is gone says so when it is joined.
         let _ = self.packets.send(None);
-        let not_whole = |why: String| Failure::local(format!("the record of --trace is not whole: {why}"));
-        self.writer.join().unwrap_or_else(|_| Err(not_whole("its writer broke down".to_owned())))?;
+        self.writer.join().unwrap_or_else(|_| Err(trace::not_whole("its writer broke down")))?;
         match self.lost.load(Ordering::Relaxed) {
             0 => Ok(()),
-            lost => Err(not_whole(format!("the disk was too slow for {lost} packets"))),
+            lost => Err(trace::not_whole(&format!("the disk was too slow for {lost} packets"))),
         }
     }
 }

@@ -5,12 +5,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Number, Value as Json};
 
+use super::link;
+use super::link::Yrcx;
 use super::numbers::{Numbers, named, single};
 use super::several::{Rows, Several, ask_each};
 use super::single::Single;
-use super::{Family, link};
 use crate::command::ValueKind;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table;
@@ -20,7 +21,7 @@ use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with static variables.
-    pub enum Var of Family {
+    pub enum Var {
         /// Read variables: SGI1, SGI0..SGI31, SGR5
         Get(Get),
         /// Set a variable: SGI1 10000, or SGI1 SGI2
@@ -46,11 +47,11 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Variables;
     const ID: &'static str = "yrcx.var.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Variables, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Variables, Failure> {
         let Context { link, screen, .. } = context;
         let numbers = Numbers::of(&self.variables);
         let order = |number: &i32| Ok(link.draft(table::Command::VarGet)?.with(Key::Variable, *number).build()?);

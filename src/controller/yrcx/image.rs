@@ -11,6 +11,9 @@ pub const IMAGE_WORDS: usize = 24;
 /// The word that holds the dedicated signals (SI(00) to SI(17), SO(00) to SO(17)).
 pub const DEDICATED_WORD: usize = 16;
 
+/// The first byte of the signals.
+const SIGNALS_AT: usize = DEDICATED_WORD * 2;
+
 /// WI0 to WI15, or WO0 to WO15.
 pub type Words = [u16; COMMAND_WORDS];
 
@@ -39,6 +42,36 @@ impl Image {
             pair.copy_from_slice(&word.to_le_bytes());
         }
         bytes
+    }
+
+    /// Bytes of the image where a fieldbus carries signals alone (DeviceNet, I/O size "Compact"): the words of the
+    /// dedicated signals and of the first sixteen general-purpose ones.
+    pub const SIGNAL_BYTES: usize = 4;
+
+    /// Whether images of so many bytes hold the words of remote commands.
+    pub const fn has_commands(bytes: usize) -> bool {
+        bytes >= Self::BYTES
+    }
+
+    /// Reads what a fieldbus carries: the whole image with whatever follows it, or signals alone, where all else is 0.
+    pub fn from_link(bytes: &[u8]) -> Option<Self> {
+        if bytes.len() != Self::SIGNAL_BYTES {
+            return Self::from_bytes(bytes.get(..Self::BYTES)?);
+        }
+        let mut whole = [0; Self::BYTES];
+        whole[SIGNALS_AT..SIGNALS_AT + Self::SIGNAL_BYTES].copy_from_slice(bytes);
+        Self::from_bytes(&whole)
+    }
+
+    /// The same as a fieldbus carries it in so many bytes; what follows the image is 0.
+    pub fn to_link(self, bytes: usize) -> Vec<u8> {
+        let whole = self.to_bytes();
+        if bytes == Self::SIGNAL_BYTES {
+            return whole[SIGNALS_AT..SIGNALS_AT + Self::SIGNAL_BYTES].to_vec();
+        }
+        let mut link = whole.to_vec();
+        link.resize(bytes, 0);
+        link
     }
 
     /// The words of the remote command.
@@ -132,6 +165,19 @@ mod tests {
         assert_eq!(Image::from_bytes(&bytes), Some(image));
         assert_eq!(Image::from_bytes(&bytes[..47]), None);
         assert_eq!(Image::from_bytes(&[0; 50]), None);
+    }
+
+    #[test]
+    fn signals_alone_are_an_image_too() {
+        // DeviceNet, I/O size Compact: word 0 holds the dedicated signals, word 1 the first general-purpose ones.
+        let mut image = Image::default();
+        (image.0[0], image.0[DEDICATED_WORD], image.0[17], image.0[18]) = (1, 0x0041, 0x8001, 7);
+        assert_eq!(image.to_link(4), [0x41, 0, 0x01, 0x80]);
+        let read = Image::from_link(&[0x41, 0, 0x01, 0x80]).unwrap();
+        assert_eq!((read.0[0], read.0[DEDICATED_WORD], read.0[17], read.0[18]), (0, 0x0041, 0x8001, 0));
+        assert_eq!(Image::from_link(&image.to_link(50)), Some(image));
+        assert_eq!((image.to_link(50).len(), Image::from_link(&[0; 47])), (50, None));
+        assert!(Image::has_commands(48) && !Image::has_commands(4));
     }
 
     #[test]

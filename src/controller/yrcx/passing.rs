@@ -5,7 +5,7 @@ use super::signal::input;
 
 /// Whether an image, shown after another one, gives no command and switches nothing but a stop: SI(00) or SI(06) off.
 pub fn only_stops(before: &[u8], after: &[u8]) -> bool {
-    let image = |bytes: &[u8]| bytes.get(..Image::BYTES).and_then(Image::from_bytes).unwrap_or_default();
+    let image = |bytes: &[u8]| Image::from_link(bytes).unwrap_or_default();
     let (before, after) = (image(before), image(after));
     let mut still = before;
     for stop in [input::EMERGENCY_STOP, input::STOP] {
@@ -36,5 +36,7 @@ mod tests {
         let mut stopped = resting();
         input::STOP.set(&mut stopped, false);
         assert!(!only_stops(&stopped.to_bytes(), &resting().to_bytes()), "a stop is not taken back");
+        assert!(only_stops(&resting().to_link(4), &stopped.to_link(4)), "where signals are alone, too");
+        assert!(!only_stops(&stopped.to_link(4), &resting().to_link(4)));
     }
 }

@@ -10,7 +10,7 @@ use super::{Place, Target};
 pub enum Address {
     /// On the network. The transport is part of it: two servers may share a number.
     Network {
-        /// `udp`, `tcp`, `eip`.
+        /// `udp`, `tcp`, or that of a fieldbus.
         scheme: &'static str,
         /// Name or address, in its plainest form.
         host: Host,
@@ -68,19 +68,26 @@ impl Host {
 impl Address {
     /// Where the target is.
     pub fn of(target: &Target) -> Self {
-        let network = |scheme, host: &str, port| Self::Network { scheme, host: Host::new(host), port };
         match &target.place {
-            Place::Udp(udp) => network("udp", &udp.host, udp.port),
-            Place::Tcp(tcp) => network("tcp", &tcp.host, tcp.port),
-            Place::Eip(eip) => network("eip", &eip.host, eip.port),
-            Place::Serial(serial) => {
-                // Links such as those of /dev/serial/by-id lead to the device; a port that is not there has its own name.
-                let path = std::fs::canonicalize(Path::new(&serial.path));
-                let path = path.map_or_else(|_| serial.path.clone(), |path| path.display().to_string());
-                Self::Device(if cfg!(windows) { path.to_ascii_uppercase() } else { path })
-            }
+            Place::Udp(udp) => Self::network("udp", &udp.host, udp.port),
+            Place::Tcp(tcp) => Self::network("tcp", &tcp.host, tcp.port),
+            Place::Bus(bus) => bus.address().clone(),
+            Place::Serial(serial) => Self::device(&serial.path),
             Place::Sim(_) => Self::Simulated,
         }
+    }
+
+    /// A host on the network.
+    pub(super) fn network(scheme: &'static str, host: &str, port: u16) -> Self {
+        Self::Network { scheme, host: Host::new(host), port }
+    }
+
+    /// A device of this machine.
+    pub(super) fn device(path: &str) -> Self {
+        // Links such as those of /dev/serial/by-id lead to the device; a port that is not there has its own name.
+        let real = std::fs::canonicalize(Path::new(path));
+        let path = real.map_or_else(|_| path.to_owned(), |path| path.display().to_string());
+        Self::Device(if cfg!(windows) { path.to_ascii_uppercase() } else { path })
     }
 
     /// Whether both are one controller.

@@ -2,10 +2,31 @@
 //! settings; the usual ones are those of an older controller of the same maker.
 
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 use std::time::Duration;
 
-use super::{Query, authority, choice, host_and_port, port};
+use super::bus::{Place, Scheme};
+use super::{Address, Query, authority, choice, host_and_port, port};
 use crate::settings::duration;
+
+/// The scheme.
+pub const SCHEME: Scheme = Scheme {
+    name: "eip",
+    bus: "eip",
+    simulators: &["eip"],
+    shortest: "eip://HOST",
+    form: "eip://HOST[:44818][?in=100&out=150&config=1&rpi=20ms]",
+    about: "yrcx: name or address of the network board",
+    parse: |place, query| {
+        let eip = parse(place, query)?;
+        Ok(Place {
+            address: Address::network("eip", &eip.host, eip.port),
+            short_name: eip.host.clone(),
+            is_owner: eip.role == EipRole::Owner,
+            options: Arc::new(eip),
+        })
+    },
+};
 
 /// A controller as an adapter of EtherNet/IP.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -71,7 +92,7 @@ const RPIS: RangeInclusive<Duration> = Duration::from_millis(1)..=Duration::from
 const RPI: Duration = Duration::from_millis(20);
 
 /// Reads what stands after `eip:`.
-pub(super) fn parse(place: &str, query: &mut Query) -> Result<Eip, String> {
+fn parse(place: &str, query: &mut Query) -> Result<Eip, String> {
     let (host, own_port) = host_and_port(authority("eip", place)?)?;
     if host.contains(':') {
         return Err(format!("'{host}' is an IPv6 address; EtherNet/IP has IPv4"));
@@ -155,12 +176,13 @@ fn key(text: &str) -> Result<EipKey, String> {
 #[cfg(test)]
 mod tests {
     use super::super::{Place, Target};
-    use super::*;
+    use super::{Eip, EipKey, EipRole};
+    use std::time::Duration;
 
     fn eip(url: &str) -> Result<Eip, String> {
         match url.parse::<Target>() {
             Ok(target) => match target.place {
-                Place::Eip(eip) => Ok(eip),
+                Place::Bus(bus) => Ok(bus.options::<Eip>().unwrap().clone()),
                 other => panic!("{other:?}"),
             },
             Err(failure) => Err(failure.message),

@@ -32,13 +32,13 @@ pub struct Damage {
     pub problem: &'static str,
 }
 
-/// Bytes that are no capture file.
+/// Why a file cannot be read as a capture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-pub enum Unknown {
+pub enum OpenError {
     /// Compressed by gzip or zstd.
     #[error("it is compressed")]
     Compressed,
-    /// Nothing known.
+    /// Neither pcap nor pcapng.
     #[error("it is no pcap or pcapng file")]
     Other,
     /// Reading has failed.
@@ -67,12 +67,12 @@ const MOST_INTERFACES: usize = 1 << 16;
 
 /// Numbers in the byte order of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Order {
+enum ByteOrder {
     Big,
     Little,
 }
 
-impl Order {
+impl ByteOrder {
     fn short(self, bytes: &[u8], at: usize) -> Option<u16> {
         let bytes = *bytes.get(at..)?.first_chunk()?;
         Some(if self == Self::Big { u16::from_be_bytes(bytes) } else { u16::from_le_bytes(bytes) })
@@ -182,7 +182,7 @@ impl<R: Read> Window<R> {
 #[derive(Debug)]
 pub struct Packets<R> {
     file: Window<R>,
-    order: Order,
+    byte_order: ByteOrder,
     format: Format,
     number: u64,
     section: usize,
@@ -190,8 +190,8 @@ pub struct Packets<R> {
     is_over: bool,
 }
 
-/// A packet without its bytes, which lie so far from here.
-struct Found {
+/// A packet, with where its bytes are in the record or block.
+struct PacketSpan {
     interface: Interface,
     time: Option<Duration>,
     bytes: std::ops::Range<usize>,
@@ -202,44 +202,44 @@ const UNREADABLE: &str = "the file cannot be read any further";
 
 impl<R: Read> Packets<R> {
     /// Begins with a file.
-    pub fn open(file: R) -> Result<Self, Unknown> {
+    pub fn open(file: R) -> Result<Self, OpenError> {
         let mut file = Window { file, bytes: Vec::new(), start: 0, passed: 0 };
-        let head = file.look(FILE_HEADER).map_err(|_| Unknown::Unreadable)?;
-        let magic = head.first_chunk::<4>().map(|bytes| u32::from_be_bytes(*bytes)).ok_or(Unknown::Other)?;
-        let classic = |order: Order, clock| {
+        let head = file.look(FILE_HEADER).map_err(|_| OpenError::Unreadable)?;
+        let magic = head.first_chunk::<4>().map(|bytes| u32::from_be_bytes(*bytes)).ok_or(OpenError::Other)?;
+        let classic = |order: ByteOrder, clock| {
             let most = order.size(head, 16)?;
             // Above the link type, a word may say that packets end with a checksum.
             let link_type = u16::try_from(order.word(head, 20)? & 0xFFFF).ok()?;
             Some((order, Format::Classic(Interface { link_type, most, clock }), FILE_HEADER))
         };
         let opened = match magic {
-            SECTION_HEADER => Some((Order::Little, Format::Blocks(Vec::new()), 0)),
-            0xA1B2_C3D4 => classic(Order::Big, Clock::MICROS),
-            0xD4C3_B2A1 => classic(Order::Little, Clock::MICROS),
-            0xA1B2_3C4D => classic(Order::Big, Clock::NANOS),
-            0x4D3C_B2A1 => classic(Order::Little, Clock::NANOS),
-            0x1F8B_0000..=0x1F8B_FFFF | 0x28B5_2FFD => return Err(Unknown::Compressed),
+            SECTION_HEADER => Some((ByteOrder::Little, Format::Blocks(Vec::new()), 0)),
+            0xA1B2_C3D4 => classic(ByteOrder::Big, Clock::MICROS),
+            0xD4C3_B2A1 => classic(ByteOrder::Little, Clock::MICROS),
+            0xA1B2_3C4D => classic(ByteOrder::Big, Clock::NANOS),
+            0x4D3C_B2A1 => classic(ByteOrder::Little, Clock::NANOS),
+            0x1F8B_0000..=0x1F8B_FFFF | 0x28B5_2FFD => return Err(OpenError::Compressed),
             _ => None,
         };
-        let (order, format, at) = opened.ok_or(Unknown::Other)?;
+        let (byte_order, format, at) = opened.ok_or(OpenError::Other)?;
         file.pass(at);
-        Ok(Self { file, order, format, number: 0, section: 0, time: Duration::ZERO, is_over: false })
+        Ok(Self { file, byte_order, format, number: 0, section: 0, time: Duration::ZERO, is_over: false })
     }
 
     /// The next packet; `None` at the end, and after damage.
     pub fn next(&mut self) -> Option<Result<Packet<'_>, Damage>> {
-        // What was found, and how long the record is that it is in.
-        let found = loop {
+        // With how long the record or block is.
+        let (span, len) = loop {
             if self.is_over {
                 return None;
             }
-            let found = match self.format {
+            let next = match self.format {
                 _ if self.file.look(1).is_ok_and(<[u8]>::is_empty) => return None,
-                Format::Classic(interface) => self.record(interface).map(|(found, len)| (Some(found), len)),
+                Format::Classic(interface) => self.record(interface).map(|(span, len)| (Some(span), len)),
                 Format::Blocks(_) => self.block(),
             };
-            match found {
-                Ok((Some(found), len)) => break (found, len),
+            match next {
+                Ok((Some(span), len)) => break (span, len),
                 Ok((None, len)) => self.file.pass(len),
                 Err(problem) => {
                     self.is_over = true;
@@ -247,7 +247,7 @@ impl<R: Read> Packets<R> {
                 }
             }
         };
-        let (Found { interface, time, bytes, original }, len) = found;
+        let PacketSpan { interface, time, bytes, original } = span;
         self.number += 1;
         self.time = time.unwrap_or(self.time);
         let (number, section, time) = (self.number, self.section, self.time);
@@ -260,8 +260,8 @@ impl<R: Read> Packets<R> {
     }
 
     /// The next packet of a pcap file, and how long its record is.
-    fn record(&mut self, interface: Interface) -> Result<(Found, usize), &'static str> {
-        let order = self.order;
+    fn record(&mut self, interface: Interface) -> Result<(PacketSpan, usize), &'static str> {
+        let order = self.byte_order;
         let head = self.file.look(PACKET_HEADER).map_err(|_| UNREADABLE)?;
         let header = || {
             let seconds = u64::from(order.word(head, 0)?);
@@ -277,24 +277,24 @@ impl<R: Read> Packets<R> {
             return Err("the file ends inside a packet");
         }
         let time = Some(Clock { offset: seconds, ..interface.clock }.time(parts));
-        Ok((Found { interface, time, bytes: PACKET_HEADER..whole, original }, whole))
+        Ok((PacketSpan { interface, time, bytes: PACKET_HEADER..whole, original }, whole))
     }
 
     /// The packet of the next block of a pcapng file, if it has one, and how long the block is.
-    fn block(&mut self) -> Result<(Option<Found>, usize), &'static str> {
+    fn block(&mut self) -> Result<(Option<PacketSpan>, usize), &'static str> {
         let short = "the file ends inside a block";
         let head = self.file.look(12).map_err(|_| UNREADABLE)?;
-        let kind = self.order.word(head, 0).ok_or(short)?;
+        let kind = self.byte_order.word(head, 0).ok_or(short)?;
         if kind == SECTION_HEADER {
             // The same in both byte orders, which this block decides.
-            let magic = Order::Big.word(head, 8).ok_or(short)?;
-            self.order = match magic {
-                BYTE_ORDER_MAGIC => Order::Big,
-                _ if magic.swap_bytes() == BYTE_ORDER_MAGIC => Order::Little,
+            let magic = ByteOrder::Big.word(head, 8).ok_or(short)?;
+            self.byte_order = match magic {
+                BYTE_ORDER_MAGIC => ByteOrder::Big,
+                _ if magic.swap_bytes() == BYTE_ORDER_MAGIC => ByteOrder::Little,
                 _ => return Err("a section without a byte order"),
             };
         }
-        let order = self.order;
+        let order = self.byte_order;
         let len = order.size(head, 4).ok_or(short)?;
         if len < 12 || len % 4 != 0 || len > MOST {
             return Err("a block of an impossible length");
@@ -329,9 +329,9 @@ impl<R: Read> Packets<R> {
     }
 
     /// The packet in the block of this length that was looked at.
-    fn packet_of(&self, kind: u32, len: usize) -> Result<Found, &'static str> {
+    fn packet_of(&self, kind: u32, len: usize) -> Result<PacketSpan, &'static str> {
         let body = &self.file.seen()[8..len - 4];
-        let order = self.order;
+        let order = self.byte_order;
         let Format::Blocks(interfaces) = &self.format else { return Err("a block outside a section") };
         let number = match kind {
             ENHANCED_PACKET => order.size(body, 0),
@@ -352,12 +352,12 @@ impl<R: Read> Packets<R> {
         };
         let whole = parts().filter(|(_, start, len, _)| start + len <= body.len());
         let (time, start, len, original) = whole.ok_or("a packet that is longer than its block")?;
-        Ok(Found { interface, time, bytes: 8 + start..8 + start + len, original })
+        Ok(PacketSpan { interface, time, bytes: 8 + start..8 + start + len, original })
     }
 }
 
 /// The interface that a block describes.
-fn interface(order: Order, body: &[u8]) -> Option<Interface> {
+fn interface(order: ByteOrder, body: &[u8]) -> Option<Interface> {
     let (link_type, most) = (order.short(body, 0)?, order.size(body, 4)?);
     let (mut resolution, mut offset, mut at) = (6, 0, 8);
     while let (Some(code), Some(len)) = (order.short(body, at), order.short(body, at + 2)) {
@@ -389,20 +389,20 @@ mod tests {
 
     #[test]
     fn what_is_no_capture_is_told() {
-        assert_eq!(Packets::open(&b""[..]).unwrap_err(), Unknown::Other);
-        assert_eq!(Packets::open(&b"YERC"[..]).unwrap_err(), Unknown::Other);
+        assert_eq!(Packets::open(&b""[..]).unwrap_err(), OpenError::Other);
+        assert_eq!(Packets::open(&b"YERC"[..]).unwrap_err(), OpenError::Other);
         assert_eq!(
             Packets::open(&[0xA1, 0xB2, 0xC3, 0xD4, 0][..]).unwrap_err(),
-            Unknown::Other,
+            OpenError::Other,
             "a header that is cut"
         );
-        assert_eq!(Packets::open(&[0x1F, 0x8B, 8, 0][..]).unwrap_err(), Unknown::Compressed);
+        assert_eq!(Packets::open(&[0x1F, 0x8B, 8, 0][..]).unwrap_err(), OpenError::Compressed);
     }
 
     /// Gives a file in pieces of a few bytes, and never again.
-    struct Drops<'a>(&'a [u8]);
+    struct Pieces<'a>(&'a [u8]);
 
-    impl Read for Drops<'_> {
+    impl Read for Pieces<'_> {
         fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
             let len = buffer.len().min(7).min(self.0.len());
             let (now, later) = self.0.split_at(len);
@@ -417,7 +417,7 @@ mod tests {
         let header = [&0xA1B2_C3D4_u32.to_be_bytes()[..], &[0; 16], &[0, 0, 0, 101]].concat();
         let record = |byte: u8| [&[0; 8][..], &1000_u32.to_be_bytes(), &1000_u32.to_be_bytes(), &[byte; 1000]].concat();
         let file = [header, (0..=u8::MAX).cycle().take(1000).flat_map(record).collect()].concat();
-        let mut packets = Packets::open(Drops(&file)).unwrap();
+        let mut packets = Packets::open(Pieces(&file)).unwrap();
         for byte in (0..=u8::MAX).cycle().take(1000) {
             let packet = packets.next().unwrap().unwrap();
             assert_eq!((packet.bytes, packet.is_cut), (&[byte; 1000][..], false));

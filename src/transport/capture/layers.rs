@@ -6,7 +6,7 @@ use crate::tap::Direction;
 
 /// What is in a packet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Carried<'a> {
+pub enum PacketContent<'a> {
     /// UDP or TCP.
     Packet {
         /// Sender.
@@ -14,12 +14,12 @@ pub enum Carried<'a> {
         /// Receiver.
         to: SocketAddr,
         /// What it brings.
-        content: Content<'a>,
+        payload: Payload<'a>,
         /// It says to be longer than it is.
         is_cut: bool,
     },
     /// Bytes of a serial line.
-    Line {
+    Serial {
         /// Which way.
         direction: Direction,
         /// The bytes.
@@ -33,7 +33,7 @@ pub enum Carried<'a> {
 
 /// What an IP packet brings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Content<'a> {
+pub enum Payload<'a> {
     /// UDP.
     Datagram(&'a [u8]),
     /// TCP.
@@ -64,8 +64,8 @@ const FRAGMENT: u8 = 44;
 const LONGEST_IP: usize = 0xFFFF;
 
 /// Looks into a packet of a link type.
-pub fn carried(link_type: u16, packet: &[u8]) -> Carried<'_> {
-    let carried = match link_type {
+pub fn content_of(link_type: u16, packet: &[u8]) -> PacketContent<'_> {
+    let content = match link_type {
         // Loopback of BSD: the address family, in the byte order of the host. IP tells itself which it is.
         0 | 108 => packet.get(4..).and_then(ip),
         1 => ethernet(packet, 12),
@@ -74,36 +74,36 @@ pub fn carried(link_type: u16, packet: &[u8]) -> Carried<'_> {
         // Linux cooked, both versions.
         113 => ethernet(packet, 14),
         276 => of_type(short(packet, 0), packet.get(20..)),
-        147 => line(packet),
+        147 => serial(packet),
         _ => None,
     };
-    carried.unwrap_or(Carried::Other)
+    content.unwrap_or(PacketContent::Other)
 }
 
 /// A serial line as [`tap`](crate::tap) records it.
-fn line(packet: &[u8]) -> Option<Carried<'_>> {
+fn serial(packet: &[u8]) -> Option<PacketContent<'_>> {
     let (direction, bytes) = packet.split_first()?;
     let direction = match direction {
         0 => Direction::Sent,
         1 => Direction::Received,
         _ => return None,
     };
-    Some(Carried::Line { direction, bytes })
+    Some(PacketContent::Serial { direction, bytes })
 }
 
 /// A frame with its type at an offset, behind any VLAN tags.
-fn ethernet(frame: &[u8], mut at: usize) -> Option<Carried<'_>> {
+fn ethernet(frame: &[u8], mut at: usize) -> Option<PacketContent<'_>> {
     while TAGS.contains(&short(frame, at)?) {
         at += 4;
     }
     of_type(short(frame, at), frame.get(at + 2..))
 }
 
-fn of_type(kind: Option<u16>, content: Option<&[u8]>) -> Option<Carried<'_>> {
+fn of_type(kind: Option<u16>, content: Option<&[u8]>) -> Option<PacketContent<'_>> {
     matches!(kind?, IPV4 | IPV6).then(|| ip(content?)).flatten()
 }
 
-fn ip(packet: &[u8]) -> Option<Carried<'_>> {
+fn ip(packet: &[u8]) -> Option<PacketContent<'_>> {
     match packet.first()? >> 4 {
         4 => ipv4(packet),
         6 => ipv6(packet),
@@ -111,7 +111,7 @@ fn ip(packet: &[u8]) -> Option<Carried<'_>> {
     }
 }
 
-fn ipv4(packet: &[u8]) -> Option<Carried<'_>> {
+fn ipv4(packet: &[u8]) -> Option<PacketContent<'_>> {
     let header = usize::from(packet.first()? & 0x0F) * 4;
     // A length of 0 is left to the card to fill in, which sends no packet that is longer than any.
     let len = match usize::from(short(packet, 2)?) {
@@ -122,13 +122,13 @@ fn ipv4(packet: &[u8]) -> Option<Carried<'_>> {
     let (from, to) = (address(12)?, address(16)?);
     // All but "don't fragment".
     if short(packet, 6)? & 0x3FFF != 0 {
-        return Some(Carried::Fragment);
+        return Some(PacketContent::Fragment);
     }
     let content = packet.get(..len).unwrap_or(packet).get(header.max(20)..)?;
     transport(*packet.get(9)?, (from, to), content, len > packet.len())
 }
 
-fn ipv6(packet: &[u8]) -> Option<Carried<'_>> {
+fn ipv6(packet: &[u8]) -> Option<PacketContent<'_>> {
     let len = match usize::from(short(packet, 4)?) {
         0 => packet.len().min(LONGEST_IP),
         len => len + 40,
@@ -141,30 +141,30 @@ fn ipv6(packet: &[u8]) -> Option<Carried<'_>> {
         content = content.get(usize::from(*content.get(1)?) * 8 + 8..)?;
     }
     if next == FRAGMENT {
-        return Some(Carried::Fragment);
+        return Some(PacketContent::Fragment);
     }
     transport(next, (from, to), content, len > packet.len())
 }
 
-fn transport(protocol: u8, ends: (IpAddr, IpAddr), content: &[u8], is_cut: bool) -> Option<Carried<'_>> {
+fn transport(protocol: u8, ends: (IpAddr, IpAddr), content: &[u8], is_cut: bool) -> Option<PacketContent<'_>> {
     let from = SocketAddr::new(ends.0, short(content, 0)?);
     let to = SocketAddr::new(ends.1, short(content, 2)?);
-    let (content, is_cut) = match protocol {
+    let (payload, is_cut) = match protocol {
         UDP => {
             let len = usize::from(short(content, 4)?);
             let bytes = content.get(8..len).or_else(|| content.get(8..))?;
-            (Content::Datagram(bytes), is_cut || len > content.len())
+            (Payload::Datagram(bytes), is_cut || len > content.len())
         }
         TCP => {
             let sequence = u32::from_be_bytes(*content.get(4..)?.first_chunk()?);
             let header = usize::from(content.get(12)? >> 4) * 4;
             let opens = content.get(13)? & 0x02 != 0;
             let segment = Segment { sequence, opens, bytes: content.get(header.max(20)..)? };
-            (Content::Segment(segment), is_cut)
+            (Payload::Segment(segment), is_cut)
         }
         _ => return None,
     };
-    Some(Carried::Packet { from, to, content, is_cut })
+    Some(PacketContent::Packet { from, to, payload, is_cut })
 }
 
 fn short(bytes: &[u8], at: usize) -> Option<u16> {
@@ -181,14 +181,14 @@ mod tests {
         b'h', b'i', 0, 0,
     ];
 
-    fn said(link_type: u16, head: &[u8]) -> Carried<'static> {
-        carried(link_type, Box::leak([head, &IP].concat().into_boxed_slice()))
+    fn with_head(link_type: u16, head: &[u8]) -> PacketContent<'static> {
+        content_of(link_type, Box::leak([head, &IP].concat().into_boxed_slice()))
     }
 
     #[test]
     fn every_link_type_leads_to_the_datagram() {
-        let mut expected = carried(101, &IP);
-        assert!(matches!(expected, Carried::Packet { content: Content::Datagram(b"hi"), is_cut: false, .. }));
+        let mut expected = content_of(101, &IP);
+        assert!(matches!(expected, PacketContent::Packet { payload: Payload::Datagram(b"hi"), is_cut: false, .. }));
         let macs = [0; 12];
         let tagged = [&macs[..], &[0x88, 0xA8, 0, 5, 0x81, 0, 0, 7, 0x08, 0]].concat();
         let heads: [(u16, &[u8]); 7] = [
@@ -201,11 +201,11 @@ mod tests {
             (276, &[&[0x08, 0][..], &[0; 18]].concat()),
         ];
         for (link_type, head) in heads {
-            assert_eq!(said(link_type, head), expected, "link type {link_type}");
+            assert_eq!(with_head(link_type, head), expected, "link type {link_type}");
         }
         let cut = &IP[..29];
-        expected = carried(101, cut);
-        assert!(matches!(expected, Carried::Packet { content: Content::Datagram(b"h"), is_cut: true, .. }));
+        expected = content_of(101, cut);
+        assert!(matches!(expected, PacketContent::Packet { payload: Payload::Datagram(b"h"), is_cut: true, .. }));
     }
 
     #[test]
@@ -213,7 +213,8 @@ mod tests {
         let mut packet = IP.to_vec();
         (packet[2], packet[3], packet[9]) = (0, 0, TCP);
         packet.resize(200_000, 0);
-        let Carried::Packet { content: Content::Segment(segment), is_cut: false, .. } = carried(101, &packet) else {
+        let PacketContent::Packet { payload: Payload::Segment(segment), is_cut: false, .. } = content_of(101, &packet)
+        else {
             panic!("no segment");
         };
         assert_eq!(segment.bytes.len(), LONGEST_IP - 40);
@@ -223,13 +224,13 @@ mod tests {
     fn the_rest_is_other() {
         let mut fragment = IP;
         fragment[6] = 0x20;
-        assert_eq!(carried(101, &fragment), Carried::Fragment);
-        assert_eq!(said(1, &[0; 14]), Carried::Other);
-        assert_eq!(said(105, &[]), Carried::Other);
-        assert_eq!(carried(147, &[2, 0]), Carried::Other);
+        assert_eq!(content_of(101, &fragment), PacketContent::Fragment);
+        assert_eq!(with_head(1, &[0; 14]), PacketContent::Other);
+        assert_eq!(with_head(105, &[]), PacketContent::Other);
+        assert_eq!(content_of(147, &[2, 0]), PacketContent::Other);
         for link_type in [0, 1, 101, 113, 147, 276] {
             for len in 0..20 {
-                assert!(!matches!(carried(link_type, &IP[..len]), Carried::Packet { .. }));
+                assert!(!matches!(content_of(link_type, &IP[..len]), PacketContent::Packet { .. }));
             }
         }
     }

@@ -13,13 +13,13 @@ use std::net::SocketAddr;
 use std::time::Duration;
 
 use self::file::Packets;
-use self::layers::{Carried, Content, carried};
-use self::stream::{Arrived, Streams};
+use self::layers::{PacketContent, Payload, content_of};
+use self::stream::{StreamBytes, Streams};
 use super::tap::Direction;
 
-pub use self::file::{Damage, Unknown};
+pub use self::file::{Damage, OpenError};
 
-/// Something that was said, with where and when.
+/// Bytes that passed, with where and when.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message<'a> {
     /// Of the packet that it came with, from 1, as Wireshark counts them.
@@ -89,9 +89,9 @@ pub struct Summary {
     pub damage: Option<Damage>,
 }
 
-/// Reads a file piece by piece, and hands over what was said in it. Messages of a TCP stream that overtook each other
+/// Reads a file piece by piece, and hands over the messages in it. Messages of a TCP stream that overtook each other
 /// come when they are in order, so after later ones of other streams.
-pub fn read(file: impl Read, mut hear: impl FnMut(&Message<'_>)) -> Result<Summary, Unknown> {
+pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summary, OpenError> {
     let mut summary = Summary::default();
     let mut streams = Streams::default();
     let mut packets = Packets::open(file)?;
@@ -108,41 +108,41 @@ pub fn read(file: impl Read, mut hear: impl FnMut(&Message<'_>)) -> Result<Summa
         }
         summary.packets = packet.number;
         let (number, time) = (packet.number, packet.time);
-        let mut say = |carrier, bytes, is_cut| hear(&Message { number, time, carrier, bytes, is_cut });
-        match carried(packet.link_type, packet.bytes) {
-            Carried::Line { direction, bytes } => {
+        let mut say = |carrier, bytes, is_cut| each(&Message { number, time, carrier, bytes, is_cut });
+        match content_of(packet.link_type, packet.bytes) {
+            PacketContent::Serial { direction, bytes } => {
                 let carrier = Carrier::Line { direction, section: packet.section };
                 if !bytes.is_empty() {
                     say(carrier, bytes, packet.is_cut);
                 }
             }
-            Carried::Packet { from, to, content: Content::Datagram(bytes), is_cut } if !bytes.is_empty() => {
+            PacketContent::Packet { from, to, payload: Payload::Datagram(bytes), is_cut } if !bytes.is_empty() => {
                 say(Carrier::Datagram { from, to }, bytes, is_cut || packet.is_cut);
             }
-            Carried::Packet { from, to, content: Content::Segment(segment), is_cut } => {
-                let place = (packet.section, from, to);
+            PacketContent::Packet { from, to, payload: Payload::Segment(segment), is_cut } => {
+                let key = (packet.section, from, to);
                 let is_cut = is_cut || packet.is_cut;
-                streams.take(place, &segment, (number, time, is_cut), &mut |arrived| pass_on(arrived, &mut hear));
+                streams.take(key, &segment, (number, time, is_cut), &mut |arrived| pass_on(arrived, &mut each));
             }
-            Carried::Packet { .. } | Carried::Other => {}
-            Carried::Fragment => summary.fragments += 1,
+            PacketContent::Packet { .. } | PacketContent::Other => {}
+            PacketContent::Fragment => summary.fragments += 1,
         }
     }
-    streams.finish(&mut |arrived| pass_on(arrived, &mut hear));
+    streams.finish(&mut |arrived| pass_on(arrived, &mut each));
     summary.repeated = streams.repeated();
     Ok(summary)
 }
 
-fn pass_on(arrived: &Arrived<'_>, hear: &mut impl FnMut(&Message<'_>)) {
-    let Arrived { place: (_, from, to), stamp: (number, time, is_cut), begins, lost, bytes } = *arrived;
+fn pass_on(arrived: &StreamBytes<'_>, each: &mut impl FnMut(&Message<'_>)) {
+    let StreamBytes { key: (_, from, to), origin: (number, time, is_cut), begins, lost, bytes } = *arrived;
     let carrier = Carrier::Stream { from, to, begins, lost };
-    hear(&Message { number, time, carrier, bytes, is_cut });
+    each(&Message { number, time, carrier, bytes, is_cut });
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tap::Capture;
+    use crate::tap::CaptureWriter;
 
     fn ends() -> (SocketAddr, SocketAddr) {
         ("10.0.0.1:40000".parse().unwrap(), "[fe80::2]:10040".parse().unwrap())
@@ -152,18 +152,18 @@ mod tests {
     fn recorded() -> Vec<u8> {
         let mut file = Vec::new();
         let (from, to) = ends();
-        let mut capture = Capture::streams(&mut file).unwrap();
+        let mut capture = CaptureWriter::streams(&mut file).unwrap();
         capture.datagram(Duration::from_millis(1500), from, to, b"YERC").unwrap();
         capture.segment(Duration::from_secs(2), from, to, b"@HSON\r\n").unwrap();
         capture.segment(Duration::from_secs(3), to, from, b"@OK\r\n").unwrap();
         capture.line(Duration::from_secs(4), Direction::Received, b"@NG\r\n").unwrap();
-        Capture::new(&mut file).unwrap().datagram(Duration::from_secs(5), to, from, b"last").unwrap();
+        CaptureWriter::new(&mut file).unwrap().datagram(Duration::from_secs(5), to, from, b"last").unwrap();
         file
     }
 
     type Owned = (u64, Duration, Carrier, Vec<u8>);
 
-    fn heard(file: &[u8]) -> (Vec<Owned>, Summary) {
+    fn messages_of(file: &[u8]) -> (Vec<Owned>, Summary) {
         let mut all = Vec::new();
         let summary = read(file, |message| {
             assert!(!message.bytes.is_empty() && !message.is_cut);
@@ -176,7 +176,7 @@ mod tests {
     fn what_the_tap_writes_is_read_back() {
         let (from, to) = ends();
         let from = SocketAddr::new(std::net::IpAddr::V6("::ffff:10.0.0.1".parse().unwrap()), from.port());
-        let (all, summary) = heard(&recorded());
+        let (all, summary) = messages_of(&recorded());
         let stream = |from, to| Carrier::Stream { from, to, begins: false, lost: 0 };
         let line = Carrier::Line { direction: Direction::Received, section: 1 };
         let secs = Duration::from_secs;
@@ -195,10 +195,10 @@ mod tests {
     #[test]
     fn a_file_cut_anywhere_gives_what_came_before() {
         let file = recorded();
-        let (all, _) = heard(&file);
+        let (all, _) = messages_of(&file);
         for end in 12..file.len() {
             let Ok(summary) = read(&file[..end], |_| ()) else { continue };
-            let (part, _) = heard(&file[..end]);
+            let (part, _) = messages_of(&file[..end]);
             assert_eq!(part, all[..part.len()], "cut at {end}");
             assert_eq!(summary.packets, u64::try_from(part.len()).unwrap());
             if let Some(damage) = summary.damage {

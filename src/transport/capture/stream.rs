@@ -6,18 +6,19 @@ use std::time::Duration;
 
 use super::layers::Segment;
 
-/// Section of the file, sender and receiver: a section is a record of its own, whose numbers begin anew.
-pub type Place = (usize, SocketAddr, SocketAddr);
-/// Number of a packet, its time, and whether it was cut.
-pub type Stamp = (u64, Duration, bool);
+/// One direction of a stream: section of the file, sender and receiver. A section is a record of its own, whose numbers
+/// begin anew.
+pub type StreamKey = (usize, SocketAddr, SocketAddr);
+/// The packet that bytes came with: its number, its time, and whether it was cut.
+pub type Origin = (u64, Duration, bool);
 
-/// Bytes that are in order.
+/// Bytes of a stream, in their order.
 #[derive(Debug, Clone, Copy)]
-pub struct Arrived<'a> {
+pub struct StreamBytes<'a> {
     /// Whose.
-    pub place: Place,
+    pub key: StreamKey,
     /// The packet they came with.
-    pub stamp: Stamp,
+    pub origin: Origin,
     /// The first of a stream that was opened in the file.
     pub begins: bool,
     /// Bytes before them that never came.
@@ -36,7 +37,7 @@ const MOST_HELD: usize = 32 << 20;
 /// All directions of all streams.
 #[derive(Debug, Default)]
 pub struct Streams {
-    streams: HashMap<Place, Stream>,
+    streams: HashMap<StreamKey, Stream>,
     repeated: u64,
     /// Bytes that wait in all of them.
     held: usize,
@@ -49,7 +50,7 @@ struct Stream {
     next: Option<u32>,
     begins: bool,
     /// What came too early, by its place in the stream.
-    waiting: BTreeMap<u64, (Stamp, Vec<u8>)>,
+    waiting: BTreeMap<u64, (Origin, Vec<u8>)>,
     /// Bytes that were handed over or given up: places are counted by them, because numbers wrap.
     passed: u64,
     /// Bytes that wait.
@@ -58,21 +59,33 @@ struct Stream {
 
 impl Streams {
     /// Takes a segment, and hands over what is in order then.
-    pub fn take(&mut self, place: Place, segment: &Segment<'_>, stamp: Stamp, give: &mut impl FnMut(&Arrived<'_>)) {
+    pub fn take(
+        &mut self,
+        key: StreamKey,
+        segment: &Segment<'_>,
+        origin: Origin,
+        give: &mut impl FnMut(&StreamBytes<'_>),
+    ) {
         if self.held > MOST_HELD || self.streams.len() >= MOST_STREAMS {
             self.finish(give);
             self.streams.clear();
             self.held = 0;
         }
-        let held = self.streams.get(&place).map_or(0, |stream| stream.held);
-        self.arrive(place, segment, stamp, give);
-        self.held = self.held + self.streams.get(&place).map_or(0, |stream| stream.held) - held;
+        let held = self.streams.get(&key).map_or(0, |stream| stream.held);
+        self.arrive(key, segment, origin, give);
+        self.held = self.held + self.streams.get(&key).map_or(0, |stream| stream.held) - held;
     }
 
-    fn arrive(&mut self, place: Place, segment: &Segment<'_>, stamp: Stamp, give: &mut impl FnMut(&Arrived<'_>)) {
-        let stream = self.streams.entry(place).or_default();
+    fn arrive(
+        &mut self,
+        key: StreamKey,
+        segment: &Segment<'_>,
+        origin: Origin,
+        give: &mut impl FnMut(&StreamBytes<'_>),
+    ) {
+        let stream = self.streams.entry(key).or_default();
         if segment.opens {
-            stream.skip(place, give);
+            stream.skip(key, give);
             *stream = Stream { next: Some(segment.sequence.wrapping_add(1)), begins: true, ..Stream::default() };
             return;
         }
@@ -84,29 +97,29 @@ impl Streams {
         if ahead == 0 || ahead > u32::MAX / 2 {
             let known = usize::try_from(next.wrapping_sub(segment.sequence)).unwrap_or(usize::MAX);
             match segment.bytes.get(known..).filter(|new| !new.is_empty()) {
-                Some(new) => stream.give((place, stamp), 0, new, give),
+                Some(new) => stream.give((key, origin), 0, new, give),
                 None => self.repeated += 1,
             }
-            self.repeated += stream.drain(place, give);
+            self.repeated += stream.drain(key, give);
         } else {
             let at = stream.passed + u64::from(ahead);
             stream.waiting.entry(at).or_insert_with(|| {
                 stream.held += segment.bytes.len();
-                (stamp, segment.bytes.to_vec())
+                (origin, segment.bytes.to_vec())
             });
             if stream.waiting.len() > MOST_WAITING {
-                stream.jump(place, give);
-                self.repeated += stream.drain(place, give);
+                stream.jump(key, give);
+                self.repeated += stream.drain(key, give);
             }
         }
     }
 
     /// Hands over what still waits, with its gaps.
-    pub fn finish(&mut self, give: &mut impl FnMut(&Arrived<'_>)) {
+    pub fn finish(&mut self, give: &mut impl FnMut(&StreamBytes<'_>)) {
         let mut left: Vec<_> = self.streams.iter_mut().filter(|(_, stream)| !stream.waiting.is_empty()).collect();
-        left.sort_by_key(|(place, _)| **place);
-        for (place, stream) in left {
-            stream.skip(*place, give);
+        left.sort_by_key(|(key, _)| **key);
+        for (key, stream) in left {
+            stream.skip(*key, give);
         }
     }
 
@@ -117,24 +130,30 @@ impl Streams {
 }
 
 impl Stream {
-    fn give(&mut self, (place, stamp): (Place, Stamp), lost: u32, bytes: &[u8], give: &mut impl FnMut(&Arrived<'_>)) {
+    fn give(
+        &mut self,
+        (key, origin): (StreamKey, Origin),
+        lost: u32,
+        bytes: &[u8],
+        give: &mut impl FnMut(&StreamBytes<'_>),
+    ) {
         let len = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         self.next = self.next.map(|next| next.wrapping_add(lost).wrapping_add(len));
         self.passed += u64::from(lost) + u64::from(len);
-        give(&Arrived { place, stamp, begins: std::mem::take(&mut self.begins), lost, bytes });
+        give(&StreamBytes { key, origin, begins: std::mem::take(&mut self.begins), lost, bytes });
     }
 
     /// Hands over what waits without a gap; returns how many segments brought nothing new.
-    fn drain(&mut self, place: Place, give: &mut impl FnMut(&Arrived<'_>)) -> u64 {
+    fn drain(&mut self, key: StreamKey, give: &mut impl FnMut(&StreamBytes<'_>)) -> u64 {
         let mut repeated = 0;
         while let Some(first) = self.waiting.first_entry()
             && *first.key() <= self.passed
         {
-            let (at, (stamp, bytes)) = first.remove_entry();
+            let (at, (origin, bytes)) = first.remove_entry();
             self.held -= bytes.len();
             let known = usize::try_from(self.passed - at).unwrap_or(usize::MAX);
             match bytes.get(known..).filter(|new| !new.is_empty()) {
-                Some(new) => self.give((place, stamp), 0, new, give),
+                Some(new) => self.give((key, origin), 0, new, give),
                 None => repeated += 1,
             }
         }
@@ -142,18 +161,18 @@ impl Stream {
     }
 
     /// Gives up on what is missing before the first that waits.
-    fn jump(&mut self, place: Place, give: &mut impl FnMut(&Arrived<'_>)) {
-        if let Some((at, (stamp, bytes))) = self.waiting.pop_first() {
+    fn jump(&mut self, key: StreamKey, give: &mut impl FnMut(&StreamBytes<'_>)) {
+        if let Some((at, (origin, bytes))) = self.waiting.pop_first() {
             self.held -= bytes.len();
             let lost = u32::try_from(at.saturating_sub(self.passed)).unwrap_or(u32::MAX);
-            self.give((place, stamp), lost, &bytes, give);
+            self.give((key, origin), lost, &bytes, give);
         }
     }
 
-    fn skip(&mut self, place: Place, give: &mut impl FnMut(&Arrived<'_>)) {
+    fn skip(&mut self, key: StreamKey, give: &mut impl FnMut(&StreamBytes<'_>)) {
         while !self.waiting.is_empty() {
-            self.jump(place, give);
-            self.drain(place, give);
+            self.jump(key, give);
+            self.drain(key, give);
         }
     }
 }
@@ -162,7 +181,7 @@ impl Stream {
 mod tests {
     use super::*;
 
-    fn place() -> Place {
+    fn key() -> StreamKey {
         (0, "10.0.0.1:1".parse().unwrap(), "10.0.0.2:2".parse().unwrap())
     }
 
@@ -170,12 +189,12 @@ mod tests {
     fn arrived(segments: &[(u32, &[u8])]) -> (Vec<(u64, u32, String)>, u64) {
         let mut streams = Streams::default();
         let mut all = Vec::new();
-        let mut give = |arrived: &Arrived<'_>| {
-            all.push((arrived.stamp.0, arrived.lost, String::from_utf8_lossy(arrived.bytes).into_owned()));
+        let mut give = |arrived: &StreamBytes<'_>| {
+            all.push((arrived.origin.0, arrived.lost, String::from_utf8_lossy(arrived.bytes).into_owned()));
         };
         for (number, (sequence, bytes)) in (1..).zip(segments) {
             let segment = Segment { sequence: *sequence, opens: false, bytes };
-            streams.take(place(), &segment, (number, Duration::ZERO, false), &mut give);
+            streams.take(key(), &segment, (number, Duration::ZERO, false), &mut give);
         }
         streams.finish(&mut give);
         (all, streams.repeated())
@@ -200,12 +219,12 @@ mod tests {
         let mut all = 0;
         let bytes = vec![0; 60_000];
         for number in 0..3000u32 {
-            let place = (usize::try_from(number).unwrap(), place().1, place().2);
+            let key = (usize::try_from(number).unwrap(), key().1, key().2);
             // The first opens the stream, and the second, after a gap, waits.
             for (sequence, bytes) in [(1, &bytes[..1]), (9, &bytes[..])] {
                 let segment = Segment { sequence, opens: false, bytes };
-                let stamp = (number.into(), Duration::ZERO, false);
-                streams.take(place, &segment, stamp, &mut |arrived| all += arrived.bytes.len());
+                let origin = (number.into(), Duration::ZERO, false);
+                streams.take(key, &segment, origin, &mut |arrived| all += arrived.bytes.len());
                 assert!(streams.held <= MOST_HELD + bytes.len());
             }
         }

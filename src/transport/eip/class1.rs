@@ -61,7 +61,7 @@ pub(super) enum Verdict<'a> {
     /// Older than what came before, or the same again.
     Stale,
     /// Of another size than was agreed.
-    Misfit,
+    WrongSize,
 }
 
 /// Hears a stream, and notices when it ends.
@@ -150,7 +150,7 @@ impl Consumer {
 
     const fn misfits(&mut self) -> Verdict<'static> {
         self.misfit += 1;
-        Verdict::Misfit
+        Verdict::WrongSize
     }
 }
 
@@ -216,9 +216,9 @@ mod tests {
         assert_eq!(consumer.take(10 * MS, &datagram(9, &image)), Verdict::Image { run: true, image: &[5, 6] });
         assert_eq!(consumer.take(20 * MS, &datagram(9, &image)), Verdict::Stale);
         assert_eq!(consumer.take(20 * MS, &datagram(8, &image)), Verdict::Stale);
-        assert_eq!(consumer.take(20 * MS, &datagram(10, &image[..5])), Verdict::Misfit);
-        assert_eq!(consumer.take(20 * MS, &datagram(10, &[0; 7])), Verdict::Misfit);
-        assert_eq!(consumer.take(20 * MS, &datagram(10, &[5, 6])), Verdict::Misfit, "no header");
+        assert_eq!(consumer.take(20 * MS, &datagram(10, &image[..5])), Verdict::WrongSize);
+        assert_eq!(consumer.take(20 * MS, &datagram(10, &[0; 7])), Verdict::WrongSize);
+        assert_eq!(consumer.take(20 * MS, &datagram(10, &[5, 6])), Verdict::WrongSize, "no header");
         assert_eq!(consumer.until(), 170 * MS);
         let idle = [0, 0, 0, 0, 5, 6];
         assert_eq!(consumer.take(30 * MS, &datagram(13, &idle)), Verdict::Image { run: false, image: &[5, 6] });

@@ -6,10 +6,10 @@ use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
 use tokio::time::{Duration, Instant, sleep_until, timeout_at};
 
+use super::error::EipError;
 use super::explicit::{Answer, Message};
 use super::session::{Ask, Session, Step, Token};
 use super::tap::Tap;
-use super::trouble::Trouble;
 use super::wire::{Command, Identity, Services};
 
 /// The one request that is on its way.
@@ -44,22 +44,22 @@ impl Client {
     }
 
     /// Asks an object. A refusal is an answer.
-    pub async fn ask(&mut self, what: &'static str, message: &Message) -> Result<Answer, Trouble> {
+    pub async fn ask(&mut self, what: &'static str, message: &Message) -> Result<Answer, EipError> {
         Answer::parse(what, &self.send(what, Command::SEND_RR_DATA, message.emit()?).await?)
     }
 
     /// Asks who the device is.
-    pub async fn identity(&mut self) -> Result<Option<Identity>, Trouble> {
+    pub async fn identity(&mut self) -> Result<Option<Identity>, EipError> {
         let what = "ListIdentity";
         let data = self.send(what, Command::LIST_IDENTITY, Vec::new()).await?;
-        Identity::parse(&data).map_err(|error| Trouble::Malformed { what, error })
+        Identity::parse(&data).map_err(|error| EipError::Malformed { what, error })
     }
 
     /// Asks what the device can do.
-    pub async fn services(&mut self) -> Result<Option<Services>, Trouble> {
+    pub async fn services(&mut self) -> Result<Option<Services>, EipError> {
         let what = "ListServices";
         let data = self.send(what, Command::LIST_SERVICES, Vec::new()).await?;
-        Services::parse(&data).map_err(|error| Trouble::Malformed { what, error })
+        Services::parse(&data).map_err(|error| EipError::Malformed { what, error })
     }
 
     /// Takes leave of the device.
@@ -78,7 +78,7 @@ impl Client {
         what: &'static str,
         command: Command,
         data: Vec<u8>,
-    ) -> Result<Vec<u8>, Trouble> {
+    ) -> Result<Vec<u8>, EipError> {
         self.session.ask(Ask { token: TOKEN, what, command, data });
         loop {
             match self.session.poll(self.start.elapsed()) {
@@ -86,7 +86,7 @@ impl Client {
                 Some(Step::Send(bytes)) => {
                     if self.write(&bytes).await.is_err() {
                         self.stream = None;
-                        self.session.lost(&Trouble::Hangup { what });
+                        self.session.lost(&EipError::Hangup { what });
                     }
                 }
                 Some(Step::Disconnect) => self.stream = None,
@@ -105,9 +105,9 @@ impl Client {
                 self.stream = Some(stream);
                 self.session.connected(self.start.elapsed());
             }
-            Ok(Err(error)) => self.session.lost(&Trouble::unreachable(&error)),
+            Ok(Err(error)) => self.session.lost(&EipError::unreachable(&error)),
             Err(_) => {
-                self.session.lost(&Trouble::NoAnswer { what: "the TCP connection", after: self.timeout });
+                self.session.lost(&EipError::NoAnswer { what: "the TCP connection", after: self.timeout });
             }
         }
     }
@@ -134,7 +134,7 @@ impl Client {
             }
             Ok(Ok(0) | Err(_)) => {
                 self.stream = None;
-                self.session.lost(&Trouble::Hangup { what });
+                self.session.lost(&EipError::Hangup { what });
             }
             Err(_) => {}
         }

@@ -1,6 +1,6 @@
 //! Messages to objects of a device, and what it answers.
 
-use super::trouble::Trouble;
+use super::error::EipError;
 use super::wire::{Path, Reply, Request, RrData, Status, service};
 
 /// Most data of a request: with the rest it fits a frame. Devices take less.
@@ -41,10 +41,10 @@ impl Message {
     ///
     /// # Errors
     /// If it takes more than a message can hold.
-    pub fn emit(&self) -> Result<Vec<u8>, Trouble> {
+    pub fn emit(&self) -> Result<Vec<u8>, EipError> {
         if self.data.len() > MOST_DATA || self.path.emit().len() > MOST_PATH {
             let text = format!("a message has {MOST_DATA} bytes of data and {MOST_PATH} of path at most");
-            return Err(Trouble::Impossible(text));
+            return Err(EipError::Impossible(text));
         }
         Ok(RrData::new(&self.request()).emit())
     }
@@ -66,15 +66,15 @@ pub struct Answer {
 
 impl Answer {
     /// Reads the data of a frame that answers `what`.
-    pub fn parse(what: &'static str, data: &[u8]) -> Result<Self, Trouble> {
-        let malformed = |error| Trouble::Malformed { what, error };
+    pub fn parse(what: &'static str, data: &[u8]) -> Result<Self, EipError> {
+        let malformed = |error| EipError::Malformed { what, error };
         let message = RrData::parse_answer(data).map_err(malformed)?.message;
         let reply = Reply::parse(message).map_err(malformed)?;
         Ok(Self { status: reply.status, data: reply.data.to_vec() })
     }
 
     /// What the service gives; a refusal is a trouble.
-    pub fn done(self, what: &'static str) -> Result<Vec<u8>, Trouble> {
-        if self.status.is_ok() { Ok(self.data) } else { Err(Trouble::Refused { what, status: self.status }) }
+    pub fn done(self, what: &'static str) -> Result<Vec<u8>, EipError> {
+        if self.status.is_ok() { Ok(self.data) } else { Err(EipError::Refused { what, status: self.status }) }
     }
 }

@@ -9,7 +9,9 @@ mod class1;
 pub mod client;
 pub mod discovery;
 mod engine;
+pub mod error;
 pub mod explicit;
+pub mod link;
 pub mod originator;
 pub mod probe;
 pub mod reader;
@@ -18,7 +20,6 @@ pub mod session;
 pub mod settings;
 pub mod status;
 pub mod tap;
-pub mod trouble;
 pub mod wire;
 
 /// A moment, as time passed since an origin of the driver's choice. It never runs backwards.

@@ -11,10 +11,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::class1::{Consumer, Producer, Verdict};
+use super::error::EipError;
 use super::explicit::Answer;
 use super::session::{Ask, Session, Step, Token};
 use super::settings::{Role, Settings};
-use super::trouble::Trouble;
 use super::wire::{Close, Command, Cyclic, Net, Open, Opened, RUN, RrData, Triad};
 use super::{IO_PORT, Now};
 
@@ -57,7 +57,7 @@ pub enum Action {
     /// Hear it no longer.
     Leave(Ipv4Addr),
     /// A message of the caller's was answered.
-    Answer(Token, Result<Vec<u8>, Trouble>),
+    Answer(Token, Result<Vec<u8>, EipError>),
 }
 
 /// A stream each way.
@@ -116,7 +116,7 @@ impl Originator {
     ///
     /// # Errors
     /// If no connection can be as `settings` say.
-    pub fn new(target: SocketAddrV4, port: u16, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, Trouble> {
+    pub fn new(target: SocketAddrV4, port: u16, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, EipError> {
         settings.check()?;
         let view = View {
             state: State::Opening,
@@ -179,11 +179,11 @@ impl Originator {
     ///
     /// # Errors
     /// If the connection is not open in this generation, or the image has another size.
-    pub fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, Trouble> {
+    pub fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, EipError> {
         self.is_current(generation)?;
         if image.len() != self.image.len() {
             let (len, size) = (image.len(), self.image.len());
-            return Err(Trouble::Impossible(format!("the output image has {size} bytes, not {len}")));
+            return Err(EipError::Impossible(format!("the output image has {size} bytes, not {len}")));
         }
         self.image.copy_from_slice(image);
         self.revision += 1;
@@ -194,7 +194,7 @@ impl Originator {
     ///
     /// # Errors
     /// If the connection is not open in this generation.
-    pub fn set_run(&mut self, generation: u32, run: bool) -> Result<u64, Trouble> {
+    pub fn set_run(&mut self, generation: u32, run: bool) -> Result<u64, EipError> {
         self.is_current(generation)?;
         self.view.run = run;
         self.revision += 1;
@@ -204,7 +204,7 @@ impl Originator {
     /// Asks something over the same session. Tokens 0 and 1 are taken.
     pub fn ask(&mut self, ask: Ask) {
         if self.phase == Phase::Ended {
-            self.actions.push_back(Action::Answer(ask.token, Err(Trouble::Ended)));
+            self.actions.push_back(Action::Answer(ask.token, Err(EipError::Ended)));
         } else {
             self.session.ask(ask);
         }
@@ -235,7 +235,7 @@ impl Originator {
     }
 
     /// The TCP connection did not come about, or ended. Images travel on without it.
-    pub fn hung_up(&mut self, why: &Trouble) {
+    pub fn hung_up(&mut self, why: &EipError) {
         self.session.lost(why);
     }
 
@@ -245,7 +245,7 @@ impl Originator {
     }
 
     /// Something that was to be done on a local socket did not work. The connection lives on as long as it can.
-    pub fn failed(&mut self, trouble: Trouble) {
+    pub fn failed(&mut self, trouble: EipError) {
         self.view.trouble = Some(trouble);
         self.has_changed = true;
     }
@@ -272,7 +272,7 @@ impl Originator {
                 self.has_changed = true;
             }
             Verdict::Alive => self.tries = 0,
-            Verdict::Stale | Verdict::Misfit => {}
+            Verdict::Stale | Verdict::WrongSize => {}
         }
     }
 
@@ -324,7 +324,7 @@ impl Originator {
         let Some(io) = &mut self.io else { return false };
         if now >= io.consumer.until() {
             let after = io.consumer.patience();
-            self.lose(Trouble::Silent { after });
+            self.lose(EipError::Silent { after });
             return true;
         }
         if now < io.producer.due() {
@@ -359,14 +359,14 @@ impl Originator {
     }
 
     /// ForwardOpen has come to its end.
-    fn answered(&mut self, now: Now, sent: bool, result: Result<Vec<u8>, Trouble>) {
+    fn answered(&mut self, now: Now, sent: bool, result: Result<Vec<u8>, EipError>) {
         let trouble = match result.and_then(|data| self.opened(now, &data)) {
             Ok(()) if self.is_over => return self.ask_close(false),
             Ok(()) => return,
             Err(trouble) => trouble,
         };
         // Unless it was refused, the device may have opened it.
-        let is_refusal = matches!(trouble, Trouble::Refused { .. } | Trouble::Encapsulation { .. });
+        let is_refusal = matches!(trouble, EipError::Refused { .. } | EipError::Encapsulation { .. });
         let again = self.view.generation > 0 && !self.is_over;
         self.view.trouble = Some(trouble);
         if sent && !is_refusal {
@@ -378,9 +378,9 @@ impl Originator {
         }
     }
 
-    fn opened(&mut self, now: Now, data: &[u8]) -> Result<(), Trouble> {
-        let malformed = |error| Trouble::Malformed { what: FORWARD_OPEN, error };
-        let senseless = |why| Trouble::Senseless { what: FORWARD_OPEN, why };
+    fn opened(&mut self, now: Now, data: &[u8]) -> Result<(), EipError> {
+        let malformed = |error| EipError::Malformed { what: FORWARD_OPEN, error };
+        let senseless = |why| EipError::Senseless { what: FORWARD_OPEN, why };
         let answer = Answer::parse(FORWARD_OPEN, data)?;
         let addresses = RrData::parse_answer(data).map_err(malformed)?;
         let opened = Opened::parse(&answer.done(FORWARD_OPEN)?).map_err(malformed)?;
@@ -428,7 +428,7 @@ impl Originator {
     }
 
     /// The device has gone silent.
-    fn lose(&mut self, trouble: Trouble) {
+    fn lose(&mut self, trouble: EipError) {
         self.stop();
         self.view.trouble = Some(trouble);
         match self.phase {
@@ -452,7 +452,7 @@ impl Originator {
     }
 
     /// ForwardClose has come to its end.
-    fn closed(&mut self, now: Now, result: Result<Vec<u8>, Trouble>) {
+    fn closed(&mut self, now: Now, result: Result<Vec<u8>, EipError>) {
         self.stop();
         let Phase::Closing { again } = self.phase else { return };
         if again && !self.is_over {
@@ -472,7 +472,7 @@ impl Originator {
         self.show(State::Lost);
     }
 
-    fn finish(&mut self, trouble: Option<Trouble>) {
+    fn finish(&mut self, trouble: Option<EipError>) {
         self.stop();
         self.session.end();
         self.phase = Phase::Ended;
@@ -495,11 +495,11 @@ impl Originator {
         self.has_changed = true;
     }
 
-    fn is_current(&self, generation: u32) -> Result<(), Trouble> {
+    fn is_current(&self, generation: u32) -> Result<(), EipError> {
         match self.view.state {
             State::Open if generation == self.view.generation => Ok(()),
-            State::Closing | State::Closed => Err(Trouble::Ended),
-            _ => Err(Trouble::Outdated),
+            State::Closing | State::Closed => Err(EipError::Ended),
+            _ => Err(EipError::Outdated),
         }
     }
 }

@@ -8,9 +8,9 @@ use std::fmt;
 use std::time::Duration;
 
 use super::client::Client;
+use super::error::EipError;
 use super::explicit::{Answer, Message};
 use super::settings::Settings;
-use super::trouble::Trouble;
 use super::wire::{Close, Command, Identity, Open, Opened, RrData, Status, Triad};
 use super::{ASSEMBLY, UNREGISTERED_VENDOR};
 
@@ -106,9 +106,9 @@ pub struct Findings {
 ///
 /// # Errors
 /// When the device does not answer, or answers nonsense. What it refuses is what is found.
-pub async fn probe(client: &mut Client, thought: Instances) -> Result<Findings, Trouble> {
+pub async fn probe(client: &mut Client, thought: Instances) -> Result<Findings, EipError> {
     let identity = match client.identity().await {
-        Err(Trouble::Encapsulation { .. }) => None,
+        Err(EipError::Encapsulation { .. }) => None,
         identity => identity?,
     };
     let mut assemblies = Vec::new();
@@ -128,7 +128,7 @@ pub async fn probe(client: &mut Client, thought: Instances) -> Result<Findings, 
 ///
 /// # Errors
 /// Likewise.
-pub async fn rehearse(client: &mut Client, instances: Instances) -> Result<Findings, Trouble> {
+pub async fn rehearse(client: &mut Client, instances: Instances) -> Result<Findings, EipError> {
     let mut assemblies = Vec::new();
     for instance in [instances.output, instances.input] {
         assemblies.extend(assembly(client, instance).await?);
@@ -139,7 +139,7 @@ pub async fn rehearse(client: &mut Client, instances: Instances) -> Result<Findi
 }
 
 /// An assembly, if there is one of that number.
-async fn assembly(client: &mut Client, instance: u32) -> Result<Option<Assembly>, Trouble> {
+async fn assembly(client: &mut Client, instance: u32) -> Result<Option<Assembly>, EipError> {
     let what = "Get_Attribute_Single of an assembly";
     let answer = client.ask(what, &Message::get(ASSEMBLY, instance, DATA)).await?;
     if answer.status.is_ok() {
@@ -186,7 +186,7 @@ async fn attempt(
     instances: Instances,
     assemblies: &[Assembly],
     attempts: &mut Vec<Attempt>,
-) -> Result<Option<Connectable>, Trouble> {
+) -> Result<Option<Connectable>, EipError> {
     let mut guess = Guess::default();
     loop {
         let sizes = guess.next();
@@ -290,7 +290,7 @@ async fn open(
     client: &mut Client,
     instances: Instances,
     (output_size, input_size): (u16, u16),
-) -> Result<Status, Trouble> {
+) -> Result<Status, EipError> {
     let what = "ForwardOpen";
     let settings = Settings {
         output: instances.output,
@@ -316,7 +316,7 @@ async fn open(
     let data = client.send(what, Command::SEND_RR_DATA, RrData::new(&open.emit()).emit()).await?;
     let answer = Answer::parse(what, &data)?;
     if answer.status.is_ok() {
-        Opened::parse(&answer.data).map_err(|error| Trouble::Malformed { what, error })?;
+        Opened::parse(&answer.data).map_err(|error| EipError::Malformed { what, error })?;
         let close = RrData::new(&Close { triad, path }.emit()).emit();
         client.send("ForwardClose", Command::SEND_RR_DATA, close).await?;
     }

@@ -11,8 +11,8 @@ use tokio::task::JoinHandle;
 
 use super::ASSEMBLY;
 use super::client::Client;
+use super::error::EipError;
 use super::explicit::Message;
-use super::trouble::Trouble;
 
 /// The attribute of an assembly that is its image.
 const IMAGE: u32 = 3;
@@ -29,7 +29,7 @@ pub struct Assembly {
 }
 
 /// The newest image, or why there is none.
-pub type Reading = Result<Arc<[u8]>, Trouble>;
+pub type Reading = Result<Arc<[u8]>, EipError>;
 
 /// Reads an assembly again and again, until it is closed or dropped.
 #[derive(Debug)]
@@ -43,7 +43,7 @@ impl Reader {
     ///
     /// # Errors
     /// When it cannot be read. Later failures are readings.
-    pub async fn open(mut client: Client, assembly: Assembly, pause: Duration) -> Result<Self, Trouble> {
+    pub async fn open(mut client: Client, assembly: Assembly, pause: Duration) -> Result<Self, EipError> {
         let first = read(&mut client, assembly).await?;
         let (sender, readings) = watch::channel(Ok(first));
         let task = tokio::spawn(follow(client, assembly, pause, sender));
@@ -97,6 +97,6 @@ async fn read(client: &mut Client, Assembly { instance, size }: Assembly) -> Rea
     if image.len() == usize::from(size) {
         Ok(image.into())
     } else {
-        Err(Trouble::Misfit { found: image.len(), expected: size })
+        Err(EipError::WrongSize { found: image.len(), expected: size })
     }
 }

@@ -11,12 +11,12 @@ use tokio::runtime::Handle;
 use tokio::sync::{mpsc, oneshot, watch};
 
 use super::engine::{Alarm, Engine, Prepared, spawn};
+use super::error::EipError;
 use super::explicit::{Answer, Message};
 use super::originator::{Action, Numbers, Originator, State, View};
 use super::session::{Ask, Token};
 use super::settings::Settings;
 use super::tap::Tap;
-use super::trouble::Trouble;
 use super::wire::{Command, Cyclic};
 use super::{IO_PORT, Now};
 
@@ -67,12 +67,12 @@ struct Slot {
     /// Our address on the way to the device, once it is known.
     here: Ipv4Addr,
     view: watch::Sender<View>,
-    answers: HashMap<Token, oneshot::Sender<Result<Vec<u8>, Trouble>>>,
+    answers: HashMap<Token, oneshot::Sender<Result<Vec<u8>, EipError>>>,
 }
 
 impl Scanner {
     /// The one of this process, on all its addresses: started when there is none, so that all connections share a socket.
-    pub fn shared() -> Result<Self, Trouble> {
+    pub fn shared() -> Result<Self, EipError> {
         static SHARED: Mutex<Weak<Owner>> = Mutex::new(Weak::new());
         let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(owner) = shared.upgrade() {
@@ -84,8 +84,8 @@ impl Scanner {
     }
 
     /// Listens for images on UDP port 2222 of this address, or on any port if another program has that one.
-    pub fn start(address: Ipv4Addr) -> Result<Self, Trouble> {
-        let failed = |error: &io::Error| Trouble::local("UDP socket for images", error);
+    pub fn start(address: Ipv4Addr) -> Result<Self, EipError> {
+        let failed = |error: &io::Error| EipError::local("UDP socket for images", error);
         let socket = match UdpSocket::bind((address, IO_PORT)) {
             Err(error) if error.kind() == io::ErrorKind::AddrInUse => UdpSocket::bind((address, 0)),
             bound => bound,
@@ -130,11 +130,11 @@ impl Scanner {
     /// # Errors
     /// When the device is not there, does not answer, or refuses: nothing is tried twice. Later losses are not errors
     /// but states of the view.
-    pub async fn open(&self, target: SocketAddrV4, settings: Settings, tap: Tap) -> Result<Connection, Trouble> {
+    pub async fn open(&self, target: SocketAddrV4, settings: Settings, tap: Tap) -> Result<Connection, EipError> {
         let inner = &self.owner.inner;
         if settings.multicast && self.port() != IO_PORT {
             let text = format!("images to a group come on UDP port {IO_PORT}, which another program here has");
-            return Err(Trouble::Impossible(text));
+            return Err(EipError::Impossible(text));
         }
         let core = Originator::new(target, self.port(), settings, Arc::clone(&inner.numbers))?;
         let (view, views) = watch::channel(core.view());
@@ -146,7 +146,7 @@ impl Scanner {
         let view = connection.until(|view| view.state != State::Opening).await;
         match (view.state, view.trouble) {
             (State::Closed, Some(trouble)) => Err(trouble),
-            (State::Closed, None) => Err(Trouble::Ended),
+            (State::Closed, None) => Err(EipError::Ended),
             _ => Ok(connection),
         }
     }
@@ -196,17 +196,17 @@ impl Connection {
     }
 
     /// Sends this image from the next interval on; see [`Originator::set_image`].
-    pub fn set_image(&self, generation: u32, image: &[u8]) -> Result<u64, Trouble> {
+    pub fn set_image(&self, generation: u32, image: &[u8]) -> Result<u64, EipError> {
         self.with(|core| core.set_image(generation, image))
     }
 
     /// Tells the device to run, or that its master idles; see [`Originator::set_run`].
-    pub fn set_run(&self, generation: u32, run: bool) -> Result<u64, Trouble> {
+    pub fn set_run(&self, generation: u32, run: bool) -> Result<u64, EipError> {
         self.with(|core| core.set_run(generation, run))
     }
 
     /// Asks an object of the device, over the same session. A refusal is an answer.
-    pub async fn ask(&mut self, what: &'static str, message: &Message) -> Result<Answer, Trouble> {
+    pub async fn ask(&mut self, what: &'static str, message: &Message) -> Result<Answer, EipError> {
         let token = Token(self.tokens);
         self.tokens += 1;
         let (sender, answer) = oneshot::channel();
@@ -215,24 +215,24 @@ impl Connection {
             slot.answers.insert(token, sender);
             slot.core.ask(ask);
         });
-        let data = answer.await.unwrap_or(Err(Trouble::Ended))?;
+        let data = answer.await.unwrap_or(Err(EipError::Ended))?;
         Answer::parse(what, &data)
     }
 
     /// Closes it: idle once more, then a proper close. Says if the device did not confirm that.
-    pub async fn close(mut self) -> Result<(), Trouble> {
+    pub async fn close(mut self) -> Result<(), EipError> {
         let before = self.view().trouble;
         self.with(|core| {
             core.close();
             Ok(())
         })
-        .or_else(|trouble| if trouble == Trouble::Ended { Ok(()) } else { Err(trouble) })?;
+        .or_else(|trouble| if trouble == EipError::Ended { Ok(()) } else { Err(trouble) })?;
         let view = self.until(|view| view.state == State::Closed).await;
         view.trouble.filter(|trouble| before.as_ref() != Some(trouble)).map_or(Ok(()), Err)
     }
 
-    fn with<T>(&self, change: impl FnOnce(&mut Originator) -> Result<T, Trouble>) -> Result<T, Trouble> {
-        self.owner.inner.with(self.id, |slot, _| change(&mut slot.core)).unwrap_or(Err(Trouble::Ended))
+    fn with<T>(&self, change: impl FnOnce(&mut Originator) -> Result<T, EipError>) -> Result<T, EipError> {
+        self.owner.inner.with(self.id, |slot, _| change(&mut slot.core)).unwrap_or(Err(EipError::Ended))
     }
 }
 
@@ -300,12 +300,12 @@ impl Inner {
                     // First, so that no record has an answer before what it answers.
                     slot.tap.pass(false, SocketAddrV4::new(slot.here, self.local.port()), to, &bytes);
                     if let Err(error) = self.socket.send_to(&bytes, to) {
-                        slot.core.failed(Trouble::local("sending an image", &error));
+                        slot.core.failed(EipError::local("sending an image", &error));
                     }
                 }
                 Action::Join(group) => {
                     if let Err(error) = self.join(group, slot.here) {
-                        slot.core.failed(Trouble::local("joining the group", &error));
+                        slot.core.failed(EipError::local("joining the group", &error));
                     }
                 }
                 Action::Leave(group) => self.leave(group, slot.here),

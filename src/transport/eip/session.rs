@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use super::Now;
-use super::trouble::Trouble;
+use super::error::EipError;
 use super::wire::{Command, Frame, Frames};
 
 /// Most requests that wait.
@@ -54,7 +54,7 @@ pub enum Step {
         /// Whether it had left the house, so that the device may have acted on it.
         sent: bool,
         /// The data of the answer.
-        result: Result<Vec<u8>, Trouble>,
+        result: Result<Vec<u8>, EipError>,
     },
 }
 
@@ -119,7 +119,7 @@ impl Session {
     pub fn ask(&mut self, ask: Ask) {
         if self.waiting.len() >= MOST_WAITING {
             let why = "too many requests wait already";
-            self.answer(ask.token, false, Err(Trouble::Impossible(why.to_owned())));
+            self.answer(ask.token, false, Err(EipError::Impossible(why.to_owned())));
         } else {
             self.waiting.push_back(ask);
         }
@@ -165,11 +165,11 @@ impl Session {
     }
 
     /// The TCP connection did not come about, or ended; `why` tells whoever waits.
-    pub fn lost(&mut self, why: &Trouble) {
+    pub fn lost(&mut self, why: &EipError) {
         let was_up = self.phase == Phase::Up;
         self.phase = Phase::Down;
         if let Some((ask, _)) = self.pending.take() {
-            self.answer(ask.token, true, Err(Trouble::Hangup { what: ask.what }));
+            self.answer(ask.token, true, Err(EipError::Hangup { what: ask.what }));
         }
         // Where nobody answers, nobody is kept waiting. After a hang-up the rest goes by a new connection.
         if !was_up {
@@ -184,9 +184,9 @@ impl Session {
         }
         self.disconnect();
         if let Some((ask, _)) = self.pending.take() {
-            self.answer(ask.token, true, Err(Trouble::Ended));
+            self.answer(ask.token, true, Err(EipError::Ended));
         }
-        self.fail_waiting(&Trouble::Ended);
+        self.fail_waiting(&EipError::Ended);
     }
 
     fn advance(&mut self, now: Now) {
@@ -201,7 +201,7 @@ impl Session {
                     self.pending = None;
                     // What comes late must not be heard; a new connection is quiet.
                     self.disconnect();
-                    self.answer(token, true, Err(Trouble::NoAnswer { what, after: self.timeout }));
+                    self.answer(token, true, Err(EipError::NoAnswer { what, after: self.timeout }));
                 }
                 Some(_) => {}
                 None => self.send_next(now),
@@ -226,7 +226,7 @@ impl Session {
             self.phase = Phase::Full { until: now.saturating_add(pause) };
         } else {
             self.full = None;
-            self.fail_waiting(&Trouble::Encapsulation { what: "RegisterSession", status });
+            self.fail_waiting(&EipError::Encapsulation { what: "RegisterSession", status });
         }
     }
 
@@ -261,7 +261,7 @@ impl Session {
                 } else {
                     // The session may be what is wrong, so the next request begins a new one.
                     self.disconnect();
-                    Err(Trouble::Encapsulation { what: ask.what, status: frame.status })
+                    Err(EipError::Encapsulation { what: ask.what, status: frame.status })
                 };
                 self.answer(ask.token, true, result);
             }
@@ -271,7 +271,7 @@ impl Session {
 
     fn give_up(&mut self, what: &'static str) {
         self.disconnect();
-        self.fail_waiting(&Trouble::NoAnswer { what, after: self.timeout });
+        self.fail_waiting(&EipError::NoAnswer { what, after: self.timeout });
     }
 
     fn disconnect(&mut self) {
@@ -283,13 +283,13 @@ impl Session {
         }
     }
 
-    fn fail_waiting(&mut self, why: &Trouble) {
+    fn fail_waiting(&mut self, why: &EipError) {
         for ask in std::mem::take(&mut self.waiting) {
             self.answer(ask.token, false, Err(why.clone()));
         }
     }
 
-    fn answer(&mut self, token: Token, sent: bool, result: Result<Vec<u8>, Trouble>) {
+    fn answer(&mut self, token: Token, sent: bool, result: Result<Vec<u8>, EipError>) {
         self.steps.push_back(Step::Answer { token, sent, result });
     }
 }
@@ -364,7 +364,7 @@ mod tests {
         let late = NOW + TIMEOUT;
         assert_eq!(session.wake(), Some(late));
         assert_eq!(session.poll(late), Some(Step::Disconnect));
-        let result = Err(Trouble::NoAnswer { what: "the test", after: TIMEOUT });
+        let result = Err(EipError::NoAnswer { what: "the test", after: TIMEOUT });
         assert_eq!(session.poll(late), Some(Step::Answer { token: Token(1), sent: true, result }));
         session.received(late, &answer(&request, 0, &[9]));
         assert_eq!(session.poll(late), Some(Step::Connect), "for the second");
@@ -376,7 +376,7 @@ mod tests {
         session.ask(ask(1));
         session.ask(ask(2));
         assert_eq!(session.poll(NOW), Some(Step::Connect));
-        let trouble = Trouble::NoAnswer { what: "the TCP connection", after: TIMEOUT };
+        let trouble = EipError::NoAnswer { what: "the TCP connection", after: TIMEOUT };
         session.lost(&trouble);
         for token in [1, 2] {
             let result = Err(trouble.clone());
@@ -405,7 +405,7 @@ mod tests {
         };
         assert!((4..30).contains(&tries), "{tries}");
         assert!(now < NOW + TIMEOUT, "not longer than its patience");
-        let trouble = Trouble::Encapsulation { what: "RegisterSession", status: NO_ROOM };
+        let trouble = EipError::Encapsulation { what: "RegisterSession", status: NO_ROOM };
         assert_eq!(result, (false, Err(trouble)));
         // Any other refusal, and one without patience, is told at once.
         for (patience, status) in [(TIMEOUT, 0x69), (Duration::ZERO, NO_ROOM)] {
@@ -425,7 +425,7 @@ mod tests {
         let (mut session, request) = asking();
         session.received(NOW, &answer(&request, 0x64, &[]));
         assert_eq!(session.poll(NOW), Some(Step::Disconnect));
-        let result = Err(Trouble::Encapsulation { what: "the test", status: 0x64 });
+        let result = Err(EipError::Encapsulation { what: "the test", status: 0x64 });
         assert_eq!(session.poll(NOW), Some(Step::Answer { token: Token(1), sent: true, result }));
         session.ask(ask(2));
         assert_eq!(session.poll(NOW), Some(Step::Connect));
@@ -435,8 +435,8 @@ mod tests {
     fn a_hangup_loses_what_was_sent_and_keeps_what_was_not() {
         let (mut session, _) = asking();
         session.ask(ask(2));
-        session.lost(&Trouble::Ended);
-        let result = Err(Trouble::Hangup { what: "the test" });
+        session.lost(&EipError::Ended);
+        let result = Err(EipError::Hangup { what: "the test" });
         assert_eq!(session.poll(NOW), Some(Step::Answer { token: Token(1), sent: true, result }));
         assert_eq!(session.poll(NOW), Some(Step::Connect));
     }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::trouble::Trouble;
+use super::error::EipError;
 use super::wire::{Flow, Key, Net, Path, Segment};
 
 /// Bytes of the sequence count before what a packet carries.
@@ -113,8 +113,8 @@ impl Default for Settings {
 
 impl Settings {
     /// Whether a connection can be so.
-    pub fn check(&self) -> Result<(), Trouble> {
-        let wrong = |text: String| Err(Trouble::Impossible(text));
+    pub fn check(&self) -> Result<(), EipError> {
+        let wrong = |text: String| Err(EipError::Impossible(text));
         if self.output_size.max(self.input_size) > MOST_IMAGE {
             return wrong(format!("an image has {MOST_IMAGE} bytes at most"));
         }
@@ -197,7 +197,7 @@ mod tests {
             Settings { role: Role::InputOnly, output_size: 1, resting: vec![0], ..Settings::default() },
         ];
         for settings in cases {
-            assert!(matches!(settings.check(), Err(Trouble::Impossible(_))), "{settings:?}");
+            assert!(matches!(settings.check(), Err(EipError::Impossible(_))), "{settings:?}");
         }
     }
 

@@ -4,6 +4,8 @@ use std::fmt;
 use std::net::SocketAddrV4;
 use std::sync::Arc;
 
+use crate::image::tap;
+
 /// A datagram, or a piece of a TCP stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Passed<'a> {
@@ -33,6 +35,24 @@ impl Tap {
         if let Some(tap) = &self.0 {
             tap(&Passed { is_tcp, from, to, bytes });
         }
+    }
+}
+
+impl From<tap::Tap> for Tap {
+    fn from(tap: tap::Tap) -> Self {
+        if !tap.is_open() {
+            return Self::default();
+        }
+        Self::new(move |passed| {
+            tap.pass(|| {
+                let (from, to, bytes) = (passed.from.into(), passed.to.into(), passed.bytes.to_vec());
+                if passed.is_tcp {
+                    tap::Passed::Segment { from, to, bytes }
+                } else {
+                    tap::Passed::Datagram { from, to, bytes }
+                }
+            });
+        })
     }
 }
 

@@ -58,7 +58,7 @@ pub enum Found {
 
 /// Why something cannot be done now.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Hindrance {
+pub enum SessionBusy {
     /// The session has ended, and why.
     Ended(String),
     /// Somebody else has the line, and has not given it back in time.
@@ -226,12 +226,12 @@ impl Attached {
     }
 
     /// Waits for the line until then. The future may be dropped.
-    pub async fn take(&mut self, until: Instant) -> Result<(), Hindrance> {
+    pub async fn take(&mut self, until: Instant) -> Result<(), SessionBusy> {
         self.take_for(0, until).await
     }
 
     /// Waits until a channel of the line is this client's: others may have other channels at the same time.
-    pub async fn take_for(&mut self, channel: u8, until: Instant) -> Result<(), Hindrance> {
+    pub async fn take_for(&mut self, channel: u8, until: Instant) -> Result<(), SessionBusy> {
         if self.line == Line::Mine {
             return Ok(());
         }
@@ -245,7 +245,7 @@ impl Attached {
             match self.arrived(until).await? {
                 None => {
                     self.over();
-                    return Err(Hindrance::Busy(holder));
+                    return Err(SessionBusy::Busy(holder));
                 }
                 Some(Frame::Control(Control::Taken(take))) if take == self.takes => self.line = Line::Mine,
                 Some(Frame::Control(Control::Queued(peer))) => holder = Some(peer),
@@ -269,7 +269,7 @@ impl Attached {
     }
 
     /// Becomes the one who moves the robot.
-    pub async fn claim_motion(&mut self) -> Result<(), Hindrance> {
+    pub async fn claim_motion(&mut self) -> Result<(), SessionBusy> {
         if self.may_move {
             return Ok(());
         }
@@ -277,9 +277,9 @@ impl Attached {
         let until = Instant::now() + ANSWERS_WITHIN;
         loop {
             match self.arrived(until).await? {
-                None => return Err(Hindrance::Ended("the session does not answer".to_owned())),
+                None => return Err(SessionBusy::Ended("the session does not answer".to_owned())),
                 Some(Frame::Control(Control::Granted)) => break,
-                Some(Frame::Control(Control::Held(peer))) => return Err(Hindrance::Moved(peer)),
+                Some(Frame::Control(Control::Held(peer))) => return Err(SessionBusy::Moved(peer)),
                 Some(frame) => self.early.push_back(frame),
             }
         }
@@ -358,9 +358,9 @@ impl Attached {
     }
 
     /// The next frame from the socket; `None` if none came until then.
-    async fn arrived(&mut self, until: Instant) -> Result<Option<Frame>, Hindrance> {
+    async fn arrived(&mut self, until: Instant) -> Result<Option<Frame>, SessionBusy> {
         if let Some(why) = &self.ended {
-            return Err(Hindrance::Ended(why.clone()));
+            return Err(SessionBusy::Ended(why.clone()));
         }
         let next = if Instant::now() < until {
             timeout_at(until, self.end.next()).await.ok()
@@ -377,7 +377,7 @@ impl Attached {
             Some(Err(error)) => format!("the session is gone: {error}"),
         };
         self.ended = Some(why.clone());
-        Err(Hindrance::Ended(why))
+        Err(SessionBusy::Ended(why))
     }
 }
 

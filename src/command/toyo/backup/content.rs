@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::manifest::Controller;
 use super::parts::Part;
-use crate::command::manifest::LeftOut;
+use crate::command::backup::manifest::LeftOut;
 use crate::command::toyo::cells::Cell;
 use crate::command::toyo::items::{Answers, read_each};
 use crate::command::toyo::letters::letters_request;

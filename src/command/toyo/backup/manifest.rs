@@ -4,7 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::parts::Part;
-use crate::command::manifest::{self, About, Entry};
+use crate::command::backup::manifest;
+use crate::command::backup::manifest::{About, Entry};
 use crate::settings::target::Family;
 
 /// The list of a backup.
@@ -57,7 +58,7 @@ impl About for Controller {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::manifest::Saved;
+    use crate::command::backup::manifest::Saved;
 
     #[test]
     fn a_part_is_in_its_own_file() {

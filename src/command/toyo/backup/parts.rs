@@ -6,8 +6,8 @@ use std::str::FromStr;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::command::backup::manifest::{LeftOut, State};
 use crate::command::backup::{self, Item};
-use crate::command::manifest::{LeftOut, State};
 use crate::command::toyo::cells::Cells;
 use crate::controller::nearest::nearest;
 use crate::failure::Failure;

@@ -9,17 +9,19 @@ use serde::Serialize;
 use super::content::{self, Content};
 use super::manifest::{Controller, Manifest};
 use super::parts::{self, Part, PartResult, Parts};
-use crate::command::authority::Authority;
+use crate::command::backup::manifest;
+use crate::command::backup::manifest::{LeftOut, MANIFEST, State};
 use crate::command::backup::{self, Item, Items, Only, POWER_CYCLE, Restoring};
-use crate::command::dry_run::unknown;
-use crate::command::local::own_folder;
-use crate::command::manifest::{self, LeftOut, MANIFEST, State};
+use crate::command::frame::authority::Authority;
+use crate::command::frame::dry_run::unknown;
+use crate::command::frame::local::own_folder;
 use crate::command::toyo::cells::{Cell, Cells};
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::link::{Link, wrong};
 use crate::command::toyo::program::steps;
 use crate::command::toyo::stores::{self, Fate, Found, Store, Work};
 use crate::command::toyo::values::NOT_IN_MANUAL;
-use crate::command::toyo::{Family, param, tasks};
+use crate::command::toyo::{param, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -87,7 +89,7 @@ struct Looked<'j> {
 }
 
 impl Command for Restore {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Restored;
     const ID: &'static str = "toyo.restore";
 
@@ -103,7 +105,7 @@ impl Command for Restore {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
         let Context { link, screen, robot, several, authority } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
         let manifest: Manifest = manifest::existing(&folder)?;

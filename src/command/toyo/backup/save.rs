@@ -9,13 +9,15 @@ use serde::Serialize;
 use super::content::{self, Text};
 use super::manifest::{Controller, Manifest};
 use super::parts::{self, Part, PartResult};
+use crate::command::backup::manifest;
+use crate::command::backup::manifest::{Entry, MANIFEST, Reason, State};
 use crate::command::backup::{self, Item, Items, Making, Only, cut_off, write_text};
-use crate::command::dry_run::unknown;
-use crate::command::interrupt::interruptible;
-use crate::command::local::{make_folder, own_folder};
-use crate::command::manifest::{self, Entry, MANIFEST, Reason, State};
+use crate::command::frame::dry_run::unknown;
+use crate::command::frame::interrupt::interruptible;
+use crate::command::frame::local::{make_folder, own_folder};
 use crate::command::toyo::link::Link;
-use crate::command::toyo::{Family, tasks};
+use crate::command::toyo::link::Toyo;
+use crate::command::toyo::tasks;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
@@ -70,7 +72,7 @@ impl Backup {
 }
 
 impl Command for Backup {
-    type Family = Family;
+    type Family = Toyo;
     type Report = BackedUp;
     const ID: &'static str = "toyo.backup";
 
@@ -78,7 +80,7 @@ impl Command for Backup {
         if self.current_task { Risk::Read } else { Risk::Write }
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<BackedUp, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<BackedUp, Failure> {
         let Context { link, screen, robot, several, .. } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
         let scope = self.scope();

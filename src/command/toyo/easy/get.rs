@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Program, field, read};
-use crate::command::toyo::Family;
 use crate::command::toyo::items::{self, Item, read_each};
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::Numbers;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::request::Request;
@@ -22,11 +22,11 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Programs;
     const ID: &'static str = "toyo.easy.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Programs, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Programs, Failure> {
         let programs = Numbers::of(&self.programs, field());
         let requests = programs.iter().copied().map(read).collect::<Result<Vec<Request>, Failure>>()?;
         let answers = read_each(context.link, context.screen, "reading programs", &requests).await?;

@@ -8,7 +8,6 @@ mod set;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::cells::Cell;
 use super::items::Item;
 use super::link::wrong;
@@ -22,7 +21,7 @@ use crate::output::view::Table;
 
 commands! {
     /// What can be done with easy programs.
-    pub enum Easy of Family {
+    pub enum Easy {
         /// Read programs: 1-3; without any, all 8
         Get(get::Get),
         /// Write a program: 1 START LOOP END

@@ -3,11 +3,12 @@
 use clap::Args;
 
 use super::{field, read};
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::toyo::copies::{self, Copied};
+use crate::command::toyo::link;
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::number;
 use crate::command::toyo::numbers::{not_held, read_back};
-use crate::command::toyo::{Family, link};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -36,7 +37,7 @@ pub struct Select {
 }
 
 impl Command for Copy {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Copied;
     const ID: &'static str = "toyo.easy.copy";
 
@@ -52,7 +53,7 @@ impl Command for Copy {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Copied, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied, Failure> {
         let Self { from, to } = *self;
         let order = Request::new(table::Command::Cesy, vec![Value::Number(from), Value::Number(to)]);
         let order = order.map_err(|error| link::wrong(&error))?;
@@ -63,7 +64,7 @@ impl Command for Copy {
 }
 
 impl Command for Select {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.easy.select";
 
@@ -71,7 +72,7 @@ impl Command for Select {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (link, order) = (context.link, Request::of(table::Command::Sesn, [Value::Number(self.program)]));
         link.order(&order).await?;
         let found = read_back(link, &order, &Request::bare(table::Command::Resd)).await?.number("program");

@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::toyo::Family;
+use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
@@ -16,11 +16,11 @@ use crate::output::view::View;
 pub struct Progress {}
 
 impl Command for Progress {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Far;
     const ID: &'static str = "toyo.easy.progress";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Far, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Far, Failure> {
         let answer = context.link.read(&Request::bare(table::Command::Resd)).await?;
         let number = |name| answer.number(name).unwrap_or_default();
         Ok(Far {

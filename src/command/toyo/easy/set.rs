@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Program, cell, field, read, sketch, values};
-use crate::command::toyo::Family;
 use crate::command::toyo::cells::Cells;
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::number;
 use crate::command::toyo::stores::{self, Store, Work};
 use crate::command::toyo::values::Changes;
@@ -36,7 +36,7 @@ const WORK: Work = Work {
 };
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Stored;
     const ID: &'static str = "toyo.easy.set";
 
@@ -52,7 +52,7 @@ impl Command for Set {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
         let Context { link, screen, authority, .. } = context;
         let changes = Changes::read(&format!("easy program {}", self.program), &values(), &self.values)?;
         let (values, found) =

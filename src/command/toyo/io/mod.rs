@@ -11,13 +11,12 @@ pub(super) use read::{Bank, INPUTS, OUTPUTS, ports_of};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use crate::command::commands;
 use crate::controller::toyo::field::Mask;
 
 commands! {
     /// What can be done with ports.
-    pub enum Io of Family {
+    pub enum Io {
         /// Input ports
         In(read::In),
         /// Output ports

@@ -4,11 +4,11 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::super::Family;
 use super::super::items;
 use super::super::link::Link;
 use super::super::numbers::small;
 use super::{Port, listed, name};
+use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
@@ -155,31 +155,31 @@ pub(in super::super) fn ports_of(record: &Record) -> Vec<Port> {
 }
 
 impl Command for In {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Ports;
     const ID: &'static str = "toyo.io.in";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Ports, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Ports, Failure> {
         INPUTS.read(context.link, self.which.station, self.which.port).await
     }
 }
 
 impl Command for Out {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Ports;
     const ID: &'static str = "toyo.io.out";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Ports, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Ports, Failure> {
         OUTPUTS.read(context.link, self.which.station, self.which.port).await
     }
 }
 
 impl Command for Internal {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Ports;
     const ID: &'static str = "toyo.io.internal";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Ports, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Ports, Failure> {
         INTERNAL.read(context.link, 0, self.port).await
     }
 }

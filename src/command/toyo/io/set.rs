@@ -6,12 +6,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::super::Family;
 use super::super::link::{Link, wrong};
 use super::super::numbers::{not_held, number, read_back};
 use super::super::{items, refusal};
 use super::{OUTPUTS, Port, listed, name, numbers, ports_of};
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
+use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Mask, Value};
@@ -117,7 +117,7 @@ impl Set {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Outputs;
     const ID: &'static str = "toyo.io.set";
 
@@ -125,7 +125,7 @@ impl Command for Set {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Outputs, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Outputs, Failure> {
         let station = self.station;
         let orders = self.orders()?;
         let mut outputs = Vec::with_capacity(orders.len());
@@ -193,7 +193,7 @@ fn account(failure: Failure, orders: &[Assignment], done: usize) -> Failure {
 }
 
 impl Command for Direct {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.io.direct";
 
@@ -201,7 +201,7 @@ impl Command for Direct {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let values = vec![Value::Number(self.number.into())];
         let request = Request::in_form(table::Command::Dout, 1, values).map_err(|error| wrong(&error))?;
         context.link.order(&request).await?;

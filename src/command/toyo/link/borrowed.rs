@@ -1,7 +1,7 @@
 //! What a link changes for a while, and puts back as it was found: who commands, and modes.
 
 use super::{Link, Refusal, Transport, status_page};
-use crate::command::dry_run::Reason;
+use crate::command::frame::dry_run::Reason;
 use crate::command::toyo::refusal;
 use crate::controller::Risk;
 use crate::controller::toyo::request::{Answer, Request};

@@ -5,8 +5,8 @@
 //! which no `@OK` can be taken for, nothing older can come any more: then an order goes out.
 
 use super::{Link, Transport, status_page};
-use crate::command::dry_run::Reason;
-use crate::command::toyo::reach;
+use crate::command::frame::dry_run::Reason;
+use crate::command::toyo::connect;
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 
@@ -50,7 +50,7 @@ impl Link {
             return Ok(());
         }
         let Some((robot, access)) = self.again.clone() else { return Ok(()) };
-        let opened = Box::pin(reach::open(&robot, &access, &self.screen)).await;
+        let opened = Box::pin(connect::open(&robot, &access, &self.screen)).await;
         // Whatever is in the way, such as rights that a port gets a moment after it is there: it may pass.
         let stream = opened.map_err(|failure| Failure { kind: Kind::NoAnswer, ..failure })?;
         self.transport = Transport::Stream(Box::new(stream));

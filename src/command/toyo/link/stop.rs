@@ -7,7 +7,7 @@ use tokio::time::Instant;
 use super::borrowed::Host;
 use super::foreign::Told;
 use super::{Link, Moving, SILENCE, jog, status_page};
-use crate::command::dry_run::unknown;
+use crate::command::frame::dry_run::unknown;
 use crate::command::toyo::refusal;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::{Answer, Request};

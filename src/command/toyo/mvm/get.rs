@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Group, SHEETS, field, reads};
-use crate::command::toyo::Family;
 use crate::command::toyo::items::{self, Item, read_each};
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::Numbers;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::layout::Record;
@@ -23,11 +23,11 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Groups;
     const ID: &'static str = "toyo.mvm.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Groups, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Groups, Failure> {
         let groups = Numbers::of(&self.groups, &field());
         let requests = groups.iter().copied().map(reads).collect::<Result<Vec<Vec<Request>>, Failure>>()?.concat();
         let sheets = read_each(context.link, context.screen, "reading sheets", &requests).await?;

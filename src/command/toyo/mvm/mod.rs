@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::items::Item;
-use super::{Family, link};
+use super::link;
 use crate::command::commands;
 use crate::controller::toyo::field::{Field, Value};
 use crate::controller::toyo::layout::Record;
@@ -18,7 +18,7 @@ use crate::output::view::{Cell, Section, Table, View};
 
 commands! {
     /// What can be done with groups of the MVM table.
-    pub enum Mvm of Family {
+    pub enum Mvm {
         /// Read groups: 1-3; without any, all 32
         Get(get::Get),
         /// Change values of a group: 1 origin=5 pieces1=10

@@ -5,12 +5,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Group, SHEETS, VALUES, field, reads, sheet};
-use crate::command::dry_run::unknown;
+use crate::command::frame::dry_run::unknown;
 use crate::command::toyo::cells::{Cells, THERE};
+use crate::command::toyo::link;
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::{number, read_contents};
 use crate::command::toyo::stores::{self, Store, Work, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::{assignment, word};
-use crate::command::toyo::{Family, link};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::nearest::nearest;
@@ -42,7 +43,7 @@ type Changes = Vec<Option<Value>>;
 const WORK: Work = Work { doing: "storing sheets", noun: "", things: ["a sheet", "sheets"], resumes: false };
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Stored;
     const ID: &'static str = "toyo.mvm.set";
 
@@ -58,7 +59,7 @@ impl Command for Set {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
         let Context { link, screen, authority, .. } = context;
         let changes = self.changes()?;
         let reads = reads(self.group)?;

@@ -8,8 +8,9 @@ use serde::Serialize;
 
 use super::{Entry, parse_program, parse_record, reads};
 use crate::command::ValueKind;
+use crate::command::toyo::files;
 use crate::command::toyo::items::{self, read_each};
-use crate::command::toyo::{Family, files};
+use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::bulk::pallets;
 use crate::controller::toyo::layout::Record;
@@ -37,11 +38,11 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Program;
     const ID: &'static str = "toyo.palletizing.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Program, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Program, Failure> {
         let Context { link, screen, several, .. } = context;
         let target = files::target(self.toml.as_deref(), self.force, several)?;
         let wanted = if self.records.is_empty() { RECORDS.iter().collect() } else { self.records.clone() };

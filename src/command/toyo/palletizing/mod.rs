@@ -11,9 +11,9 @@ use serde::Serialize;
 use super::cells::Cell;
 use super::items::in_a_word;
 use super::link::wrong;
+use super::numbers;
 use super::stores::Store;
 use super::values::{self, Shown};
-use super::{Family, numbers};
 use crate::command::commands;
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::{Field, Value};
@@ -26,7 +26,7 @@ use crate::output::view::{self, Table, Tone};
 
 commands! {
     /// What can be done with palletizing programs.
-    pub enum Palletizing of Family {
+    pub enum Palletizing {
         /// Read the records of a program, also into a TOML file
         Get(get::Get),
         /// Write a record, or those of a TOML file: 1 source-p1 x=100

@@ -9,10 +9,11 @@ use serde::Serialize;
 use super::{Entry, parse_program, parse_record};
 use crate::command::ValueKind;
 use crate::command::toyo::cells::Cells;
+use crate::command::toyo::files;
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::link::wrong;
 use crate::command::toyo::stores::{self, Fate, Found, Store, Work};
 use crate::command::toyo::values::Changes;
-use crate::command::toyo::{Family, files};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::bulk::pallets::{self, Filled};
@@ -53,7 +54,7 @@ pub struct Set {
 const WORK: Work = Work { doing: "storing records", noun: "", things: ["a record", "records"], resumes: false };
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Stored;
     const ID: &'static str = "toyo.palletizing.set";
 
@@ -69,7 +70,7 @@ impl Command for Set {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
         let Context { link, screen, authority, .. } = context;
         let records = match (&self.from, self.record) {
             (Some(file), _) => from_file(file)?.into_iter().map(|filled| (filled, Found::NotAsked)).collect(),

@@ -10,9 +10,10 @@ use serde::Serialize;
 use super::entry::{Key, is_refused, read_keys};
 use super::singles;
 use crate::command::toyo::link::Link;
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::Numbers;
 use crate::command::toyo::values::{NOT_IN_MANUAL, in_a_line, shown};
-use crate::command::toyo::{Family, files, items};
+use crate::command::toyo::{files, items};
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::bulk::{Setting, parameters};
 use crate::controller::toyo::layout::Record;
@@ -41,11 +42,11 @@ pub struct Dump {
 const POINTS: &str = "T1";
 
 impl Command for Dump {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Dumped;
     const ID: &'static str = "toyo.param.dump";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Dumped, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Dumped, Failure> {
         let Context { robot, link, screen, several, .. } = context;
         let target = files::target(self.file.as_deref(), self.force, several)?;
         let kept = Kept::read(link, screen).await?;

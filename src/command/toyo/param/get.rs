@@ -7,7 +7,8 @@ use serde::Serialize;
 use super::entry::{self, Entry};
 use super::parse_name;
 use crate::command::ValueKind;
-use crate::command::toyo::{Family, items};
+use crate::command::toyo::items;
+use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::table::Parameter;
 use crate::failure::Failure;
@@ -24,11 +25,11 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Parameters;
     const ID: &'static str = "toyo.param.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Parameters, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Parameters, Failure> {
         let parameters = entry::read_all(context.link, context.screen, &self.names).await?;
         Ok(Parameters { parameters })
     }

@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::entry::{self, Entry};
 use super::singles;
-use crate::command::toyo::{Family, items};
+use crate::command::toyo::items;
+use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::table::{Group, Parameter};
 use crate::failure::Failure;
@@ -46,11 +47,11 @@ impl GroupArg {
 }
 
 impl Command for List {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Listing;
     const ID: &'static str = "toyo.param.list";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Listing, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Listing, Failure> {
         let is_wanted = |parameter: &&Parameter| self.group.is_none_or(|group| group.group() == parameter.group());
         let wanted: Vec<&'static Parameter> = singles().filter(is_wanted).collect();
         let parameters = entry::read_all(context.link, context.screen, &wanted).await?;

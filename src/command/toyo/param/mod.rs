@@ -12,7 +12,6 @@ pub use dump::{Failed, Kept, Unfit};
 pub use machine::consequence_of;
 pub use restore::store;
 
-use super::Family;
 use crate::command::commands;
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::table::Parameter;
@@ -20,7 +19,7 @@ use crate::controller::toyo::table::parameters::PARAMETERS;
 
 commands! {
     /// What can be done with parameters.
-    pub enum Param of Family {
+    pub enum Param {
         /// Read parameters by name or id: soft-limit-plus P01 M09
         Get(get::Get),
         /// Change a parameter: soft-limit-plus 100 200 0 0

@@ -10,8 +10,9 @@ use super::dump::key_text;
 use super::machine;
 use super::set::POWER_CYCLE;
 use crate::command::toyo::cells::{Cell, Cells};
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::stores::{self, Fate, Found, Store, Work};
-use crate::command::toyo::{Family, files, link};
+use crate::command::toyo::{files, link};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::bulk::{Setting, parameters};
@@ -70,7 +71,7 @@ const USUAL: [Part; 3] = [Part::Mode, Part::Axis, Part::Table];
 const WORK: Work = Work { doing: "storing parameters", noun: "", things: ["a parameter", "parameters"], resumes: true };
 
 impl Command for Restore {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Restored;
     const ID: &'static str = "toyo.param.restore";
 
@@ -86,7 +87,7 @@ impl Command for Restore {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
         let Context { link, screen, authority, .. } = context;
         let name = files::shown(&self.file);
         let read = parameters::read(&files::read(&self.file)?);

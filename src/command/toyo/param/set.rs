@@ -7,9 +7,10 @@ use serde::Serialize;
 use super::{machine, parse_name};
 use crate::command::ValueKind;
 use crate::command::toyo::cells::Cells;
+use crate::command::toyo::link;
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::stores::{self, Store, Work, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::{self, Changes, Shown};
-use crate::command::toyo::{Family, link};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -42,7 +43,7 @@ const WORK: Work =
     Work { doing: "storing a parameter", noun: "", things: ["a parameter", "parameters"], resumes: false };
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Written;
     const ID: &'static str = "toyo.param.set";
 
@@ -58,7 +59,7 @@ impl Command for Set {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Written, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Written, Failure> {
         let Context { link, screen, authority, .. } = context;
         let parameter = self.parameter;
         let changes = Changes::read(parameter.name, &parameter.body(), &self.values)?;

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{OTHER_TASK, Row, field, parse_points, read_all};
-use crate::command::toyo::Family;
 use crate::command::toyo::items::{self, Item};
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::Numbers;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -26,7 +26,7 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Points;
     const ID: &'static str = "toyo.point.get";
 
@@ -34,7 +34,7 @@ impl Command for Get {
         if self.task.is_some() { Risk::Write } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Points, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Points, Failure> {
         let Context { link, screen, .. } = context;
         let points = Numbers::of(&self.points, &field());
         let axes = link.letters().await?.all();

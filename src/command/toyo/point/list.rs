@@ -8,8 +8,9 @@ use serde::Serialize;
 
 use super::get::Points;
 use super::{OTHER_TASK, Row, read_all};
+use crate::command::toyo::files;
 use crate::command::toyo::items::{self, Item};
-use crate::command::toyo::{Family, files};
+use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::bulk::{Setting, points};
@@ -44,7 +45,7 @@ pub struct List {
 }
 
 impl Command for List {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Listing;
     const ID: &'static str = "toyo.point.list";
 
@@ -52,7 +53,7 @@ impl Command for List {
         if self.task.is_some() { Risk::Write } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Listing, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Listing, Failure> {
         let Context { link, screen, several, .. } = context;
         if self.to < self.from {
             return Err(Failure::usage(format!("--to {} is before --from {}", self.to, self.from))

@@ -13,7 +13,7 @@ use super::items::{Answers, Item, read_each};
 use super::link::{self, Link};
 use super::numbers::Numbers;
 use super::position::{Place, heading};
-use super::{Family, tasks};
+use super::tasks;
 use crate::command::commands;
 use crate::controller::toyo::bulk::points::table;
 use crate::controller::toyo::field::Field;
@@ -25,7 +25,7 @@ use crate::output::view::{Cell, Table};
 
 commands! {
     /// What can be done with points.
-    pub enum Point of Family {
+    pub enum Point {
         /// Read points: 1-10,20
         Get(get::Get),
         /// Write a point, or all that a CSV file has

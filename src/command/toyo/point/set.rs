@@ -8,13 +8,14 @@ use serde::Serialize;
 
 use super::list::AXES;
 use super::{OTHER_TASK, Row, field};
-use crate::command::authority::Authority;
+use crate::command::frame::authority::Authority;
 use crate::command::toyo::cells::Cells;
 use crate::command::toyo::link::Link;
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::{number, runs};
 use crate::command::toyo::stores::{self, Fate, Store, Work, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::Changes;
-use crate::command::toyo::{Family, files, link, tasks};
+use crate::command::toyo::{files, link, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::bulk::points;
@@ -56,7 +57,7 @@ pub struct Set {
 const WORK: Work = Work { doing: "storing points", noun: "point", things: ["a point", "points"], resumes: true };
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Stored;
     const ID: &'static str = "toyo.point.set";
 
@@ -72,7 +73,7 @@ impl Command for Set {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
         let Context { link, screen, authority, .. } = context;
         let Some(file) = &self.from else {
             let point = self.point.unwrap_or_default();

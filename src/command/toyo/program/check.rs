@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::text::Remark;
 use crate::command::toyo::files;
-use crate::command::{Desk, Report};
+use crate::command::{OfflineCommand, Report};
 use crate::controller::toyo::program::{self, MOST_STEPS};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -33,7 +33,7 @@ pub struct Check {
     strict: bool,
 }
 
-impl Desk for Check {
+impl OfflineCommand for Check {
     type Report = Verdict;
     const ID: &'static str = "toyo.program.check";
 

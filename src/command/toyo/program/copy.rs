@@ -7,11 +7,12 @@ use serde::Serialize;
 use super::and_mode;
 use super::insert::moved_wrong;
 use super::steps;
-use crate::command::authority::Authority;
-use crate::command::dry_run::unknown;
+use crate::command::frame::authority::Authority;
+use crate::command::frame::dry_run::unknown;
 use crate::command::toyo::link::Link;
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::stores::{Replaced, overwriting};
-use crate::command::toyo::{Family, tasks};
+use crate::command::toyo::tasks;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -45,7 +46,7 @@ pub struct Copy {
 }
 
 impl Command for Copy {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Copied;
     const ID: &'static str = "toyo.program.copy";
 
@@ -61,7 +62,7 @@ impl Command for Copy {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Copied, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied, Failure> {
         let Context { link, screen, authority, .. } = context;
         if self.to < self.from {
             return Err(Failure::usage(format!("the last step, {}, is before the first, {}", self.to, self.from))

@@ -8,10 +8,11 @@ use super::and_mode;
 use super::get::Step;
 use super::insert::moved_wrong;
 use super::steps;
-use crate::command::authority::Authority;
-use crate::command::dry_run::unknown;
+use crate::command::frame::authority::Authority;
+use crate::command::frame::dry_run::unknown;
 use crate::command::toyo::link::Link;
-use crate::command::toyo::{Family, tasks};
+use crate::command::toyo::link::Toyo;
+use crate::command::toyo::tasks;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -39,7 +40,7 @@ pub struct Delete {
 }
 
 impl Command for Delete {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Deleted;
     const ID: &'static str = "toyo.program.delete";
 
@@ -55,7 +56,7 @@ impl Command for Delete {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Deleted, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Deleted, Failure> {
         let Context { link, screen, authority, .. } = context;
         let last = self.to.unwrap_or(self.step);
         if last < self.step {

@@ -7,11 +7,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::steps;
-use crate::command::dry_run::unknown;
-use crate::command::local::Target;
+use crate::command::frame::dry_run::unknown;
+use crate::command::frame::local::Target;
 use crate::command::toyo::items::{self, Answers, Item, in_a_word};
-use crate::command::toyo::link::{Link, misuse};
-use crate::command::toyo::{Family, tasks};
+use crate::command::toyo::link::{Link, Toyo, misuse};
+use crate::command::toyo::tasks;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::layout::Record;
@@ -59,7 +59,7 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Got;
     const ID: &'static str = "toyo.program.get";
 
@@ -67,7 +67,7 @@ impl Command for Get {
         if self.task.is_some() { Risk::Write } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Got, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Got, Failure> {
         let Context { link, screen, several, .. } = context;
         if let Some(to) = self.to.filter(|to| *to < self.from) {
             return Err(Failure::usage(format!("--to {to} is before --from {}", self.from))

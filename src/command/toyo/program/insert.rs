@@ -8,11 +8,12 @@ use super::and_mode;
 use super::get::Step;
 use super::steps;
 use crate::command::ValueKind;
-use crate::command::authority::Authority;
-use crate::command::dry_run::{Reason, unknown};
+use crate::command::frame::authority::Authority;
+use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::toyo::cells::{Cells, THERE};
 use crate::command::toyo::link::Link;
-use crate::command::toyo::{Family, tasks};
+use crate::command::toyo::link::Toyo;
+use crate::command::toyo::tasks;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -41,7 +42,7 @@ pub struct Insert {
 }
 
 impl Command for Insert {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Inserted;
     const ID: &'static str = "toyo.program.insert";
 
@@ -57,7 +58,7 @@ impl Command for Insert {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Inserted, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Inserted, Failure> {
         let Context { link, screen, authority, .. } = context;
         let instruction = self.instruction()?;
         if link.is_dry() {

@@ -5,10 +5,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::steps;
-use crate::command::dry_run::unknown;
+use crate::command::frame::dry_run::unknown;
 use crate::command::toyo::items::{self, in_a_word};
 use crate::command::toyo::link::Link;
-use crate::command::toyo::{Family, tasks};
+use crate::command::toyo::link::Toyo;
+use crate::command::toyo::tasks;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::program::{tags, used};
@@ -30,7 +31,7 @@ pub struct List {
 }
 
 impl Command for List {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Listed;
     const ID: &'static str = "toyo.program.list";
 
@@ -38,7 +39,7 @@ impl Command for List {
         if self.used { Risk::Write } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Listed, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Listed, Failure> {
         let Context { link, screen, .. } = context;
         if link.is_dry() {
             tasks::choose(link, None).await?;

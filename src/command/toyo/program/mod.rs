@@ -14,12 +14,11 @@ pub mod steps;
 mod tests;
 pub mod text;
 
-use super::Family;
-use crate::command::{AtDesk, commands};
+use crate::command::{Offline, commands};
 
 commands! {
     /// What can be done with sequential programs.
-    pub enum Program of Family {
+    pub enum Program {
         /// The tasks, with the steps their programs have room for and use
         List(list::List),
         /// Read a program as text
@@ -37,7 +36,7 @@ commands! {
         /// The step at which the program stands
         Show(show::Show),
         /// Check program files; takes no robot
-        Check(AtDesk<check::Check>),
+        Check(Offline<check::Check>),
     }
 }
 

@@ -11,13 +11,14 @@ use super::and_mode;
 use super::check::Labelled;
 use super::steps;
 use super::text;
-use crate::command::authority::Authority;
-use crate::command::dry_run::unknown;
-use crate::command::interrupt::interruptible;
+use crate::command::frame::authority::Authority;
+use crate::command::frame::dry_run::unknown;
+use crate::command::frame::interrupt::interruptible;
 use crate::command::toyo::cells::{Cells, THERE};
 use crate::command::toyo::link::Link;
+use crate::command::toyo::link::Toyo;
 use crate::command::toyo::stores::{Replaced, overwriting};
-use crate::command::toyo::{Family, files, tasks};
+use crate::command::toyo::{files, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::layout::Record;
@@ -61,7 +62,7 @@ struct Edit {
 }
 
 impl Command for Put {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Stored;
     const ID: &'static str = "toyo.program.put";
 
@@ -77,7 +78,7 @@ impl Command for Put {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Stored, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
         let Context { link, screen, authority, .. } = context;
         let name = files::shown(&self.file);
         let bytes = files::read(&self.file)?;

@@ -5,10 +5,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::steps;
-use crate::command::dry_run::unknown;
+use crate::command::frame::dry_run::unknown;
 use crate::command::toyo::link::Link;
+use crate::command::toyo::link::Toyo;
+use crate::command::toyo::tasks;
 use crate::command::toyo::waiting::status_page;
-use crate::command::toyo::{Family, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -31,7 +32,7 @@ pub struct Search {
 }
 
 impl Command for Search {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Found;
     const ID: &'static str = "toyo.program.search";
 
@@ -39,7 +40,7 @@ impl Command for Search {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Found, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Found, Failure> {
         let link = context.link;
         if link.is_dry() {
             tasks::choose(link, self.task).await?;

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::steps;
-use crate::command::dry_run::unknown;
-use crate::command::toyo::Family;
+use crate::command::frame::dry_run::unknown;
+use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
@@ -18,11 +18,11 @@ use crate::output::view::View;
 pub struct Show {}
 
 impl Command for Show {
-    type Family = Family;
+    type Family = Toyo;
     type Report = Current;
     const ID: &'static str = "toyo.program.show";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Current, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Current, Failure> {
         let link = context.link;
         let (which, request) = (Request::bare(table::Command::Mtsk), steps::read_request(0));
         if link.is_dry() {

@@ -5,13 +5,12 @@ mod run;
 mod tests;
 mod trace;
 
-use super::Family;
-use crate::command::{AtDesk, commands};
+use crate::command::{Offline, commands};
 
 commands! {
     /// What can be done with the simulator of a controller; `armctl sim toyo` serves it.
-    pub enum Sim of Family {
+    pub enum Sim {
         /// Run a program file and print what happens and when; takes no robot
-        Run(AtDesk<run::Run>),
+        Run(Offline<run::Run>),
     }
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::Args;
 
 use super::trace::{End, Recorder, Source, Trace};
-use crate::command::Desk;
+use crate::command::OfflineCommand;
 use crate::command::toyo::files;
 use crate::command::toyo::point::AXES;
 use crate::command::toyo::program::text;
@@ -115,7 +115,7 @@ impl Input {
     }
 }
 
-impl Desk for Run {
+impl OfflineCommand for Run {
     type Report = Trace;
     const ID: &'static str = "toyo.sim.run";
 

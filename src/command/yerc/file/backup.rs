@@ -12,11 +12,12 @@ use super::manifest::{Controller, Manifest};
 use super::name::{self, Shown, TypeArg, type_word};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
+use crate::command::backup::manifest;
+use crate::command::backup::manifest::{Entry, Hash, MANIFEST, Reason, Saved, State};
 use crate::command::backup::{self, Items, Making, Only};
-use crate::command::local::{LocalNames, Target, make_folder, own_folder};
-use crate::command::manifest::{self, Entry, Hash, MANIFEST, Reason, Saved, State};
-use crate::command::yerc::Family;
+use crate::command::frame::local::{LocalNames, Target, make_folder, own_folder};
 use crate::command::yerc::link::Link;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::text::hex;
 use crate::controller::yerc::files::{self, FileType};
@@ -77,11 +78,11 @@ fn asked(scope: &[String]) -> (Vec<FileType>, Only) {
 const TYPE: &str = "type ";
 
 impl Command for Backup {
-    type Family = Family;
+    type Family = Yerc;
     type Report = BackedUp;
     const ID: &'static str = "yerc.file.backup";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<BackedUp, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<BackedUp, Failure> {
         let Context { link, screen, robot, several, .. } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
         let scope = self.scope();

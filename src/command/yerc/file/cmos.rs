@@ -12,10 +12,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::transfer;
-use crate::command::dry_run::Reason;
-use crate::command::local::{Target, folder_of, make_folder, own_folder};
-use crate::command::yerc::Family;
+use crate::command::frame::dry_run::Reason;
+use crate::command::frame::local::{Target, folder_of, make_folder, own_folder};
 use crate::command::yerc::link::Link;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yerc::files;
@@ -46,7 +46,7 @@ pub struct Cmos {
 }
 
 impl Command for Cmos {
-    type Family = Family;
+    type Family = Yerc;
     type Report = BatchBackup;
     const ID: &'static str = "yerc.file.cmos";
 
@@ -54,7 +54,7 @@ impl Command for Cmos {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<BatchBackup, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<BatchBackup, Failure> {
         let Context { link, screen, robot, several, .. } = context;
         let Some(file) = self.file.as_deref().filter(|_| !self.start_only) else {
             return self.start(link, screen).await;

@@ -7,8 +7,8 @@ use super::name::{self, Shown};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
 use crate::command::ValueKind;
-use crate::command::dry_run::Reason;
-use crate::command::yerc::Family;
+use crate::command::frame::dry_run::Reason;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;
@@ -27,7 +27,7 @@ pub struct Delete {
 const SHAPE: Shape = Shape { done: "deleted", has_paths: false, has_bytes: false };
 
 impl Command for Delete {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Results;
     const ID: &'static str = "yerc.file.delete";
 
@@ -43,7 +43,7 @@ impl Command for Delete {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Results, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Results, Failure> {
         let Context { link, authority, .. } = context;
         let files = name::all_typed(link.encoding, &self.names)?;
         let pending = |file: &FileName| FileResult::pending(Shown::new(link.encoding, file.as_bytes()), None);

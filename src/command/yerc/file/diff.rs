@@ -11,9 +11,10 @@ use super::content::Content;
 use super::name::{self, Shown};
 use super::transfer;
 use crate::command::ValueKind;
-use crate::command::lines::{self, Change, Ending, Line, MOST_TEXT, TextDifference};
-use crate::command::local::{local_name, own_folder};
-use crate::command::yerc::Family;
+use crate::command::backup::text_diff;
+use crate::command::backup::text_diff::{Change, Ending, Line, MOST_TEXT, TextDifference};
+use crate::command::frame::local::{local_name, own_folder};
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
@@ -33,11 +34,11 @@ pub struct Diff {
 }
 
 impl Command for Diff {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Difference;
     const ID: &'static str = "yerc.file.diff";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Difference, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Difference, Failure> {
         let Context { link, screen, robot, several, .. } = context;
         let file = name::typed(link.encoding, &self.name)?;
         let local = self.local.clone().unwrap_or_else(|| {
@@ -112,8 +113,8 @@ struct Hunk {
     lines: Vec<Line>,
 }
 
-impl From<lines::Hunk> for Hunk {
-    fn from(hunk: lines::Hunk) -> Self {
+impl From<text_diff::Hunk> for Hunk {
+    fn from(hunk: text_diff::Hunk) -> Self {
         Self {
             controller_start: hunk.old_start,
             controller_lines: hunk.old_lines,
@@ -124,7 +125,7 @@ impl From<lines::Hunk> for Hunk {
     }
 }
 
-impl From<&Hunk> for lines::Hunk {
+impl From<&Hunk> for text_diff::Hunk {
     fn from(hunk: &Hunk) -> Self {
         Self {
             old_start: hunk.controller_start,
@@ -176,9 +177,9 @@ impl Report for Difference {
     fn view(&self) -> View {
         match &self.hunks {
             Some(hunks) if !self.equal && self.only_line_endings == Some(false) => {
-                let hunks: Vec<lines::Hunk> = hunks.iter().map(lines::Hunk::from).collect();
+                let hunks: Vec<text_diff::Hunk> = hunks.iter().map(text_diff::Hunk::from).collect();
                 let old = format!("{} (controller)", self.name.name);
-                View::default().and(Section::Lines(lines::unified(&old, &self.path, &hunks)))
+                View::default().and(Section::Lines(text_diff::unified(&old, &self.path, &hunks)))
             }
             Some(hunks) if !self.equal => {
                 let ends = |bare: Change| {

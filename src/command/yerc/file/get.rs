@@ -10,9 +10,9 @@ use super::name::{self, Shown};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
 use crate::command::ValueKind;
-use crate::command::local::{LocalNames, Target, make_folder, own_folder};
-use crate::command::yerc::Family;
+use crate::command::frame::local::{LocalNames, Target, make_folder, own_folder};
 use crate::command::yerc::link::Link;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::files::FileName;
@@ -37,11 +37,11 @@ pub struct Get {
 const SHAPE: Shape = Shape { done: "saved", has_paths: true, has_bytes: true };
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Fetched;
     const ID: &'static str = "yerc.file.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Fetched, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Fetched, Failure> {
         let Context { link, screen, robot, several, .. } = context;
         let files = name::all_typed(link.encoding, &self.names)?;
         let to_stdout = self.output == Path::new("-");

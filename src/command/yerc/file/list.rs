@@ -7,8 +7,9 @@ use serde::Serialize;
 use super::name::{Shown, TypeArg, type_word, word_of};
 use super::transfer;
 use crate::command::backup;
-use crate::command::items::{self, ItemError};
-use crate::command::yerc::Family;
+use crate::command::frame::items;
+use crate::command::frame::items::ItemError;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::files;
 use crate::failure::Failure;
@@ -30,11 +31,11 @@ fn filter(text: &str) -> Result<String, String> {
 }
 
 impl Command for List {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Listing;
     const ID: &'static str = "yerc.file.list";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Listing, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Listing, Failure> {
         let Context { link, screen, .. } = context;
         let filters = match &self.filter {
             Some(filter) => vec![(filter.clone(), None)],

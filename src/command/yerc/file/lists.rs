@@ -2,7 +2,7 @@
 
 use super::transfer;
 use crate::command::backup::goes_on;
-use crate::command::dry_run::Reason;
+use crate::command::frame::dry_run::Reason;
 use crate::command::yerc::link::Link;
 use crate::controller::yerc::files::{self, FileName, FileType};
 use crate::failure::Failure;

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::name::exact;
-use crate::command::manifest::{self, About, Entry};
+use crate::command::backup::manifest;
+use crate::command::backup::manifest::{About, Entry};
 use crate::command::yerc::link::Link;
 use crate::controller::text::unhex;
 use crate::controller::yerc::files::FileName;

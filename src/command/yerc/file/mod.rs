@@ -21,12 +21,11 @@ pub use backup::Backup;
 pub use restore::Restore;
 pub(super) use transfer::taken as download_failed;
 
-use super::Family;
 use crate::command::commands;
 
 commands! {
     /// What can be done with files.
-    pub enum File of Family {
+    pub enum File {
         /// List the files on the controller
         List(list::List),
         /// Fetch files

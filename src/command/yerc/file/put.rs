@@ -9,9 +9,9 @@ use super::deliver::{self, Delivery, Manner, deliver};
 use super::lists::{Lists, There};
 use super::name::{self, Shown};
 use super::results::{FileResult, Results, Shape};
-use crate::command::dry_run::Reason;
-use crate::command::local::controller_name;
-use crate::command::yerc::Family;
+use crate::command::frame::dry_run::Reason;
+use crate::command::frame::local::controller_name;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;
@@ -49,7 +49,7 @@ pub struct Put {
 const SHAPE: Shape = Shape { done: "sent", has_paths: true, has_bytes: true };
 
 impl Command for Put {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Results;
     const ID: &'static str = "yerc.file.put";
 
@@ -65,7 +65,7 @@ impl Command for Put {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Results, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Results, Failure> {
         let Context { link, screen, authority, .. } = context;
         let mut deliveries = self.deliveries(link.encoding)?;
         let mut results: Vec<FileResult> = Vec::with_capacity(deliveries.len());

@@ -12,13 +12,14 @@ use super::manifest::{Manifest, controller_file};
 use super::name::{self, Shown, TypeArg};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
-use crate::command::authority::Authority;
+use crate::command::backup::manifest;
+use crate::command::backup::manifest::{Entry, MANIFEST, State};
 use crate::command::backup::{Only, Restoring};
-use crate::command::dry_run::Reason;
-use crate::command::local::own_folder;
-use crate::command::manifest::{self, Entry, MANIFEST, State};
-use crate::command::yerc::Family;
+use crate::command::frame::authority::Authority;
+use crate::command::frame::dry_run::Reason;
+use crate::command::frame::local::own_folder;
 use crate::command::yerc::link::Link;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yerc::files::{FileName, FileType};
@@ -91,7 +92,7 @@ impl Restore {
 }
 
 impl Command for Restore {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Results;
     const ID: &'static str = "yerc.file.restore";
 
@@ -107,7 +108,7 @@ impl Command for Restore {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Results, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Results, Failure> {
         let Context { link, screen, robot, several, authority } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
         manifest::admit(&manifest::existing::<Value>(&folder)?, robot, self.force)?;

@@ -9,9 +9,9 @@ use serde::Serialize;
 use super::name::Shown;
 use super::transfer::about;
 use crate::command::Report;
+use crate::command::backup::manifest::State;
 use crate::command::backup::{self, Item, Items, gravity};
-use crate::command::items::brief;
-use crate::command::manifest::State;
+use crate::command::frame::items::brief;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
 

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::compare::Comparer;
 use super::content::Content;
-use crate::command::dry_run::Reason;
+use crate::command::frame::dry_run::Reason;
 use crate::command::yerc::link::{Link, Refusal};
 use crate::controller::yerc::files::{self, FileName, FileType, split_list};
 use crate::controller::yerc::request::Request;

@@ -6,12 +6,13 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::super::Family;
 use super::super::orders::usage;
 use super::super::parts::{Parts, read_in_parts};
 use super::signal::{self, Signals};
 use super::{GroupState, SignalState, group_table, signal_table};
-use crate::command::items::{self, ItemError};
+use crate::command::frame::items;
+use crate::command::frame::items::ItemError;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::signal::Signal;
 use crate::controller::yerc::variables::{parse_numbers, plan_io_reads};
@@ -43,11 +44,11 @@ impl Groups {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yerc;
     type Report = States;
     const ID: &'static str = "yerc.io.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<States, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<States, Failure> {
         let link = context.link;
         let model = link.model;
         let signals: Vec<Signal> = once(self.signals.iter().flat_map(|signals| signals.0.iter().copied()));

@@ -9,9 +9,8 @@ mod tests;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use crate::command::commands;
-use crate::command::items::{ItemError, ItemOutcome};
+use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::signal::Signal;
 use crate::failure::Failure;
@@ -19,7 +18,7 @@ use crate::output::view::{Cell, Section, Table};
 
 commands! {
     /// What can be done with signals.
-    pub enum Io of Family {
+    pub enum Io {
         /// Read signals: 20010, #20010..#20017, or --group 2001
         Get(get::Get),
         /// Switch network inputs: 27010=on, or --group 2701=0xA5

@@ -7,15 +7,15 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::super::Family;
 use super::super::orders::usage;
 use super::super::parts::{Parts, plan_in_parts, read_in_parts};
 use super::super::register::unsigned;
 use super::super::writes::{Order, runs, write_all};
 use super::signal;
 use super::{GroupState, SignalState, group_table, signal_table};
-use crate::command::dry_run::{Reason, unknown};
+use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::yerc::link::Link;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yerc::query::Query as _;
@@ -94,7 +94,7 @@ impl Change {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Switched;
     const ID: &'static str = "yerc.io.set";
 
@@ -102,7 +102,7 @@ impl Command for Set {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Switched, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Switched, Failure> {
         let Context { link, screen, .. } = context;
         let model = link.model;
         let changes = self.changes()?;

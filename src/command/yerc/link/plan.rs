@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::{Link, Transport};
-use crate::command::dry_run::{Reason, unknown};
+use crate::command::frame::dry_run::{Reason, unknown};
 use crate::controller::text::hex;
 use crate::controller::yerc::files::{ack_frame, data_frame};
 use crate::controller::yerc::query::Query;

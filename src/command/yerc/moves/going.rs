@@ -7,7 +7,7 @@ use serde::Serialize;
 use tokio::time::Instant;
 
 use crate::command::Report;
-use crate::command::dry_run::Known as _;
+use crate::command::frame::dry_run::Known as _;
 use crate::command::yerc::link::{Link, Refusal};
 use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost, plan_alarm};
 use crate::command::yerc::orders::usage;

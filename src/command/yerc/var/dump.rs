@@ -11,11 +11,11 @@ use serde::Serialize;
 use serde_json::json;
 use tempfile::NamedTempFile;
 
-use super::super::Family;
 use super::entry::{Entry, is_undefined};
 use super::get::Named;
 use super::read::{once, read_all};
 use super::{in_form, listed, parse_kind};
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::variables::{Reference, VariableKind};
 use crate::failure::Failure;
@@ -53,11 +53,11 @@ pub struct Dump {
 }
 
 impl Command for Dump {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Dumped;
     const ID: &'static str = "yerc.var.dump";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Dumped, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Dumped, Failure> {
         let Context { robot, link, screen, .. } = context;
         let references = once(self.references().map(|reference| in_form(reference, link.model, false)));
         let is_stdout = self.file == Path::new("-");

@@ -6,7 +6,7 @@ use serde_json::{Map, Value as Json};
 
 use super::in_form;
 use super::position::{self, PositionData};
-use crate::command::items::ItemError;
+use crate::command::frame::items::ItemError;
 use crate::command::yerc::each::{Denied, Outcome};
 use crate::controller::text::Encoding;
 use crate::controller::text::hex;

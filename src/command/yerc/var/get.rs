@@ -4,12 +4,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::super::Family;
 use super::entry::Entry;
 use super::in_form;
 use super::read::{once, read_all};
 use crate::command::ValueKind;
-use crate::command::items;
+use crate::command::frame::items;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::variables::{Reference, parse_references};
 use crate::failure::Failure;
@@ -43,11 +43,11 @@ impl Named {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Variables;
     const ID: &'static str = "yerc.var.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Variables, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Variables, Failure> {
         let link = context.link;
         let named = self.variables.iter().flat_map(|named| &named.0);
         let references = once(named.map(|reference| in_form(*reference, link.model, self.s16)));

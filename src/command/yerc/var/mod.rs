@@ -11,14 +11,13 @@ mod read;
 mod restore;
 mod set;
 
-use super::Family;
 use crate::command::commands;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::variables::{Reference, VariableKind};
 
 commands! {
     /// What can be done with variables.
-    pub enum Var of Family {
+    pub enum Var {
         /// Read variables: B0 I1..I20 D5 R3 S2 P10 BP1 EX1
         Get(get::Get),
         /// Write variables: B0=255 R3=1.5 S7=HELLO P1=base:x=…

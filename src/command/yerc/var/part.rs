@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::command::dry_run::Reason;
+use crate::command::frame::dry_run::Reason;
 use crate::command::yerc::each::Denied;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::orders::usage;

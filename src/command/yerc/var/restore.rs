@@ -8,14 +8,14 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value as Json;
 
-use super::super::Family;
 use super::super::orders::usage;
 use super::super::writes::{Order, write_all};
 use super::dump::{FORMAT, VERSION};
 use super::entry::{Entry, Reading, is_undefined};
 use super::read::{Answers, read_whatever};
 use super::{listed, parse_kind};
-use crate::command::dry_run::{Known as _, Reason, unknown};
+use crate::command::frame::dry_run::{Known as _, Reason, unknown};
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;
@@ -42,7 +42,7 @@ pub struct Restore {
 }
 
 impl Command for Restore {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Restored;
     const ID: &'static str = "yerc.var.restore";
 
@@ -58,7 +58,7 @@ impl Command for Restore {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Restored, Failure> {
         let Context { link, screen, authority, .. } = context;
         let shown = self.file.display().to_string();
         let wrong = |error: String| {

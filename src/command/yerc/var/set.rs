@@ -8,15 +8,15 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value as Json;
 
-use super::super::Family;
 use super::super::orders::usage;
 use super::super::writes::{Order, write_all};
 use super::entry::{Entry, Reading, position_in};
 use super::part::{self, Word, Words};
 use super::{in_form, listed};
 use crate::command::ValueKind;
-use crate::command::dry_run::unknown;
+use crate::command::frame::dry_run::unknown;
 use crate::command::yerc::link::Link;
+use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::integer;
@@ -142,7 +142,7 @@ fn message(error: impl ToString) -> String {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Yerc;
     type Report = Written;
     const ID: &'static str = "yerc.var.set";
 
@@ -150,7 +150,7 @@ impl Command for Set {
         Risk::Write
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Written, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Written, Failure> {
         let Context { link, screen, .. } = context;
         let mut values = Vec::new();
         let mut fields = Vec::new();

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::parts::{Part, Records};
 use super::rows::{self, Row};
-use crate::command::dry_run::Reason;
-use crate::command::manifest::{About, Entry, LeftOut};
+use crate::command::backup::manifest::{About, Entry, LeftOut};
+use crate::command::frame::dry_run::Reason;
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::numbers::{self, Numbers, runs};
 use crate::command::yrcx::refusal::refused;

@@ -6,13 +6,14 @@ use clap::Args;
 
 use super::content::{self, Controller, Store};
 use super::parts::Part;
+use crate::command::backup::manifest;
+use crate::command::backup::manifest::{LeftOut, State};
 use crate::command::backup::{Item, Items, Only, Restored, Restoring};
-use crate::command::dry_run::{Reason, unknown};
-use crate::command::interrupt::interruptible;
-use crate::command::local::own_folder;
-use crate::command::manifest::{self, LeftOut, State};
-use crate::command::yrcx::Family;
+use crate::command::frame::dry_run::{Reason, unknown};
+use crate::command::frame::interrupt::interruptible;
+use crate::command::frame::local::own_folder;
 use crate::command::yrcx::link::Link;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::refusal::refused;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -60,7 +61,7 @@ impl Restore {
 }
 
 impl Command for Restore {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Restored;
     const ID: &'static str = "yrcx.restore";
 
@@ -76,7 +77,7 @@ impl Command for Restore {
         Confirmation::WhenKnown
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Restored, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Restored, Failure> {
         let Context { link, screen, robot, several, authority } = context;
         link.no_unit("a backup is of the whole controller")?;
         let folder = own_folder(&self.folder, &robot.name, several);

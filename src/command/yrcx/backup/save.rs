@@ -8,13 +8,14 @@ use clap::Args;
 
 use super::content::{self, Controller, GAP, Text, Wanted};
 use super::parts::{POINTS, Part, THOUSAND};
+use crate::command::backup::manifest;
+use crate::command::backup::manifest::{Entry, Reason, State};
 use crate::command::backup::{BackedUp, Item, Items, Making, Only, cut_off, write_text};
-use crate::command::dry_run::unknown;
-use crate::command::interrupt::interruptible;
-use crate::command::local::{make_folder, own_folder};
-use crate::command::manifest::{self, Entry, Reason, State};
-use crate::command::yrcx::Family;
+use crate::command::frame::dry_run::unknown;
+use crate::command::frame::interrupt::interruptible;
+use crate::command::frame::local::{make_folder, own_folder};
 use crate::command::yrcx::link::Link;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::{Numbers, runs};
 use crate::command::{Command, Context};
 use crate::failure::{Failure, Kind};
@@ -76,11 +77,11 @@ impl Backup {
 }
 
 impl Command for Backup {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = BackedUp;
     const ID: &'static str = "yrcx.backup";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<BackedUp, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<BackedUp, Failure> {
         let Context { link, screen, robot, several, .. } = context;
         link.no_unit("a backup is of the whole controller")?;
         let folder = own_folder(&self.folder, &robot.name, several);

@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use crate::command::Family as _;
-use crate::command::testing::{context, everything};
-use crate::command::yrcx::Family;
+use crate::command::frame::testing::{self, context, everything};
 use crate::command::yrcx::link::Link;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::testing::{frames, quiet, resolved, risk, words};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
@@ -36,7 +36,7 @@ impl Desk {
         };
         let (robot, _) = resolved(&target, &["status"]).unwrap();
         let access = everything();
-        let link = runtime.block_on(Family::connect(&robot, access, &quiet())).unwrap();
+        let link = runtime.block_on(Yrcx::connect(&robot, access, &quiet())).unwrap();
         Self { folder, runtime, robot, link }
     }
 
@@ -49,7 +49,7 @@ impl Desk {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>())?;
         let Self { runtime, robot, link, .. } = self;
-        let report = runtime.block_on(command.run(context(robot, link)))?;
+        let report = runtime.block_on(testing::run::<Yrcx>(&*command, context(robot, link)))?;
         Ok((report.data()?, report.failure()))
     }
 
@@ -73,9 +73,9 @@ impl Desk {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>()).unwrap();
         let Self { runtime, robot, link, .. } = self;
-        let run = command.run(context(robot, link));
+        let run = testing::run::<Yrcx>(&*command, context(robot, link));
         runtime.block_on(async { tokio::time::timeout(after, run).await.map(|_| ()).unwrap_err() });
-        runtime.block_on(Family::halt(link)).unwrap();
+        runtime.block_on(Yrcx::halt(link)).unwrap();
     }
 }
 
@@ -126,7 +126,7 @@ fn what_is_restored_is_what_was_saved() {
         let line = if line.ends_with("--unit 2") { line.to_owned() } else { format!("{line} --unit 0") };
         let (robot, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>()).unwrap();
         let Desk { runtime, link, .. } = &mut desk;
-        runtime.block_on(command.run(context(&robot, link))).unwrap();
+        runtime.block_on(testing::run::<Yrcx>(&*command, context(&robot, link))).unwrap();
     }
     desk.link.set_unit(0);
     desk.data("backup @/changed");

@@ -4,11 +4,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::command::yrcx::link;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::{Numbers, single};
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
-use crate::command::yrcx::{Family, link};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
@@ -18,7 +19,7 @@ use crate::output::view::View;
 
 commands! {
     /// What can be done with comments of points.
-    pub enum Comment of Family {
+    pub enum Comment {
         /// Read the comments of points: 100, 0..29
         Get(Get),
         /// Write the comment of a point: 100 'WAIT ORG'
@@ -36,11 +37,11 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Comments;
     const ID: &'static str = "yrcx.comment.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Comments, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Comments, Failure> {
         let nouns = ["comment of point", "comments"];
         let field = (table::Command::CommentGet, Key::Point);
         let of = |values: &Values| Text { comment: values.text(Key::Comment).unwrap_or_default().to_owned() };

@@ -5,11 +5,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::mm;
+use crate::command::yrcx::link;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::{Numbers, single};
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
-use crate::command::yrcx::{Family, link};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
@@ -19,7 +20,7 @@ use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with hands.
-    pub enum HandData of Family {
+    pub enum HandData {
         /// Read hands: 1, 0..31
         Get(Get),
         /// Define a hand: 1 --data-1 10000 --data-2 -2 --data-3 5
@@ -42,11 +43,11 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Hands;
     const ID: &'static str = "yrcx.hand-data.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Hands, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Hands, Failure> {
         let (nouns, field) = (["hand", "hands"], (table::Command::HandGet, Key::Hand));
         let (numbers, hands) = read_numbers(context, nouns, field, &self.hands, Data::of).await?;
         Ok(Hands { hands: hands.rows(numbers.into_iter().map(|hand| Which { hand })) })

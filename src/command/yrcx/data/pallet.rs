@@ -4,11 +4,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::command::yrcx::link;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::{Numbers, single};
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
-use crate::command::yrcx::{Family, link};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
@@ -18,7 +19,7 @@ use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with pallets.
-    pub enum PalletData of Family {
+    pub enum PalletData {
         /// Read pallets: 10, 0..39
         Get(Get),
         /// Define a pallet: 10 --nx 10 --ny 15 --first-point 100
@@ -36,11 +37,11 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Pallets;
     const ID: &'static str = "yrcx.pallet-data.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Pallets, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Pallets, Failure> {
         let nouns = ["pallet", "pallets"];
         let field = (table::Command::PalletGet, Key::Pallet);
         let (numbers, pallets) = read_numbers(context, nouns, field, &self.pallets, Places::of).await?;

@@ -5,12 +5,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Four, four, mm};
+use crate::command::yrcx::link;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::{Numbers, single};
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::position::{Position, Unit};
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::{Single, shown};
-use crate::command::yrcx::{Family, link};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
@@ -20,7 +21,7 @@ use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with points.
-    pub enum Point of Family {
+    pub enum Point {
         /// Read points: 100, 0..29
         Get(Get),
         /// Define a point: 100 --mm 10,-20,5,-18
@@ -42,11 +43,11 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Points;
     const ID: &'static str = "yrcx.point.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Points, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Points, Failure> {
         let nouns = ["point", "points"];
         let field = (table::Command::PointGet, Key::Point);
         let (numbers, points) = read_numbers(context, nouns, field, &self.points, Coordinates::of).await?;

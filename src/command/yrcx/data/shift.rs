@@ -5,12 +5,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Four, four, mm};
+use crate::command::yrcx::link;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::{Numbers, single};
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::position::{Position, Unit};
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::yrcx::single::Single;
-use crate::command::yrcx::{Family, link};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
@@ -20,7 +21,7 @@ use crate::output::view::View;
 
 commands! {
     /// What can be done with shifts.
-    pub enum ShiftData of Family {
+    pub enum ShiftData {
         /// Read shifts: 5, 0..39
         Get(Get),
         /// Define a shift: 5 --mm 10,-20,5,-18
@@ -38,11 +39,11 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Shifts;
     const ID: &'static str = "yrcx.shift-data.get";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Shifts, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Shifts, Failure> {
         let nouns = ["shift", "shifts"];
         let field = (table::Command::ShiftGet, Key::Shift);
         let of = |values: &_| Way { shift_mm: Position::of(values, Some(Unit::Mm)).position_mm.unwrap_or_default() };

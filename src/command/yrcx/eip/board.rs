@@ -2,25 +2,29 @@
 
 use std::net::SocketAddrV4;
 
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::yrcx::reach::{as_hint, not_open};
-use crate::command::yrcx::simulated::Controller;
+use super::check;
+use crate::command::face::layers::Layers;
+use crate::command::yrcx::fieldbus;
+use crate::command::yrcx::link_error::not_open;
 use crate::controller::text;
 use crate::controller::yrcx::image::Image;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Tone};
-use crate::settings::target::{self, EipRole};
+use crate::settings::target::eip::{self, EipRole, SCHEME};
 use crate::transport::eip::ASSEMBLY;
-use crate::transport::eip::adapter::server::Server;
 use crate::transport::eip::client::Client;
+use crate::transport::eip::error::EipError;
 use crate::transport::eip::explicit::{Answer, Message};
+use crate::transport::eip::link::as_advice;
 use crate::transport::eip::probe::{self, Findings, Instances};
 use crate::transport::eip::status;
-use crate::transport::eip::trouble::Trouble;
 use crate::transport::eip::wire;
-use crate::transport::image::OpenError;
+use crate::transport::image::LinkError;
 
 /// The attribute of an assembly that is its image.
 const IMAGE: u32 = 3;
@@ -29,20 +33,18 @@ const IMAGE: u32 = 3;
 #[derive(Debug)]
 pub struct Board {
     client: Client,
-    eip: target::Eip,
+    eip: eip::Eip,
     label: String,
-    /// Where the board is simulated in this process.
-    _simulated: Option<Server<Controller>>,
 }
 
 impl Board {
     /// A board that is talked to when something is asked.
-    pub fn new(client: Client, eip: target::Eip, label: String, simulated: Option<Server<Controller>>) -> Self {
-        Self { client, eip, label, _simulated: simulated }
+    pub fn new(client: Client, eip: eip::Eip, label: String) -> Self {
+        Self { client, eip, label }
     }
 
     /// What its URL says.
-    pub fn settings(&self) -> &target::Eip {
+    pub fn settings(&self) -> &eip::Eip {
         &self.eip
     }
 
@@ -55,8 +57,8 @@ impl Board {
     pub async fn identity(&mut self) -> Result<Option<Identity>, Failure> {
         match self.client.identity().await {
             Ok(identity) => Ok(identity.map(Identity::from)),
-            Err(Trouble::Encapsulation { .. }) => Ok(None),
-            Err(trouble) => Err(self.failure(trouble)),
+            Err(EipError::Encapsulation { .. }) => Ok(None),
+            Err(error) => Err(self.failure(error)),
         }
     }
 
@@ -67,15 +69,15 @@ impl Board {
                 let known = [(5, "messages over TCP"), (8, "images over UDP")];
                 known.iter().filter(|(bit, _)| services.flags >> bit & 1 == 1).map(|(_, what)| *what).collect()
             })),
-            Err(Trouble::Encapsulation { .. }) => Ok(None),
-            Err(trouble) => Err(self.failure(trouble)),
+            Err(EipError::Encapsulation { .. }) => Ok(None),
+            Err(error) => Err(self.failure(error)),
         }
     }
 
     /// Reads an attribute, or all of an instance.
     pub async fn get(&mut self, object: Object) -> Result<Vec<u8>, Failure> {
         let answer = self.client.ask(object.reading(), &object.get()).await;
-        let answer = answer.map_err(|trouble| self.failure(trouble))?;
+        let answer = answer.map_err(|error| self.failure(error))?;
         if answer.status.is_ok() { Ok(answer.data) } else { Err(self.refused(object.reading(), object, &answer)) }
     }
 
@@ -85,11 +87,11 @@ impl Board {
         self.services().await?;
         let answer = match self.client.ask(SETTING, &object.set(value)).await {
             Ok(answer) => answer,
-            Err(trouble @ (Trouble::Unreachable { .. } | Trouble::Impossible(_) | Trouble::Encapsulation { .. })) => {
-                return Err(self.failure(trouble));
+            Err(error @ (EipError::Unreachable { .. } | EipError::Impossible(_) | EipError::Encapsulation { .. })) => {
+                return Err(self.failure(error));
             }
-            Err(trouble) => {
-                let message = format!("{}: sent once, and whether it was done is unknown: {trouble}", self.label);
+            Err(error) => {
+                let message = format!("{}: sent once, and whether it was done is unknown: {error}", self.label);
                 return Err(Failure::new(Kind::OutcomeUnknown, message)
                     .hint(format!("`yrcx eip get {}` tells", object.arguments())));
             }
@@ -111,20 +113,15 @@ impl Board {
     /// Finds assemblies, their sizes, and what makes a connection; `identity` is what the board says of itself.
     pub async fn probe(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
         let thought = self.thought();
-        let found = probe::probe(&mut self.client, thought).await.map_err(|trouble| self.failure(trouble))?;
+        let found = probe::probe(&mut self.client, thought).await.map_err(|error| self.failure(error))?;
         Ok(Probed::of(&found, &self.eip, identity))
     }
 
     /// Whether a connection as the URL says could be opened, without opening one; likewise.
     pub async fn rehearse(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
         let thought = self.thought();
-        let found = probe::rehearse(&mut self.client, thought).await.map_err(|trouble| self.failure(trouble))?;
+        let found = probe::rehearse(&mut self.client, thought).await.map_err(|error| self.failure(error))?;
         Ok(Probed::of(&found, &self.eip, identity))
-    }
-
-    /// Takes leave of it.
-    pub async fn close(self) {
-        self.client.close().await;
     }
 
     /// The instances of the URL, which are those of an owner only if it says nothing else.
@@ -133,8 +130,8 @@ impl Board {
         Instances { output: usual, input: self.eip.input, configuration: self.eip.configuration }
     }
 
-    fn failure(&self, trouble: Trouble) -> Failure {
-        not_open(&self.label, &self.eip, &OpenError::Trouble(trouble))
+    fn failure(&self, error: EipError) -> Failure {
+        not_open(&self.label, &SCHEME, &LinkError::from(error))
     }
 
     fn refused(&self, what: &str, object: Object, answer: &Answer) -> Failure {
@@ -142,9 +139,19 @@ impl Board {
         let failure = Failure::new(Kind::Refused, format!("{}: {what} of {object} was refused: {text}", self.label))
             .code(format!("{:#04x}", answer.status.general));
         match status::meaning(&answer.status) {
-            Some(code) => failure.hint(as_hint(code.remedy)),
+            Some(code) => failure.hint(as_advice(code.remedy)),
             None => failure.hint("the manual of the board may know this status"),
         }
+    }
+}
+
+impl fieldbus::Board for Board {
+    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
+        check::look(self, layers).boxed_local()
+    }
+
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
+        self.client.close().boxed_local()
     }
 }
 
@@ -376,7 +383,7 @@ pub struct Connectable {
 const OWNED: u16 = 0x0106;
 
 impl Probed {
-    fn of(found: &Findings, eip: &target::Eip, identity: Option<&Identity>) -> Self {
+    fn of(found: &Findings, eip: &eip::Eip, identity: Option<&Identity>) -> Self {
         let refuses = found.attempts.iter().any(|attempt| attempt.status.extended.first() == Some(&OWNED));
         let owned = refuses || identity.is_some_and(|identity| identity.owned);
         let attempts: Vec<Attempt> = found

@@ -5,8 +5,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::board;
-use super::{Family, NO_UNIT};
-use crate::command::{Command, Context, Need, Report};
+use super::{NO_UNIT, board_of};
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
 
@@ -15,18 +16,18 @@ use crate::output::view::{Section, View};
 pub struct Identify {}
 
 impl Command for Identify {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Identified;
     const ID: &'static str = "yrcx.eip.identity";
 
-    fn need(&self) -> Need {
-        Need::Messages
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Identified, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Identified, Failure> {
         context.link.no_unit(NO_UNIT)?;
         context.link.then("messages that ask the board who it is, and what it can do");
-        let board = context.link.board()?;
+        let board = board_of(context.link)?;
         let address = board.address().to_string();
         let Some(identity) = board.identity().await? else {
             return Err(Failure::new(Kind::Malformed, format!("{}: it does not say who it is", context.robot.label()))

@@ -6,9 +6,10 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::board::{Object, shown};
-use super::{Family, NO_UNIT};
-use crate::command::orders::Done;
-use crate::command::{Command, Context, Need, Report};
+use super::{NO_UNIT, board_of};
+use crate::command::frame::orders::Done;
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text;
 use crate::failure::Failure;
@@ -34,21 +35,21 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Value;
     const ID: &'static str = "yrcx.eip.get";
 
-    fn need(&self) -> Need {
-        Need::Messages
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Value, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Value, Failure> {
         context.link.no_unit(NO_UNIT)?;
         let object = Object { class: self.class, instance: self.instance, attribute: self.attribute };
         let about = format!("{} of {object}", object.reading());
         let asked = object.get_bytes();
         context.link.rehearse_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
-        let bytes = context.link.board()?.get(object).await?;
+        let bytes = board_of(context.link)?.get(object).await?;
         context.link.tell_message(&asked, &bytes, &about);
         Ok(Value::of(object, &bytes))
     }
@@ -82,7 +83,7 @@ impl Set {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Done;
     const ID: &'static str = "yrcx.eip.set";
 
@@ -94,17 +95,17 @@ impl Command for Set {
         format!("set {} to {}", self.object(), shown(&self.data.0))
     }
 
-    fn need(&self) -> Need {
-        Need::Messages
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
         context.link.no_unit(NO_UNIT)?;
         let object = self.object();
         let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));
         context.link.rehearse_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
         context.link.permit("yrcx.eip.set", self.risk())?;
-        context.link.board()?.set(object, &self.data.0).await?;
+        board_of(context.link)?.set(object, &self.data.0).await?;
         context.link.tell_message(&asked, &[], &about);
         Ok(Done::new(format!("set {object} to {}", shown(&self.data.0))))
     }

@@ -1,20 +1,36 @@
-//! `yrcx eip`: the network board itself, by messages. For diagnosis: no connection for images is opened, so nothing that
-//! the controller would miss when it ends.
+//! Controllers on EtherNet/IP, and `yrcx eip`: the network board itself, by messages. For diagnosis: no connection for
+//! images is opened, so nothing that the controller would miss when it ends.
 
-pub mod board;
+mod board;
+pub mod bus;
+mod check;
+mod cip;
+mod connect;
+mod decode;
+mod discover;
 mod identity;
 mod message;
 mod probe;
+mod serve;
+pub mod simulated;
 
-use super::Family;
+use self::board::Board;
+use super::link::Link;
 use crate::command::commands;
+use crate::failure::Failure;
+use crate::settings::target::eip::SCHEME;
+
+/// The board of a link that is for it alone.
+fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
+    link.board(SCHEME.bus)
+}
 
 /// Why `--unit` means nothing here.
 const NO_UNIT: &str = "the board is that of the whole controller";
 
 commands! {
     /// What the network board can be asked.
-    pub enum Eip of Family {
+    pub enum Eip {
         /// Who the board is
         Identity(identity::Identify),
         /// Find the assemblies of the board, their sizes, and what makes a connection

@@ -5,8 +5,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::board::{self, Probed, warned};
-use super::{Family, NO_UNIT};
-use crate::command::{Command, Context, Need, Report};
+use super::{NO_UNIT, board_of};
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, Table, View};
 
@@ -20,20 +21,20 @@ use crate::output::view::{Cell, Section, Table, View};
 pub struct Probe {}
 
 impl Command for Probe {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Found;
     const ID: &'static str = "yrcx.eip.probe";
 
-    fn need(&self) -> Need {
-        Need::Messages
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Found, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Found, Failure> {
         context.link.no_unit(NO_UNIT)?;
         context
             .link
             .then("messages that ask the board who it is, for its assemblies, and for connections that it refuses");
-        let board = context.link.board()?;
+        let board = board_of(context.link)?;
         let identity = board.identity().await?;
         let probed = board.probe(identity.as_ref()).await?;
         Ok(Found { identity, probed })

@@ -4,8 +4,9 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::items::{self, ItemError};
-use crate::command::yrcx::Family;
+use crate::command::frame::items;
+use crate::command::frame::items::ItemError;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::several::ask_each;
 use crate::command::yrcx::single::shown;
 use crate::command::{Command, Context, Report};
@@ -20,11 +21,11 @@ use crate::output::view::{Cell, View};
 pub struct Arm {}
 
 impl Command for Arm {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Arms;
     const ID: &'static str = "yrcx.info.arm";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Arms, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Arms, Failure> {
         let link = context.link;
         let selected = link.draft(table::Command::ArmDesignation)?.build()?;
         let current = link.draft(table::Command::ArmStatus)?.build()?;

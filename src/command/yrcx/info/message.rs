@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::alarm::AlarmReport;
-use crate::command::yrcx::Family;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::Numbers;
 use crate::command::yrcx::several::{Rows, read_numbers};
 use crate::command::{Command, Context, Report};
@@ -28,11 +28,11 @@ pub struct Message {
 }
 
 impl Command for Message {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Messages;
     const ID: &'static str = "yrcx.info.message";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Messages, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Messages, Failure> {
         let nouns = ["message", "messages"];
         let field = (table::Command::AlarmHistory, Key::History);
         let (numbers, messages) = read_numbers(context, nouns, field, &self.numbers, AlarmReport::of).await?;

@@ -15,11 +15,10 @@ mod torque;
 mod version;
 
 use crate::command::commands;
-use crate::command::yrcx::Family;
 
 commands! {
     /// What the controller tells about itself.
-    pub enum Info of Family {
+    pub enum Info {
         /// Versions of the software
         Version(version::Version),
         /// Model numbers of a robot and its axes

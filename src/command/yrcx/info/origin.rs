@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::yrcx::Family;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::single::shown;
 use crate::command::{Command, Context, Report};
 use crate::controller::yrcx::table;
@@ -21,11 +21,11 @@ pub struct Origin {
 }
 
 impl Command for Origin {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Origins;
     const ID: &'static str = "yrcx.info.origin";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Origins, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Origins, Failure> {
         let link = context.link;
         let draft = link.draft(table::Command::OriginStatus)?.with_some(Key::MotorType, self.motor.clone());
         let order = draft.build().map_err(|error| match error.place.key {

@@ -6,7 +6,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::yrcx::Family;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::position::{Position, Unit};
 use crate::command::yrcx::single::shown;
 use crate::command::{Command, Context, Report};
@@ -37,7 +37,7 @@ pub struct Where {
 }
 
 impl Command for Where {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Place;
     const ID: &'static str = "yrcx.info.position";
 
@@ -45,7 +45,7 @@ impl Command for Where {
         self.continuous
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Place, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Place, Failure> {
         if self.within.is_some() && !self.continuous && self.until.is_none() {
             return Err(
                 Failure::usage("--for goes with --continuous or --until").hint("add one of them, or leave --for away")

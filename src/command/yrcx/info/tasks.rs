@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::ValueKind;
-use crate::command::yrcx::Family;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::program;
 use crate::command::yrcx::several::{Answers, Rows, Several, ask_each};
 use crate::command::yrcx::single::shown;
@@ -53,7 +53,7 @@ impl Chosen {
     /// Asks for the halves that have one of them, and returns the tasks with what the half says that they are in.
     async fn read<V>(
         &self,
-        context: Context<'_, Family>,
+        context: Context<'_, Yrcx>,
         command: table::Command,
         of: impl Fn(&Values, Key) -> V,
     ) -> Result<Rows<Which, V>, Failure> {
@@ -94,11 +94,11 @@ pub struct Tasks {
 }
 
 impl Command for Tasks {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = States;
     const ID: &'static str = "yrcx.info.tasks";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<States, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<States, Failure> {
         let command = table::Command::TaskStatus;
         let of = |values: &Values, key| State { state: shown(command, values, key).unwrap_or_default() };
         let mut tasks = self.chosen.read(context, command, of).await?;
@@ -151,11 +151,11 @@ pub struct Line {
 }
 
 impl Command for Line {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Lines;
     const ID: &'static str = "yrcx.info.line";
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Lines, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Lines, Failure> {
         let of = |values: &Values, key| {
             let line = values.int(key).filter(|line| *line != 0).map(program::Line::of);
             TaskLine { line: line.map(|line| line.line), in_common: line.is_some_and(|line| line.in_common) }

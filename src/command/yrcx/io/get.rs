@@ -4,9 +4,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Family, Readable, State, WordState, readable, table, word_table};
+use super::{Readable, State, WordState, readable, table, word_table};
 use crate::command::ValueKind;
-use crate::command::{Command, Context, Need, Report};
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
 use crate::output::view::{Section, View};
@@ -22,15 +23,15 @@ pub struct Get {
 }
 
 impl Command for Get {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = States;
     const ID: &'static str = "yrcx.io.get";
 
-    fn need(&self) -> Need {
-        Need::Sight
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Monitor
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<States, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<States, Failure> {
         let given = context.link.shown().copied();
         if given.is_none()
             && let Some(signal) = self.signals.iter().find(|signal| signal.side() == Side::Input)

@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::{Desk, Report};
+use crate::command::{OfflineCommand, Report};
 use crate::controller::yrcx::bus::{self, Bus, Place};
 use crate::controller::yrcx::signal::Side;
 use crate::failure::Failure;
@@ -29,7 +29,7 @@ pub struct Map {
     output_start: Option<u32>,
 }
 
-impl Desk for Map {
+impl OfflineCommand for Map {
     type Report = Addresses;
     const ID: &'static str = "yrcx.io.map";
 

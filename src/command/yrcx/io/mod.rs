@@ -8,8 +8,7 @@ mod watch;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
-use crate::command::{AtDesk, commands};
+use crate::command::{Offline, commands};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::register::Register;
 use crate::controller::yrcx::signal::{Side, Signal};
@@ -17,7 +16,7 @@ use crate::output::view::{Cell, Table};
 
 commands! {
     /// What can be done with signals.
-    pub enum Io of Family {
+    pub enum Io {
         /// Read signals
         Get(get::Get),
         /// Switch inputs of the controller: servo-on=on, 20=off, SIW2=5
@@ -27,7 +26,7 @@ commands! {
         /// Tell each change of signals until Ctrl-C
         Watch(watch::Watch),
         /// The addresses of words and signals on a fieldbus, for the PLC engineer
-        Map(AtDesk<map::Map>),
+        Map(Offline<map::Map>),
     }
 }
 

@@ -2,10 +2,11 @@
 
 use clap::Args;
 
-use super::{Family, input, named};
+use super::{input, named};
 use crate::command::ValueKind;
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::yrcx::link::Link;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yrcx::procedure::Procedure;
@@ -83,7 +84,7 @@ impl Change {
 }
 
 impl Command for Set {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Done;
     const ID: &'static str = "yrcx.io.set";
 
@@ -95,7 +96,7 @@ impl Command for Set {
         format!("switch {}", told(&self.changes))
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
         let mut done = 0;
         for together in self.changes.chunk_by(|one, next| one.word().is_some() && next.word().is_some()) {
             let before = &self.changes[..done];
@@ -122,7 +123,7 @@ pub struct Pulse {
 }
 
 impl Command for Pulse {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Done;
     const ID: &'static str = "yrcx.io.pulse";
 
@@ -134,7 +135,7 @@ impl Command for Pulse {
         format!("switch {} on and off again", named(self.signal))
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
         context.link.carry_out(switching(Procedure::pulse(self.signal))?).await?;
         Ok(Done::new(format!("switched {} on and off again", named(self.signal))))
     }

@@ -6,9 +6,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Family, State, table};
+use super::{State, table};
 use crate::command::ValueKind;
-use crate::command::{Command, Context, Need, Report};
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
@@ -37,7 +38,7 @@ impl Watch {
 }
 
 impl Command for Watch {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Changes;
     const ID: &'static str = "yrcx.io.watch";
 
@@ -45,11 +46,11 @@ impl Command for Watch {
         true
     }
 
-    fn need(&self) -> Need {
-        Need::Sight
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Monitor
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Changes, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Changes, Failure> {
         let signals = self.signals();
         let Some(before) = context.link.told else {
             let image = context.link.look().await?;

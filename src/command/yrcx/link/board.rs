@@ -1,24 +1,37 @@
-//! A link that asks only the network board.
+//! A link that asks only the device on the fieldbus.
+
+use std::any::Any;
 
 use serde_json::Value as Json;
 
-use super::{Board, Link, Transport};
-use crate::command::dry_run::{Reason, unknown};
+use super::{Link, Transport};
+use crate::command::frame::dry_run::{Reason, unknown};
+use crate::command::yrcx::fieldbus::Board;
 use crate::failure::Failure;
 use crate::transport::tap::Direction;
 
 impl Link {
-    /// The network board, of a link that is for it alone.
-    pub fn board(&mut self) -> Result<&mut Board, Failure> {
+    /// The device, of a link that is for it alone, whatever its fieldbus.
+    pub fn any_board(&mut self) -> Result<&mut dyn Board, Failure> {
         match &mut self.transport {
-            Transport::Board(board) => Ok(board),
+            Transport::Board(board, _) => Ok(&mut **board),
             Transport::Notes(_) => Err(unknown()),
             Transport::Image(_) => Err(Failure::local("this link carries images, not messages")),
         }
     }
 
-    /// Tells at `-vv` what was asked of the board, and what it answered.
-    pub fn tell_message(&self, sent: &[u8], received: &[u8], about: &str) {
+    /// The device as this fieldbus knows it.
+    pub fn board<B: Board>(&mut self, fieldbus: &str) -> Result<&mut B, Failure> {
+        let label = self.label.clone();
+        let board: &mut dyn Any = self.any_board()?;
+        board.downcast_mut().ok_or_else(|| {
+            Failure::usage(format!("{label} is on another fieldbus than {fieldbus}"))
+                .hint("`armctl yrcx --help` lists the commands of each fieldbus")
+        })
+    }
+
+    /// Tells at `-vv` what was asked of the device, and what it answered.
+    pub fn tell_message(&mut self, sent: &[u8], received: &[u8], about: &str) {
         self.trace.message(Direction::Sent, sent, about);
         self.trace.message(Direction::Received, received, "done");
     }

@@ -16,7 +16,7 @@ use crate::controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next,
 use crate::controller::yrcx::signal::{input, output};
 use crate::controller::yrcx::table::Pace;
 use crate::failure::{Failure, Kind};
-use crate::transport::image::Event;
+use crate::transport::image::{Event, LinkError};
 
 /// A session that waits for nothing is asked again after this.
 pub(super) const LONG: Duration = Duration::from_secs(3600);
@@ -34,8 +34,8 @@ impl Link {
         if !self.is_owner && self.input.is_some_and(|image| !output::CPU_OK.is_on(&image)) {
             // Whoever only reads is not told by the board that it reads something else.
             self.screen.note(
-                "warning: CPU OK (SO(01)) is off: the controller does not work, or `in` of the URL is not the assembly \
-                 that it sends (`armctl robots check`)",
+                "warning: CPU OK (SO(01)) is off: the controller does not work, or the URL names something else than what \
+                 it shows (`armctl robots check`)",
             );
         }
         Ok(())
@@ -43,6 +43,9 @@ impl Link {
 
     /// Begins a remote command.
     pub(super) async fn start(&mut self, order: &Order) -> Result<(), Failure> {
+        if !self.has_commands() {
+            return Err(refusal::no_commands(&self.label, order.row()));
+        }
         self.catch_up().await?;
         self.claim_motion(order.risk()).await?;
         self.have_words().await?;
@@ -240,9 +243,8 @@ impl Link {
         if !self.is_up || !self.is_owner || self.shown == Some(self.output.next) {
             return Ok(());
         }
-        let mut bytes = self.output.next.to_bytes().to_vec();
-        bytes.resize(self.size, 0);
-        link.show(&bytes).map_err(|trouble| Failure::local(trouble.to_string()))?;
+        let shown = link.show(&self.output.next.to_link(self.size));
+        shown.map_err(|error| Failure::local(error.to_string()))?;
         self.shown = Some(self.output.next);
         self.in_flight = true;
         Ok(())
@@ -261,7 +263,7 @@ impl Link {
                 self.trace.sent(&self.output.next);
             }
             Event::Image(bytes) => self.take(now, &bytes)?,
-            Event::Lost(why) => self.lost(now, &why),
+            Event::Lost(error) => self.lost(now, &error),
             Event::Reopened => {
                 self.is_up = true;
                 if self.is_shared {
@@ -279,9 +281,11 @@ impl Link {
     }
 
     fn take(&mut self, now: Now, bytes: &[u8]) -> Result<(), Failure> {
-        let Some(image) = bytes.get(..Image::BYTES).and_then(Image::from_bytes) else {
+        let Some(image) = Image::from_link(bytes) else {
             let message = format!("{}: the controller shows {} bytes, fewer than an image", self.label, bytes.len());
-            return Err(Failure::new(Kind::Malformed, message).hint("check in and in_size of the URL"));
+            return Err(
+                Failure::new(Kind::Malformed, message).hint("check the sizes in the URL: `armctl robots check`")
+            );
         };
         self.trace.received(&image);
         self.input = Some(image);
@@ -294,9 +298,12 @@ impl Link {
         Ok(())
     }
 
-    fn lost(&mut self, now: Now, why: &str) {
+    fn lost(&mut self, now: Now, why: &LinkError) {
         let again = if self.still_there().is_ok() { "; it is being opened again" } else { "" };
         self.screen.note(&format!("{}: the link was lost: {why}{again}", self.label));
+        if let LinkError::Lost { outputs, .. } = why {
+            self.screen.detail(1, &format!("{}: the controller: {outputs}", self.label));
+        }
         self.totals.losses += 1;
         self.is_up = false;
         self.in_flight = false;

@@ -6,8 +6,8 @@ use tokio::time::Instant;
 
 use super::driver::LONG;
 use super::{Done, Link, Transport};
-use crate::command::dry_run::Reason;
-use crate::command::interrupt::abandoned;
+use crate::command::frame::dry_run::Reason;
+use crate::command::frame::interrupt::abandoned;
 use crate::command::yrcx::refusal;
 use crate::controller::yrcx::alarm::STOP_INPUT;
 use crate::controller::yrcx::answer::Answer;

@@ -3,15 +3,15 @@
 use tokio::time::Instant;
 
 use super::{Link, Transport};
-use crate::command::attach::hindered;
+use crate::command::frame::attach::session_busy;
+use crate::command::yrcx::connect::endpoint;
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::describe::{answer_summary, command_summary};
 use crate::controller::yrcx::image::{Image, Output};
 use crate::controller::{Now, Risk};
 use crate::failure::{Failure, Kind};
 use crate::settings::Robot;
-use crate::settings::target::{EipRole, Place};
-use crate::transport::session::client::Hindrance;
+use crate::transport::session::client::SessionBusy;
 use crate::transport::session::wire::Change;
 
 impl Link {
@@ -23,7 +23,7 @@ impl Link {
             return;
         }
         (self.is_shared, self.is_held, self.is_up) = (true, true, link.is_up());
-        self.is_owner = !matches!(&robot.target.value.place, Place::Eip(eip) if eip.role != EipRole::Owner);
+        self.is_owner = endpoint(robot).is_ok_and(|endpoint| endpoint.is_owner());
         self.shown_now();
     }
 
@@ -54,14 +54,14 @@ impl Link {
         if risk < Risk::Motion {
             return Ok(());
         }
-        link.claim_motion().await.map_err(|hindrance| hindered(&self.label, &hindrance))
+        link.claim_motion().await.map_err(|busy| session_busy(&self.label, &busy))
     }
 
     /// Waits until nobody else gives a remote command.
     pub(super) async fn take_turn(&mut self) -> Result<(), Failure> {
         self.is_over = false;
         let Transport::Image(link) = &mut self.transport else { return Ok(()) };
-        link.take(Instant::now() + self.timeout).await.map_err(|hindrance| hindered(&self.label, &hindrance))
+        link.take(Instant::now() + self.timeout).await.map_err(|busy| session_busy(&self.label, &busy))
     }
 
     /// Lets others give a remote command once the last one has ended.
@@ -77,7 +77,7 @@ impl Link {
     pub(super) fn still_there(&self) -> Result<(), Failure> {
         let Transport::Image(link) = &self.transport else { return Ok(()) };
         match link.ended() {
-            Some(why) => Err(hindered(&self.label, &Hindrance::Ended(why.to_owned()))),
+            Some(why) => Err(session_busy(&self.label, &SessionBusy::Ended(why.to_owned()))),
             None => Ok(()),
         }
     }
@@ -114,5 +114,5 @@ impl Link {
 }
 
 fn image(bytes: &[u8]) -> Option<Image> {
-    Image::from_bytes(bytes.get(..Image::BYTES)?)
+    Image::from_link(bytes)
 }

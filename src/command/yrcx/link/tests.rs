@@ -203,3 +203,20 @@ fn status_puts_signals_servos_and_position_together() {
     assert_eq!((&status["servos"][2]["state"], &status["position_mm"][1]), (&"brake".into(), &(-10.0).into()));
     assert_eq!(peer.taken, [words(&[0x503]), words(&[0x506])]);
 }
+
+#[test]
+fn without_words_for_commands_signals_work_and_nothing_else_leaves() {
+    let mut bench = Bench::signals_alone(Scripted::new([]));
+    for line in [&["info", "servo"][..], &["move", "--point", "19"], &["raw", "--wi", "0x604"]] {
+        let failure = bench.run(line).unwrap_err();
+        assert_eq!(failure.kind, Kind::RefusedHere, "{line:?}: {failure}");
+        assert!(failure.message.contains("Compact"), "{failure}");
+    }
+    let at_rest = bench.peer(|peer| (peer.taken.clone(), peer.bits.clone()));
+    assert_eq!(at_rest, (vec![], vec![0x0041]), "SI(00) and SI(06) on, from the first image on");
+    bench.run(&["run"]).unwrap();
+    bench.run(&["stop"]).unwrap();
+    assert_eq!(bench.run(&["io", "get", "SO1"]).unwrap()["signals"][0]["on"], true);
+    let peer = bench.into_peer();
+    assert!(peer.taken.is_empty() && peer.bits.len() > 3, "{:?}", peer.bits);
+}

@@ -4,7 +4,7 @@ use serde_json::json;
 use tokio::time::Instant;
 
 use super::{Link, Transport, hex};
-use crate::command::dry_run::Reason;
+use crate::command::frame::dry_run::Reason;
 use crate::controller::Risk;
 use crate::controller::yrcx::register::{Register, general};
 use crate::failure::{Failure, Kind};

@@ -3,8 +3,8 @@
 use clap::Args;
 
 use super::{Moved, go};
-use crate::command::yrcx::Family;
 use crate::command::yrcx::arguments::{Direction, Which};
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::overwrite::confirmation;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -48,7 +48,7 @@ impl AbsReset {
 }
 
 impl Command for AbsReset {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Moved;
     const ID: &'static str = "yrcx.abs-reset";
 
@@ -68,7 +68,7 @@ impl Command for AbsReset {
         confirmation(self.command())
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Moved, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Moved, Failure> {
         let draft = context.link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
         let Some(direction) = self.direction else {
             let done = context.link.run(&draft.build()?).await?;

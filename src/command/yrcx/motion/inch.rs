@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::{Motion, Moved};
-use crate::command::orders::Done;
+use crate::command::frame::orders::Done;
 use crate::command::yrcx::arguments::{Direction, System};
 use crate::command::yrcx::link;
 use crate::command::yrcx::position::Unit;

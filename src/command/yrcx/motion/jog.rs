@@ -5,8 +5,8 @@ use std::time::Duration;
 use clap::Args;
 
 use super::{Live, Moved};
-use crate::command::yrcx::Family;
 use crate::command::yrcx::arguments::{Direction, Ending, System, Which};
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::position::Unit;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -55,7 +55,7 @@ impl Jog {
 }
 
 impl Command for Jog {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Moved;
     const ID: &'static str = "yrcx.jog";
 
@@ -75,7 +75,7 @@ impl Command for Jog {
         self.within.is_none()
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Moved, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Moved, Failure> {
         let link = context.link;
         let unit = self.report.unwrap_or(self.system.unit());
         let draft = link.draft(self.command())?.with(Key::Axes, self.axis.as_str());

@@ -18,11 +18,11 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Family;
 use super::arguments::{Axes, Ending, Which};
 use super::link::{Done, Link};
 use super::position::{Position, Unit};
-use crate::command::dry_run::{Reason, unknown};
+use crate::command::frame::dry_run::{Reason, unknown};
+use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::{Draft, Order};
@@ -111,7 +111,7 @@ impl<M: Motion> Moving<M> {
 }
 
 impl<M: Motion> Command for Moving<M> {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = M::Report;
     const ID: &'static str = M::ID;
 
@@ -125,7 +125,7 @@ impl<M: Motion> Command for Moving<M> {
         format!("{verb} {axis}{} {} ({})", self.which.name(), self.motion.target(), self.motion.manner())
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<M::Report, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<M::Report, Failure> {
         let draft = context.link.draft(self.motion.command())?;
         let draft = Ending::put(self.motion.fill(draft)?, self.unit());
         let order = staying(context.link, draft, &self.motion.stays()).await?;

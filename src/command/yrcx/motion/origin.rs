@@ -3,8 +3,8 @@
 use clap::{Args, ValueEnum};
 
 use super::{Moved, go};
-use crate::command::yrcx::Family;
 use crate::command::yrcx::arguments::Which;
+use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yrcx::table;
@@ -74,7 +74,7 @@ impl Origin {
 }
 
 impl Command for Origin {
-    type Family = Family;
+    type Family = Yrcx;
     type Report = Moved;
     const ID: &'static str = "yrcx.origin";
 
@@ -86,7 +86,7 @@ impl Command for Origin {
         format!("return {} to origin", self.told())
     }
 
-    async fn run(&self, context: Context<'_, Family>) -> Result<Moved, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Moved, Failure> {
         let draft = context.link.draft(self.command())?;
         let draft = draft.with_some(Key::Axes, self.axis.clone());
         let order = draft.with_some(Key::OriginAxes, self.only.map(Kind::value)).build()?;

@@ -13,12 +13,12 @@ use super::wire::{
 };
 use super::{Now, PORT};
 
-mod mischief;
+mod fault;
 mod objects;
 mod open;
 pub mod server;
 
-pub use mischief::Mischief;
+pub use fault::AdapterFault;
 
 /// Class and instance of the connection manager.
 const MANAGER: (u32, u32) = (6, 1);
@@ -167,7 +167,7 @@ pub struct Adapter<A> {
     held: Vec<Held>,
     last_session: u32,
     last_id: u32,
-    mischief: Option<Mischief>,
+    mischief: Option<AdapterFault>,
     outputs: VecDeque<Output>,
 }
 
@@ -200,7 +200,7 @@ impl<A: Application> Adapter<A> {
     }
 
     /// Makes it do something wrong from now on, or no longer.
-    pub const fn misbehave(&mut self, mischief: Option<Mischief>) {
+    pub const fn misbehave(&mut self, mischief: Option<AdapterFault>) {
         self.mischief = mischief;
     }
 
@@ -226,11 +226,11 @@ impl<A: Application> Adapter<A> {
         while let Some(bytes) = self.clients.get_mut(&client).and_then(|state| state.frames.pop()) {
             let Ok(frame) = Frame::parse(&bytes) else { return };
             match self.mischief {
-                Some(Mischief::Mute) => {}
-                Some(Mischief::Reset) if frame.command == Command::SEND_RR_DATA => {
+                Some(AdapterFault::Mute) => {}
+                Some(AdapterFault::Reset) if frame.command == Command::SEND_RR_DATA => {
                     self.outputs.push_back(Output::HangUp(client));
                 }
-                Some(Mischief::Garbage) if frame.command == Command::SEND_RR_DATA => {
+                Some(AdapterFault::Garbage) if frame.command == Command::SEND_RR_DATA => {
                     let noise = Frame { data: &[0xFF; 40], ..frame };
                     self.outputs.push_back(Output::Send(client, noise.emit()));
                 }
@@ -242,7 +242,7 @@ impl<A: Application> Adapter<A> {
     /// A datagram came on the port for ListIdentity.
     pub fn discovered(&mut self, from: SocketAddrV4, bytes: &[u8]) {
         let Ok(frame) = Frame::parse(bytes) else { return };
-        if self.mischief == Some(Mischief::Mute) {
+        if self.mischief == Some(AdapterFault::Mute) {
             return;
         }
         if let Some(data) = self.listed(frame.command) {
@@ -297,11 +297,11 @@ impl<A: Application> Adapter<A> {
             let Some(producer) = held.producer.as_mut().filter(|producer| now >= producer.due()) else { continue };
             let instance = held.peer.input;
             let Some(image) = self.images.get_mut(&instance) else { continue };
-            if self.mischief != Some(Mischief::Frozen) || producer.sent == 0 {
+            if self.mischief != Some(AdapterFault::Frozen) || producer.sent == 0 {
                 self.application.image_in(now, instance, image);
             }
             let datagram = producer.produce(now, None, image);
-            for bytes in mischief::images(self.mischief, producer.sent, datagram) {
+            for bytes in fault::images(self.mischief, producer.sent, datagram) {
                 self.outputs.push_back(Output::Datagram(held.destination, bytes));
             }
         }
@@ -385,7 +385,7 @@ impl<A: Application> Adapter<A> {
     /// Who it is, with a status of now (volume 1, 5-2.2.1.5).
     fn identity(&self) -> Identity {
         let is_owned = self.held.iter().any(|held| held.peer.role == Role::ExclusiveOwner);
-        let is_owned = is_owned && self.mischief != Some(Mischief::Unowned);
+        let is_owned = is_owned && self.mischief != Some(AdapterFault::Unowned);
         let extended = match (self.held.is_empty(), self.held.iter().any(|held| held.run)) {
             (true, _) => 3,
             (false, true) => 6,
@@ -426,8 +426,8 @@ impl<A: Application> Adapter<A> {
         };
         let reply = Reply { service: request.service, status, data: &data }.emit();
         let mut answer = RrData { o_t: addresses.0, t_o: addresses.1, ..RrData::new(&reply) }.emit();
-        if self.mischief == Some(Mischief::Trailing) && request.service == service::FORWARD_OPEN {
-            answer.extend(mischief::TRAILING);
+        if self.mischief == Some(AdapterFault::Trailing) && request.service == service::FORWARD_OPEN {
+            answer.extend(fault::TRAILING);
         }
         answer
     }

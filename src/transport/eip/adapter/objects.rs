@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use super::super::settings::MOST_IMAGE;
 use super::super::wire::{Request, service};
 use super::super::{ASSEMBLY, Now};
-use super::{Adapter, Application, Mischief, NOT_ENOUGH_DATA, Purpose, UNKNOWN_DESTINATION, UNKNOWN_SERVICE};
+use super::{Adapter, AdapterFault, Application, NOT_ENOUGH_DATA, Purpose, UNKNOWN_DESTINATION, UNKNOWN_SERVICE};
 
 const IDENTITY: u32 = 1;
 /// The attribute of an assembly that is its image.
@@ -100,7 +100,7 @@ impl<A: Application> Adapter<A> {
 
     /// Data and size.
     fn assembly_attribute(&mut self, now: Now, instance: u32, attribute: u32) -> Result<Vec<u8>, u8> {
-        if self.mischief == Some(Mischief::Unreadable) {
+        if self.mischief == Some(AdapterFault::Unreadable) {
             return Err(UNKNOWN_ATTRIBUTE);
         }
         let is_input = self.setup.assembly(instance, Purpose::Input).is_some();

@@ -6,7 +6,9 @@ use std::time::Duration;
 use super::super::settings::{Multiplier, Role};
 use super::super::wire::{Flow, Key, Net, Open, Opened, Problem, Refused, Segment, Status};
 use super::super::{ASSEMBLY, IO_PORT, Now};
-use super::{Adapter, Application, Consumer, Event, Held, Mischief, NOT_ENOUGH_DATA, Peer, Producer, Purpose, Setup};
+use super::{
+    Adapter, AdapterFault, Application, Consumer, Event, Held, NOT_ENOUGH_DATA, Peer, Producer, Purpose, Setup,
+};
 
 /// Refusals (volume 1, table 3-5.29).
 const DUPLICATE: u16 = 0x0100;
@@ -74,7 +76,7 @@ impl<A: Application> Adapter<A> {
         let points = points(open)?;
         // Some boards look for an owner before they look at sizes.
         let is_owned = self.held.iter().any(|held| held.peer.output == Some(points.output));
-        if self.mischief == Some(Mischief::Unowned) && is_owned {
+        if self.mischief == Some(AdapterFault::Unowned) && is_owned {
             return Err(Status::connection(OWNED, &[]));
         }
         let role = self.setup.allows(open, &points)?;

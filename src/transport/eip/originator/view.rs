@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::super::Now;
 use super::super::class1::{Consumer, Producer};
-use super::super::trouble::Trouble;
+use super::super::error::EipError;
 
 /// How a connection is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -80,7 +80,7 @@ pub struct View {
     /// Whether the device is told to run.
     pub run: bool,
     /// Why it was lost, or not opened, the last time; while it is open, what went wrong on a socket here.
-    pub trouble: Option<Trouble>,
+    pub trouble: Option<EipError>,
     /// The intervals that the device keeps: to it, from it.
     pub intervals: Option<(Duration, Duration)>,
     /// What was counted.

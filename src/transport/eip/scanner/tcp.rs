@@ -9,7 +9,7 @@ use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpSocket, TcpStream};
 use tokio::sync::mpsc::UnboundedReceiver;
 
-use super::{Inner, Slot, Tap, Trouble, mpsc};
+use super::{EipError, Inner, Slot, Tap, mpsc};
 
 /// Room for what is read at once.
 const BUFFER: usize = 4096;
@@ -59,7 +59,7 @@ pub(super) async fn run(
     };
     let mut stream = match connected {
         Ok(stream) => stream,
-        Err(error) => return tell(&mut |slot, _| slot.core.hung_up(&Trouble::unreachable(&error))),
+        Err(error) => return tell(&mut |slot, _| slot.core.hung_up(&EipError::unreachable(&error))),
     };
     // Without it a request may wait for the acknowledgement of the one before; it works all the same.
     let _ = stream.set_nodelay(true);
@@ -91,7 +91,7 @@ pub(super) async fn run(
         }
     }
     // Whoever waits for the session hears what became of it; once it is up, each request tells for itself.
-    tell(&mut |slot, _| slot.core.hung_up(&Trouble::Hangup { what: "RegisterSession" }));
+    tell(&mut |slot, _| slot.core.hung_up(&EipError::Hangup { what: "RegisterSession" }));
 }
 
 /// From the address that images are heard on: the device sends them to where the request came from.

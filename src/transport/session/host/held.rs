@@ -216,7 +216,8 @@ impl Images {
                     self.seen = Some(Arc::clone(&image));
                     return Happening::Image(image);
                 }
-                Event::Lost(why) => {
+                Event::Lost(error) => {
+                    let why = error.to_string();
                     self.seen = None;
                     self.generation = self.generation.wrapping_add(1);
                     self.down = Some(why.clone());

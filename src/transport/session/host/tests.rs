@@ -9,7 +9,7 @@ use tokio::time::Instant;
 use super::held::{Datagrams, Held, Images, Rules};
 use super::*;
 use crate::image::{Event, ImageLink, ImagePeer};
-use crate::session::client::{Attached, Found, Hindrance, attach_at, status};
+use crate::session::client::{Attached, Found, SessionBusy, attach_at, status};
 use crate::session::place::Spot;
 use crate::sim;
 
@@ -134,9 +134,9 @@ async fn the_line_and_motion_have_one_owner() {
         let (mut first, mut second) = (client(&spot, "first").await, client(&spot, "second").await);
         first.take(soon()).await.unwrap();
         first.claim_motion().await.unwrap();
-        assert!(matches!(second.claim_motion().await, Err(Hindrance::Moved(peer)) if peer.command == "first"));
+        assert!(matches!(second.claim_motion().await, Err(SessionBusy::Moved(peer)) if peer.command == "first"));
         let busy = second.take(Instant::now() + Duration::from_millis(20)).await;
-        assert!(matches!(busy, Err(Hindrance::Busy(Some(peer))) if peer.command == "first"));
+        assert!(matches!(busy, Err(SessionBusy::Busy(Some(peer))) if peer.command == "first"));
         // Who gave up does not have it when it is free; who asks again does.
         first.over();
         first.take(soon()).await.unwrap();
@@ -210,8 +210,8 @@ async fn the_end_is_told_to_everybody() {
             _ => {}
         }
     };
-    assert_eq!((lost.as_str(), link.ended()), ("the session was closed", Some("the session was closed")));
-    assert!(matches!(link.take(soon()).await, Err(Hindrance::Ended(_))));
+    assert_eq!((lost.to_string().as_str(), link.ended()), ("the session was closed", Some("the session was closed")));
+    assert!(matches!(link.take(soon()).await, Err(SessionBusy::Ended(_))));
     assert!(matches!(attach_at(&spot, "key", "late").await.unwrap(), Found::Nothing));
 }
 
@@ -252,7 +252,7 @@ async fn who_does_not_say_who_he_is_takes_up_no_place() {
         let silent: Vec<_> = (0..MOST_CLIENTS).map(|_| told(&spot, &[])).collect();
         let asking = told(&spot, &[Control::Ask]);
         // The first ones are let in, and let go again; then there is room.
-        let (all, _) = futures_util::join!(join_all(silent), async {
+        let (all, _) = tokio::join!(join_all(silent), async {
             tokio::time::sleep(Duration::from_secs(1)).await;
             asking.await
         });

@@ -1,0 +1,216 @@
+//! A command line with all that it needs, before anything is sent.
+
+use std::path::Path;
+
+use clap::CommandFactory as _;
+
+use super::{flags, screen};
+use crate::cli::{Cli, FamilyWord, Globals, Top};
+use crate::command::AnyCommand;
+use crate::command::common::Common;
+use crate::command::face::words::{Typed, Wish};
+use crate::command::fleet::robots::Robots;
+use crate::command::fleet::robots::check::Check;
+use crate::command::frame::batch::Batch;
+use crate::command::frame::run::{Repeat, Run, RunError};
+use crate::command::frame::script_line::Line;
+use crate::failure::Failure;
+use crate::gate::Gate;
+use crate::output::jq::Filter;
+use crate::output::redraw::Redraw;
+use crate::settings::duration;
+use crate::settings::inventory::{Inventory, Location, Options};
+use crate::settings::target::Target;
+use crate::settings::{Selection, Sessions, Sources};
+
+/// What a command line asks for.
+pub enum Invocation {
+    /// Something done.
+    Task(Task),
+    /// The commands of a file.
+    Batch(Batch),
+    /// A prompt; these words stand before each line.
+    Prompt(Vec<String>),
+    /// Nothing but the name of a family was typed: a prompt, where somebody can type.
+    Bare(Vec<String>),
+}
+
+/// What is to be done, and for whom.
+pub enum Task {
+    /// For robots of a family, and which robot of the controller.
+    Family(u8, Box<dyn AnyCommand>),
+    /// Whatever all families share.
+    Common(Common),
+}
+
+impl From<Top> for Invocation {
+    fn from(command: Top) -> Self {
+        match command {
+            Top::Family(FamilyWord { family, typed: Typed { unit, prefix, wish } }) => {
+                let prefix = std::iter::once(family.name().to_owned()).chain(prefix).collect();
+                match wish {
+                    Wish::Command(command) => Self::Task(Task::Family(unit, command)),
+                    Wish::Prompt => Self::Prompt(prefix),
+                    Wish::Nothing => Self::Bare(prefix),
+                }
+            }
+            Top::Common(common) => Self::Task(Task::Common(common)),
+            Top::Batch(batch) => Self::Batch(batch),
+            Top::Repl(_) => Self::Prompt(Vec::new()),
+        }
+    }
+}
+
+/// A command line, ready to run.
+pub struct PreparedCommand {
+    /// How.
+    pub run: Run,
+    /// What.
+    pub task: Task,
+}
+
+impl PreparedCommand {
+    /// Reads flags, environment and inventory, once. `all` are the flags that were given to all lines, where it is one of
+    /// several.
+    pub fn new(globals: Globals, all: Option<&Globals>, task: Task, line: Option<Line>) -> Result<Self, Failure> {
+        flags::check(&globals, &task)?;
+        let globals = match all {
+            Some(all) => globals.within(all),
+            None => globals,
+        };
+        let need = task.need();
+        let mut run = prepare(globals, need, line)?;
+        match &task {
+            Task::Family(unit, _) => run.unit = *unit,
+            Task::Common(Common::Status(_) | Common::Top(_)) => run.sources.widen(),
+            Task::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
+            Task::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.family(),
+            Task::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.family(),
+            _ => {}
+        }
+        Ok(Self { run, task })
+    }
+
+    /// Does it.
+    pub async fn go(self) -> Result<(), RunError> {
+        self.task.go(&self.run).await
+    }
+
+    /// Finds what would be refused without asking anybody: robots that are not there, a gate that is closed.
+    pub fn check_gate(&self) -> Result<(), Failure> {
+        match &self.task {
+            Task::Family(_, command) => self.run.check_gate(&**command),
+            Task::Common(Common::Status(overview)) => self.run.check_gate(overview),
+            Task::Common(_) => Ok(()),
+        }
+    }
+
+    /// Why this is nothing for a line of a file: it would never end, or writes something else than results.
+    pub fn why_not_in_batch(&self) -> Option<&'static str> {
+        match &self.task {
+            Task::Common(common) => common.why_not_in_batch(),
+            _ => None,
+        }
+    }
+}
+
+impl Task {
+    /// Does it.
+    pub async fn go(self, run: &Run) -> Result<(), RunError> {
+        match self {
+            Self::Family(_, command) => run.robots(&*command).await,
+            Self::Common(common) => common.run(run, Cli::command).await,
+        }
+    }
+
+    fn need(&self) -> Need {
+        match self {
+            Self::Family(_, command) if !command.takes_robot() => Need::Nothing,
+            Self::Family(..) => Need::Inventory,
+            Self::Common(Common::Robots(Robots::Discover(_))) => Need::Nothing,
+            Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
+            Self::Common(Common::Session(session)) if !session.opens() => Need::Names,
+            Self::Common(common) if !common.is_about_robots() => Need::Nothing,
+            Self::Common(_) => Need::Inventory,
+        }
+    }
+}
+
+/// What a command wants of inventory and environment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Need {
+    /// Nothing: what is wrong in them is no matter, and `help` must tell how to set it right.
+    Nothing,
+    /// Which robots are named, whatever the inventory says of them.
+    Names,
+    /// The inventory; one that is named must be there.
+    Inventory,
+    /// The inventory, which is made if it is not there.
+    InventoryOrNone,
+}
+
+/// Flags, environment and inventory, read once.
+fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Failure> {
+    let screen = screen(&globals);
+    let filter = globals.jq.as_deref().map(Filter::new).transpose()?;
+    let until = globals.until.as_deref().map(Filter::new).transpose()?;
+    let gate = Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt };
+    let repeat = Repeat { every: globals.watch, count: globals.count, until, within: globals.within };
+    let trace = globals.trace.clone();
+    let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need, line.is_some())? };
+    Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default(), unit: 0 })
+}
+
+/// Which robots, and their settings; `among` other lines of this process, simulators live on.
+pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Failure> {
+    let selection = Selection {
+        sim: globals.sim,
+        target: globals.target,
+        robots: globals.robot,
+        tags: globals.tag,
+        all: globals.all,
+        environment: variable("ARMCTL_TARGET", |url| url.parse::<Target>().map_err(|failure| failure.message))?,
+        sessions: match (globals.no_session, among) {
+            (true, _) => Sessions::None,
+            (false, true) => Sessions::OwnSimulators,
+            (false, false) => Sessions::Shared,
+        },
+        simulated: None,
+    };
+    // Also for a robot that is told by its address: the file says whether that may be changed.
+    let mut location = Location::find(match globals.config {
+        Some(path) => Some(path),
+        None => variable("ARMCTL_CONFIG", |path| Ok(path.into()))?,
+    });
+    if let (Location::Named(path), Need::InventoryOrNone) = (&location, need) {
+        location = Location::Usual(path.clone());
+    }
+    let inventory = if selection.sim || need == Need::Names {
+        Inventory { path: location.path().map(Path::to_owned), ..Inventory::default() }
+    } else {
+        Inventory::load(&location)?
+    };
+    let flags = Options {
+        timeout: globals.timeout,
+        retries: globals.retries,
+        encoding: globals.encoding,
+        ..Options::default()
+    };
+    let environment = Options {
+        timeout: variable("ARMCTL_TIMEOUT", duration::parse_some)?,
+        retries: variable("ARMCTL_RETRIES", |number| {
+            number.parse().map_err(|_| format!("'{number}' is no number of repetitions"))
+        })?,
+        encoding: variable("ARMCTL_ENCODING", |name| name.parse().map_err(|error| format!("{error}")))?,
+        ..Options::default()
+    };
+    Ok(Sources { selection, flags, environment, inventory })
+}
+
+/// A variable of the environment; an empty one counts as not set, a wrong one is an error that names it.
+fn variable<T>(name: &str, parse: impl FnOnce(&str) -> Result<T, String>) -> Result<Option<T>, Failure> {
+    let Some(value) = std::env::var_os(name).filter(|value| !value.is_empty()) else { return Ok(None) };
+    let wrong = |why: String| Failure::usage(format!("{name}: {why}")).hint(format!("correct it, or unset {name}"));
+    let text = value.to_str().ok_or_else(|| wrong("it is not UTF-8".to_owned()))?;
+    parse(text).map(Some).map_err(wrong)
+}

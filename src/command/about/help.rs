@@ -1,0 +1,121 @@
+//! `armctl help [TOPIC | COMMAND …]`.
+
+use clap::{Args, Command};
+
+use crate::command::ValueKind;
+use crate::command::face::Face;
+use crate::command::families::FAMILIES;
+use crate::command::frame::run::Run;
+use crate::controller::nearest::nearest;
+use crate::failure::{Failure, Kind};
+
+/// Explains a topic, or a command.
+#[derive(Debug, Args)]
+pub struct Help {
+    /// A topic (exit-codes, targets, inventory, output, safety, scripting, sessions, repl, batch,
+    /// completion, simulator, toyo-setup, yerc-setup, yrcx-setup), or a command
+    #[arg(add = ValueKind::HelpWord)]
+    words: Vec<String>,
+}
+
+/// Topics with a line about each and their text.
+const TOPICS: [(&str, &str, &str); 10] = [
+    ("targets", "how to say which robot", include_str!("topics/targets.txt")),
+    ("inventory", "robots.toml", include_str!("topics/inventory.txt")),
+    ("output", "tables, JSON, jq, colour", include_str!("topics/output.txt")),
+    ("safety", "what asks, what refuses, what Ctrl-C does", include_str!("topics/safety.txt")),
+    ("scripting", "watching, waiting, piping", include_str!("topics/scripting.txt")),
+    ("sessions", "links that outlive commands", include_str!("topics/sessions.txt")),
+    ("repl", "a prompt for one robot", include_str!("topics/repl.txt")),
+    ("batch", "files of commands", include_str!("topics/batch.txt")),
+    ("completion", "what Tab offers, in which shells", include_str!("topics/completion.txt")),
+    (SIMULATOR, "servers, start state, console, faults", include_str!("topics/simulator.txt")),
+];
+
+/// The topic that ends with the examples that the simulators' own tests read.
+const SIMULATOR: &str = "simulator";
+
+/// The topic that is made from the table of failures.
+const EXIT_CODES: &str = "exit-codes";
+
+impl Help {
+    /// Does it; `root` makes the whole command line.
+    pub fn run(self, run: &Run, root: fn() -> Command) -> Result<(), Failure> {
+        run.screen.data(&text(&self.words, run.screen.stdout_color(), root)?)
+    }
+}
+
+/// Every topic with a line about it.
+pub fn topics() -> impl Iterator<Item = (String, &'static str)> {
+    let exit = (EXIT_CODES.to_owned(), "what the exit codes mean");
+    let texts = TOPICS.iter().map(|(name, about, _)| ((*name).to_owned(), *about));
+    std::iter::once(exit).chain(texts).chain(setups().into_iter().map(|(name, about, _)| (name, about)))
+}
+
+/// The topics of the families.
+fn setups() -> Vec<(String, &'static str, &'static str)> {
+    let mut setups = FAMILIES.map(|face| {
+        let (about, text) = face.setup();
+        (format!("{}-setup", face.family()), about, text)
+    });
+    setups.sort_unstable();
+    setups.into()
+}
+
+/// The help on some words; on none, that of the whole tool and the list of topics.
+pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<String, Failure> {
+    if let [word] = words {
+        if word == EXIT_CODES {
+            return Ok(exit_codes());
+        }
+        if let Some((.., text)) = TOPICS.iter().find(|(name, ..)| name == word) {
+            let examples = if word == SIMULATOR { start_states() } else { String::new() };
+            return Ok(format!("{text}{examples}"));
+        }
+        if let Some((.., text)) = setups().iter().find(|(name, ..)| name == word) {
+            return Ok((*text).to_owned());
+        }
+    }
+    let mut root = root();
+    root.build();
+    let mut command = &mut root;
+    for word in words {
+        let known: Vec<String> = command.get_subcommands().map(|sub| sub.get_name().to_owned()).collect();
+        let Some(sub) = command.find_subcommand_mut(word) else {
+            let failure = Failure::usage(format!("there is no topic or command '{word}'"));
+            let known: Vec<String> = known.into_iter().chain(topics().map(|(name, _)| name)).collect();
+            return Err(match nearest(word, known.iter().map(String::as_str)) {
+                Some(near) => failure.hint(format!("did you mean '{near}'?")),
+                None => failure.hint("`armctl help` lists topics and commands"),
+            });
+        };
+        command = sub;
+    }
+    let help = command.render_long_help();
+    let mut text = if color { help.ansi().to_string() } else { help.to_string() };
+    if words.is_empty() {
+        text.push_str("\nTopics (armctl help TOPIC):\n");
+        for (name, about) in topics() {
+            text.push_str(&format!("  {name:<12} {about}\n"));
+        }
+    }
+    Ok(text)
+}
+
+fn start_states() -> String {
+    let last = FAMILIES.len() - 1;
+    let example = |(index, face): (usize, &&dyn Face)| {
+        let family = face.family();
+        let heading = match index {
+            0 => String::new(),
+            _ if index == last => format!("\nAnd this one those of {family}:\n\n"),
+            _ => format!("\nThis one those of {family}:\n\n"),
+        };
+        format!("{heading}{}", face.start_state())
+    };
+    FAMILIES.iter().enumerate().map(example).collect()
+}
+
+fn exit_codes() -> String {
+    Kind::TABLE.iter().map(|(_, exit, meaning)| format!("{exit:>4}  {meaning}\n")).collect()
+}

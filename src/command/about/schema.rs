@@ -1,0 +1,74 @@
+//! `armctl schema ID`: the JSON Schema of a report.
+
+use clap::Args;
+use serde_json::json;
+
+use crate::command::ValueKind;
+use crate::command::families::FAMILIES;
+use crate::command::fleet::status::Overview;
+use crate::command::fleet::{backup, robots, session, tools};
+use crate::command::frame::background::Opened;
+use crate::command::frame::dry_run::DryRun;
+use crate::command::frame::run::Run;
+use crate::command::{CommandSet as _, SchemaEntry};
+use crate::controller::nearest::nearest;
+use crate::failure::Failure;
+use crate::output::envelope::{Envelope, ErrorBody};
+
+/// Prints the schema of `data` in the envelope, or the names of all reports.
+///
+/// Beside those of the commands there are `envelope`, what `--json` prints around them; `failure`, its `error`; and
+/// `dry-run`, the data of every command under --dry-run.
+#[derive(Debug, Args)]
+pub struct SchemaOf {
+    /// The command, such as yerc.status; without it, all names
+    #[arg(add = ValueKind::Schema)]
+    id: Option<String>,
+}
+
+impl SchemaOf {
+    /// Does it.
+    pub fn run(self, run: &Run) -> Result<(), Failure> {
+        let all = all();
+        let Some(id) = self.id else {
+            let names: String = all.iter().map(|entry| format!("{}\n", entry.id)).collect();
+            return run.screen.data(&names);
+        };
+        let Some(entry) = all.iter().find(|entry| entry.id == id) else {
+            let failure = Failure::usage(format!("there is no report '{id}'"));
+            return Err(match nearest(&id, all.iter().map(|entry| entry.id)) {
+                Some(near) => failure.hint(format!("did you mean '{near}'?")),
+                None => failure.hint("`armctl schema` lists them"),
+            });
+        };
+        run.screen.json(&json!((entry.schema)()))
+    }
+}
+
+/// The schemas of all reports, of the envelope and of what it holds when there is none.
+pub fn all() -> Vec<SchemaEntry> {
+    let mut all: Vec<SchemaEntry> = FAMILIES.iter().flat_map(|face| face.schemas()).collect();
+    all.extend(Overview::schemas());
+    all.extend(backup::Backup::schemas());
+    all.extend(backup::Restore::schemas());
+    all.extend(backup::Diff::schemas());
+    let mut others = tools::schemas();
+    others.extend([
+        SchemaEntry::of::<backup::Checked>("backup.check"),
+        SchemaEntry::of::<DryRun>("dry-run"),
+        SchemaEntry::of::<Envelope>("envelope"),
+        SchemaEntry::of::<ErrorBody>("failure"),
+        SchemaEntry::of::<robots::Changed>("robots.add"),
+        SchemaEntry::of::<robots::check::CheckReport>("robots.check"),
+        SchemaEntry::of::<robots::discover::Discovered>("robots.discover"),
+        SchemaEntry::of::<robots::List>("robots.list"),
+        SchemaEntry::of::<robots::Changed>("robots.remove"),
+        SchemaEntry::of::<robots::Shown>("robots.show"),
+        SchemaEntry::of::<session::Closed>("session.close"),
+        SchemaEntry::of::<session::Sessions>("session.list"),
+        SchemaEntry::of::<Opened>("session.open"),
+    ]);
+    others.sort_unstable_by_key(|entry| entry.id);
+    all.extend(others);
+    all
+}

@@ -1,0 +1,95 @@
+//! Commands that are about no single controller.
+
+use clap::Subcommand;
+
+use super::about::{completions, help, man, schema};
+use super::fleet::status::Overview;
+use super::fleet::{backup, robots, session, tools, top};
+use super::frame::run::{Run, RunError};
+
+/// Commands that every family shares.
+#[derive(Debug, Subcommand)]
+pub enum Common {
+    /// One line a robot: reachable, mode, servo, state, alarm, position
+    Status(Overview),
+    /// All robots, or one, live on the whole screen
+    Top(top::Top),
+    /// The inventory: list, show, add, remove; check and discover
+    #[command(subcommand)]
+    Robots(robots::Robots),
+    /// Hold a link for all commands that follow: open, list, close
+    #[command(subcommand)]
+    Session(session::Session),
+    /// Save what controllers store in a folder of files
+    Backup(backup::Backup),
+    /// Write back what a backup holds
+    Restore(backup::Restore),
+    /// Compare a backup with another one, or with a controller
+    Diff(backup::Diff),
+    /// Serve the simulators on real sockets
+    Sim(tools::Sim),
+    /// Explain bytes of the line
+    #[command(subcommand)]
+    Decode(tools::Decode),
+    /// What an error or alarm code means and what to do
+    #[command(subcommand)]
+    Explain(tools::Explain),
+    /// Print the completion script of a shell
+    Completions(completions::Completions),
+    /// Write the man pages
+    Man(man::Man),
+    /// Print the JSON Schema of a report
+    Schema(schema::SchemaOf),
+    /// Explain a topic, or a command
+    Help(help::Help),
+}
+
+impl Common {
+    /// Whether it asks or lists robots, and so needs the inventory.
+    pub fn is_about_robots(&self) -> bool {
+        match self {
+            Self::Status(_) | Self::Top(_) | Self::Robots(_) | Self::Session(_) | Self::Restore(_) => true,
+            Self::Backup(backup) => !backup.is_local(),
+            Self::Diff(diff) => !diff.is_local(),
+            _ => false,
+        }
+    }
+
+    /// Why it is nothing for a line of a file: it would never end, or writes something else than results.
+    pub fn why_not_in_batch(&self) -> Option<&'static str> {
+        match self {
+            Self::Session(session) if session.stays() => Some("it holds a link until it is ended; add --background"),
+            Self::Sim(_) => Some("it serves until it is ended"),
+            Self::Top(_) => Some("it is a view for a terminal"),
+            Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => Some("it prints a text to read"),
+            Self::Status(_)
+            | Self::Robots(_)
+            | Self::Session(_)
+            | Self::Decode(_)
+            | Self::Explain(_)
+            | Self::Backup(_)
+            | Self::Restore(_)
+            | Self::Diff(_) => None,
+        }
+    }
+
+    /// Does it; `root` makes the whole command line.
+    pub async fn run(self, run: &Run, root: fn() -> clap::Command) -> Result<(), RunError> {
+        match self {
+            Self::Status(overview) => run.robots(&overview).await,
+            Self::Backup(backup) => backup.run(run).await,
+            Self::Restore(restore) => run.robots(&restore).await,
+            Self::Diff(diff) => diff.run(run).await,
+            Self::Top(top) => Box::pin(top.run(run)).await,
+            Self::Sim(sim) => sim.run(run).await,
+            Self::Session(session) => Box::pin(session.run(run)).await,
+            Self::Robots(robots) => robots.run(run).await,
+            Self::Decode(decode) => decode.run(run).await,
+            Self::Explain(explain) => explain.run(run).await,
+            Self::Completions(completions) => Ok(completions.run(run)?),
+            Self::Man(man) => Ok(man.run(run, root)?),
+            Self::Schema(schema) => Ok(schema.run(run)?),
+            Self::Help(help) => Ok(help.run(run, root)?),
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! A report of more messages than there is room for: written as the file is read again, in a memory that does not depend
+//! on its size. The first time it is read for what stands before the messages, and for the widths of columns.
+
+use std::cell::RefCell;
+use std::io::{self, Read};
+
+use serde::ser::{Serialize, SerializeSeq as _, Serializer};
+
+use super::report::{Capture, Link, Links, Problems, Row};
+use super::{CaptureDecoder, DecodedCapture, DecodedMessage, ReportEnvelope, Source};
+use crate::command::Report as _;
+use crate::command::frame::run::{Run, RunError};
+use crate::failure::Failure;
+use crate::output::Format;
+use crate::output::busy::busy;
+use crate::output::render::{self, Layout};
+use crate::output::view::{Table, View};
+use crate::transport::capture::Summary;
+
+/// Rows that are laid out at a time.
+const PIECE: usize = 1000;
+
+/// Prints a file as it is read.
+pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
+    run: &Run,
+    id: &str,
+    source: &Source<'_, O>,
+    mut decoder: D,
+) -> Result<(), RunError> {
+    let mut links = Links::default();
+    let mut problems = Problems::default();
+    let mut layout = Layout::new(&Row::<D::Field>::COLUMNS);
+    let summary = {
+        let _busy = busy();
+        source.decode(&mut decoder, |message| {
+            let row = links.row(message, std::time::Duration::ZERO);
+            problems.add(&row);
+            layout.measure(&row.cells());
+            true
+        })?
+    };
+    let DecodedCapture { packets, notes, .. } = std::mem::take(decoder.decoded());
+    let mut about: Capture<D::Field> = source.about(&summary, packets, notes);
+    (about.links, about.problems) = (links.list, problems);
+    let failure = about.failure();
+    let second_pass = SecondPass { source, summary: &summary, all: about.problems.all };
+    let _busy = busy();
+    if !run.is_for_people() {
+        let Capture { file, packets, other_packets, links, notes, damage, .. } = &about;
+        let messages = Messages(RefCell::new(Some((second_pass, decoder.restart()))));
+        let (packets, other_packets) = (*packets, *other_packets);
+        let data = Written { file, packets, other_packets, links, messages, notes, damage };
+        run.screen.json_as_it_comes(&ReportEnvelope::new(run, id, data, failure.as_ref()))?;
+        return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: true }));
+    }
+    second_pass.rows_for_people(run, &about, layout, decoder.restart())?;
+    failure.map_or(Ok(()), |failure| Err(failure.into()))
+}
+
+/// The file once more, up to as many messages as were seen before.
+struct SecondPass<'a, 'b, O> {
+    source: &'a Source<'b, O>,
+    summary: &'a Summary,
+    all: u64,
+}
+
+impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
+    /// Hands over every message until nobody wants more.
+    fn rows<D: CaptureDecoder>(
+        &self,
+        mut decoder: D,
+        mut each: impl FnMut(Row<D::Field>) -> bool,
+    ) -> Result<(), Failure> {
+        let mut links = Links::default();
+        let mut left = self.all;
+        let row = |message: DecodedMessage<D::Field>| {
+            let Some(fewer) = left.checked_sub(1) else { return false };
+            left = fewer;
+            each(links.row(message, self.summary.first))
+        };
+        self.source.decode(&mut decoder, row).map(|_| ())
+    }
+
+    fn rows_for_people<D: CaptureDecoder>(
+        &self,
+        run: &Run,
+        about: &Capture<D::Field>,
+        layout: Layout,
+        decoder: D,
+    ) -> Result<(), Failure> {
+        let screen = &run.screen;
+        let is_csv = screen.format == Format::Csv;
+        let (width, color) = (screen.width(), screen.stdout_color());
+        let text = |text: String| if is_csv { text } else { render::text(&View::text(text), width, color) };
+        screen.data(&text(about.head()))?;
+        if !is_csv {
+            screen.data("\n")?;
+        }
+        let mut layout = layout.fit(width);
+        let mut table = Table::new(&Row::<D::Field>::COLUMNS, "");
+        let mut is_first = true;
+        let mut write = |table: &mut Table| {
+            let piece = if is_csv {
+                let csv = render::csv(&View::table(std::mem::replace(table, Table::new(&table.columns, ""))), None);
+                if is_first { csv } else { csv.split_once('\n').map_or(String::new(), |(_, rows)| rows.to_owned()) }
+            } else {
+                layout.piece(&table.rows, color)
+            };
+            is_first = false;
+            table.rows.clear();
+            screen.data(&piece)
+        };
+        let mut written = Ok(());
+        self.rows(decoder, |row| {
+            table.row(row.cells());
+            if table.rows.len() >= PIECE {
+                written = write(&mut table);
+            }
+            written.is_ok()
+        })?;
+        written?;
+        if !table.rows.is_empty() {
+            write(&mut table)?;
+        }
+        if about.notes.is_empty() {
+            return Ok(());
+        }
+        let notes = text(about.notes.join("\n"));
+        screen.data(&if is_csv { notes } else { format!("\n{notes}") })
+    }
+}
+
+/// The same fields as those of a [`Capture`].
+#[derive(serde::Serialize)]
+struct Written<'a, M> {
+    file: &'a str,
+    packets: u64,
+    other_packets: u64,
+    links: &'a [Link],
+    messages: M,
+    notes: &'a [String],
+    damage: &'a Option<String>,
+}
+
+/// Messages that are read when they are written.
+struct Messages<'a, 'b, O, D>(RefCell<Option<(SecondPass<'a, 'b, O>, D)>>);
+
+impl<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder> Serialize for Messages<'_, '_, O, D> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut list = serializer.serialize_seq(None)?;
+        let Some((second_pass, decoder)) = self.0.borrow_mut().take() else { return list.end() };
+        let mut written = Ok(());
+        let read = second_pass.rows(decoder, |row| {
+            written = list.serialize_element(&row);
+            written.is_ok()
+        });
+        written?;
+        read.map_err(|failure| serde::ser::Error::custom(failure.message))?;
+        list.end()
+    }
+}

@@ -1,0 +1,57 @@
+use super::*;
+use crate::command::{toyo, yerc, yrcx};
+
+const VLAN: &[u8] = include_bytes!("../../../../tests/cli/files/vlan.pcap");
+const LINES: &[u8] = include_bytes!("../../../../tests/cli/files/lines.pcapng");
+const SPEED: &[u8] = include_bytes!("../../../../tests/cli/files/speed.pcapng");
+
+fn whole<D: CaptureDecoder>(file: &[u8], selection: &Selection, decoder: D) -> Result<Capture<D::Field>, Failure> {
+    let source = Source { name: "file", open: || Ok(file), selection };
+    let (capture, _) = source.capture(decoder, ROOM, false)?;
+    Ok(capture.expect("there is room"))
+}
+
+/// Messages and packets without one, for each family.
+fn counts(file: &[u8], selection: &Selection) -> [Option<(usize, u64)>; 3] {
+    fn count<F: Field>(capture: Result<Capture<F>, Failure>) -> Option<(usize, u64)> {
+        let capture = capture.ok()?;
+        // Views must cope with anything, too.
+        capture.list();
+        capture.details();
+        Some((capture.messages.len(), capture.other_packets))
+    }
+    [
+        count(whole(file, selection, yerc::decode::FrameDecoder::default())),
+        count(whole(file, selection, toyo::decode::LineDecoder::default())),
+        count(whole(file, selection, yrcx::decode::ImageDecoder::new(true))),
+    ]
+}
+
+#[test]
+fn each_family_finds_its_own() {
+    let all = Selection::default();
+    assert_eq!(counts(VLAN, &all), [Some((3, 2)), Some((0, 5)), Some((0, 5))]);
+    assert_eq!(counts(LINES, &all), [Some((0, 11)), Some((6, 3)), Some((0, 11))]);
+    assert_eq!(counts(SPEED, &all), [Some((0, 18)), Some((0, 18)), Some((24, 0))]);
+}
+
+#[test]
+fn hosts_and_ports_leave_out_the_rest() {
+    let selection = |host: &str, port| Selection { frame: None, host: host.parse().ok(), port };
+    assert_eq!(counts(VLAN, &selection("192.168.255.1", Some(10040)))[0], Some((3, 2)));
+    assert_eq!(counts(VLAN, &selection("192.168.255.3", None))[0], Some((0, 5)));
+    assert_eq!(counts(VLAN, &selection("", Some(10041)))[0], Some((0, 5)));
+}
+
+#[test]
+fn files_cut_or_damaged_anywhere_are_told() {
+    let all = Selection::default();
+    for file in [VLAN, LINES, SPEED] {
+        for end in 0..file.len() {
+            counts(&file[..end], &all);
+            let mut damaged = file.to_vec();
+            damaged[end] = !damaged[end];
+            counts(&damaged, &all);
+        }
+    }
+}

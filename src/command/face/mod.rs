@@ -1,0 +1,134 @@
+//! What the rest of the house may ask of a family. Each has its own in `face.rs`; [`families`](super::families) lists them.
+
+pub mod layers;
+pub mod overview;
+pub mod sample;
+pub mod tool;
+pub mod words;
+
+use clap::ArgMatches;
+use futures_util::future::LocalBoxFuture;
+
+use self::layers::Layer;
+use self::overview::OverviewReport;
+use self::sample::{Depth, Sample};
+use self::tool::{Tool, ToolKind};
+use self::words::Typed;
+use super::backup::{BackedUp, Making, Restored, Restoring};
+use super::frame::{Access, AnyContext, ConnectMode, Connection, Entry, SchemaEntry};
+use crate::controller::Risk;
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::settings::{Robot, target::Family};
+use crate::transport::session::host::Guard;
+use crate::transport::session::host::held::Held;
+
+/// A family, as the rest of the house sees it.
+pub trait Face: Sync {
+    /// Which it is.
+    fn family(&self) -> Family;
+    /// Makers and models, as a completion shows them.
+    fn title(&self) -> &'static str;
+    /// How its target URLs begin, with what follows.
+    fn urls(&self) -> Vec<(String, &'static str)>;
+    /// Codes that `explain` explains, with their names.
+    fn codes(&self) -> Vec<(String, String)>;
+    /// The topic `NAME-setup` of `help`: a line about it, and its text.
+    fn setup(&self) -> (&'static str, &'static str);
+    /// The start state of a simulator, as an example.
+    fn start_state(&self) -> &'static str;
+
+    /// Its word with all that can stand behind it.
+    fn augment(&self, command: clap::Command) -> clap::Command;
+    /// Its word with as much as is named.
+    fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command;
+    /// Whether a word is one of its commands.
+    fn has_command(&self, word: &str) -> bool;
+    /// What stands behind its word.
+    fn read(&self, matches: &mut ArgMatches) -> Result<Typed, clap::Error>;
+    /// The schemas of all its reports.
+    fn schemas(&self) -> Vec<SchemaEntry>;
+
+    /// What it does behind a common word.
+    fn tool(&self, kind: ToolKind) -> Tool;
+
+    /// Connects to a robot.
+    fn connect<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>>;
+    /// What a connection does to the controller by being there.
+    fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry;
+    /// A line for `status`.
+    fn overview<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<OverviewReport, Failure>>;
+    /// What `robots check` finds.
+    fn check<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Vec<Layer>, Failure>>;
+    /// Connects for `top`.
+    fn watch<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Box<dyn Watch>, Failure>>;
+
+    /// Opens a link for a session to hold.
+    fn hold<'a>(
+        &self,
+        robot: &'a Robot,
+        access: &'a Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>>;
+    /// What may pass to a read-only robot, whoever sends it through a session.
+    fn guard(&self) -> Guard;
+    /// Whether a session records what passes; otherwise each command does.
+    fn session_records(&self) -> bool {
+        false
+    }
+    /// Whether a session commands the controller by being there, which a read-only robot does not allow.
+    fn session_commands(&self) -> bool {
+        false
+    }
+
+    /// What it takes to read all of a controller.
+    fn backup_risk(&self, _robot: &Robot) -> Risk {
+        Risk::Read
+    }
+    /// Makes a backup.
+    fn back_up<'a>(&self, context: AnyContext<'a>, making: &'a Making)
+    -> LocalBoxFuture<'a, Result<BackedUp, Failure>>;
+    /// Writes a backup back.
+    fn restore<'a>(
+        &self,
+        context: AnyContext<'a>,
+        restoring: &'a Restoring,
+    ) -> LocalBoxFuture<'a, Result<Restored, Failure>>;
+}
+
+/// Looks at a robot again and again, for `top`.
+pub trait Watch {
+    /// Looks once.
+    fn look(&mut self, depth: Depth) -> LocalBoxFuture<'_, Result<Sample, Failure>>;
+    /// Closes the connection.
+    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
+}
+
+/// A link that a session can hold.
+pub struct HeldLink {
+    /// The link.
+    pub held: Held,
+    /// What is to be done once it is closed: the end of a record.
+    pub finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
+}
+
+impl From<Held> for HeldLink {
+    fn from(held: Held) -> Self {
+        Self { held, finish: None }
+    }
+}

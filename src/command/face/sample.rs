@@ -1,0 +1,155 @@
+//! What one look at a robot of any family finds, for a live view. Only reads make it.
+
+use std::time::Duration;
+
+use tokio::time::Instant;
+
+use crate::command::face::overview::OverviewReport;
+use crate::output::view::Tone;
+
+/// How much is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Depth {
+    /// What a line of a list shows.
+    Line,
+    /// What a screen of its own shows.
+    Whole,
+}
+
+/// What a look found.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Sample {
+    /// The state in a line.
+    pub line: OverviewReport,
+    /// How long the first answer took; `None` where a look asks nothing, because the controller shows itself.
+    pub answered_in: Option<Duration>,
+    /// The alarms and errors that are present, the latest first, as far as they can be asked for.
+    pub alarms: Vec<Alarm>,
+    /// What only [`Depth::Whole`] asks for.
+    pub whole: Option<Whole>,
+}
+
+/// An alarm or error.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Alarm {
+    /// As the controller writes it: `4315`, `28`, `12.600`.
+    pub code: String,
+    /// What it says.
+    pub text: String,
+    /// What to do about it; empty where nobody knows.
+    pub remedy: String,
+}
+
+/// All that a screen has room for.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Whole {
+    /// States that are so or not so.
+    pub lamps: Vec<Lamp>,
+    /// Axes and coordinates.
+    pub axes: Vec<Axis>,
+    /// The unit of torques; `None` where the protocol has none.
+    pub torque_unit: Option<&'static str>,
+    /// Signals, by kind.
+    pub banks: Vec<Bank>,
+    /// What could not be asked, and why.
+    pub not_asked: Option<&'static str>,
+}
+
+/// A state that is so or not so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Lamp {
+    /// In a word or two.
+    pub name: &'static str,
+    /// Whether it is so.
+    pub is_on: bool,
+    /// Whether that is as it should be.
+    pub tone: Tone,
+}
+
+impl Lamp {
+    /// A lamp that means this while it is on, and nothing while it is off.
+    pub fn new(name: &'static str, is_on: bool, tone: Tone) -> Self {
+        Self { name, is_on, tone: if is_on { tone } else { Tone::Plain } }
+    }
+
+    /// A lamp that is on in good times, and means this while it is off.
+    pub fn should(name: &'static str, is_on: bool, off: Tone) -> Self {
+        Self { name, is_on, tone: if is_on { Tone::Good } else { off } }
+    }
+}
+
+/// An axis, or a coordinate.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Axis {
+    /// `S`, `X`, `Rz`, `1`.
+    pub name: String,
+    /// Where it is.
+    pub position: f64,
+    /// What that is measured in.
+    pub unit: &'static str,
+    /// Digits behind the point.
+    pub decimals: u8,
+    /// Its soft limits, where they can be asked for.
+    pub limits: Option<(f64, f64)>,
+    /// Its torque, where there is one.
+    pub torque: Option<f64>,
+    /// How far it is from where it should be, in the same unit.
+    pub error: Option<f64>,
+}
+
+/// Signals of a kind.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Bank {
+    /// `inputs`, `outputs`.
+    pub name: &'static str,
+    /// Eight at a time.
+    pub groups: Vec<Eight>,
+}
+
+/// Eight signals that stand together.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Eight {
+    /// The number of the first one shown, or the name of all.
+    pub label: String,
+    /// From left to right, in the order of the manual.
+    pub signals: [bool; 8],
+}
+
+impl Eight {
+    /// The bits of a byte, the lowest first.
+    pub fn rising(label: String, byte: u8) -> Self {
+        Self { label, signals: [0, 1, 2, 3, 4, 5, 6, 7].map(|bit| byte >> bit & 1 == 1) }
+    }
+
+    /// The bits of a byte, the highest first.
+    pub fn falling(label: String, byte: u8) -> Self {
+        Self { label, signals: [7, 6, 5, 4, 3, 2, 1, 0].map(|bit| byte >> bit & 1 == 1) }
+    }
+}
+
+/// Says what `asked` came to, and how long that took.
+pub async fn clocked<T>(asked: impl Future<Output = T>) -> (T, Option<Duration>) {
+    let began = Instant::now();
+    let answer = asked.await;
+    (answer, Some(began.elapsed()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lamp_has_its_tone_where_it_means_something() {
+        assert_eq!(Lamp::new("alarm", true, Tone::Bad).tone, Tone::Bad);
+        assert_eq!(Lamp::new("alarm", false, Tone::Bad).tone, Tone::Plain);
+        assert_eq!(Lamp::should("CPU OK", true, Tone::Bad).tone, Tone::Good);
+        assert_eq!(Lamp::should("CPU OK", false, Tone::Bad).tone, Tone::Bad);
+    }
+
+    #[test]
+    fn eight_signals_stand_as_the_manual_has_them() {
+        let first = |eight: Eight| eight.signals.iter().position(|on| *on);
+        assert_eq!(first(Eight::rising("#10".to_owned(), 1)), Some(0));
+        assert_eq!(first(Eight::falling("PN01".to_owned(), 1)), Some(7));
+    }
+}

@@ -1,0 +1,63 @@
+//! What can stand behind the word of a family: its commands, or `repl`.
+
+use clap::{ArgMatches, Command, FromArgMatches as _, Subcommand};
+
+use crate::command::frame::repl::Repl;
+use crate::command::{AnyCommand, CommandSet};
+
+/// What was typed behind the word of a family.
+pub struct Typed {
+    /// The robot of the controller that commands are for, 1 to 4; 0 where none is named.
+    pub unit: u8,
+    /// The words that say the same before each line of a prompt.
+    pub prefix: Vec<String>,
+    /// What is wanted.
+    pub wish: Wish,
+}
+
+/// What is wanted of a family.
+pub enum Wish {
+    /// A command.
+    Command(Box<dyn AnyCommand>),
+    /// A prompt.
+    Prompt,
+    /// Nobody says.
+    Nothing,
+}
+
+/// What follows the name of a family. Nothing at all is the prompt, too, where somebody can type.
+#[derive(Debug, Subcommand)]
+enum Verb<C: Subcommand> {
+    /// A command of the family
+    #[command(flatten)]
+    Command(C),
+    /// Type commands one after the other, over one link
+    Repl(Repl),
+}
+
+/// The word of a family with all its commands, and what the help says of it.
+pub fn augment<C: Subcommand>(command: Command, about: &'static str) -> Command {
+    Verb::<C>::augment_subcommands(command).about(about).long_about(None)
+}
+
+/// Whether a word is a command of a family.
+pub fn has_command<C: Subcommand>(word: &str) -> bool {
+    Verb::<C>::has_subcommand(word)
+}
+
+/// What is wanted of a family.
+pub fn read<C: CommandSet + Subcommand>(matches: &mut ArgMatches) -> Result<Wish, clap::Error> {
+    if matches.subcommand_name().is_none() {
+        return Ok(Wish::Nothing);
+    }
+    Ok(match Verb::<C>::from_arg_matches_mut(matches)? {
+        Verb::Command(command) => Wish::Command(command.command()),
+        Verb::Repl(Repl {}) => Wish::Prompt,
+    })
+}
+
+impl From<Wish> for Typed {
+    fn from(wish: Wish) -> Self {
+        Self { unit: 0, prefix: Vec::new(), wish }
+    }
+}

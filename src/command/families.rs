@@ -1,0 +1,34 @@
+//! The controller families: one line each. Nothing else lists them.
+
+use clap::ArgMatches;
+use clap::error::ErrorKind;
+
+use super::face::Face;
+use super::{toyo, yerc, yrcx};
+use crate::settings::target::Family;
+
+/// Every family, in the order help texts list them.
+pub static FAMILIES: [&dyn Face; 3] = [&yerc::face::Yerc, &yrcx::face::Yrcx, &toyo::face::Toyo];
+
+/// A family by its name.
+pub fn of(family: Family) -> &'static dyn Face {
+    let face = FAMILIES.iter().find(|face| face.family() == family);
+    *face.expect("each family has a line; a test holds that")
+}
+
+/// The family that words name, with what stands behind it.
+pub fn named(matches: &mut ArgMatches) -> Result<(Family, ArgMatches), clap::Error> {
+    let (name, behind) = matches.remove_subcommand().ok_or_else(|| clap::Error::new(ErrorKind::MissingSubcommand))?;
+    let family = name.parse().map_err(|_| clap::Error::new(ErrorKind::InvalidSubcommand))?;
+    Ok((family, behind))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_family_has_its_line() {
+        assert_eq!(FAMILIES.map(|face| face.family()), Family::ALL);
+    }
+}

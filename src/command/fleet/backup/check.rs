@@ -1,0 +1,90 @@
+//! `armctl backup --check`: whether the files of a backup are still what was saved.
+
+use std::path::Path;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::command::Report;
+use crate::command::backup::manifest;
+use crate::command::backup::manifest::MANIFEST;
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, Tone, View};
+
+/// What is left of backups.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Checked {
+    /// Whether every file is what was saved, and none is missing.
+    sound: bool,
+    backups: Vec<Backup>,
+}
+
+/// A backup.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Backup {
+    /// Its folder.
+    folder: String,
+    family: String,
+    robot: String,
+    /// Whether nothing was missing when it was made.
+    complete: bool,
+    /// How many files it has.
+    files: usize,
+    /// Which of them are not what was saved.
+    damaged: Vec<Failure>,
+}
+
+impl Checked {
+    /// The backup in a folder, or those in the folders in it, one a robot.
+    pub fn of(folder: &Path) -> Result<Self, Failure> {
+        let several = if folder.join(MANIFEST).exists() { Vec::new() } else { manifest::folders_in(folder) };
+        // Without any, the folder itself is asked for its list, and says that it has none.
+        let folders = if several.is_empty() { vec![folder.to_owned()] } else { several };
+        let backups = folders.iter().map(|folder| Backup::of(folder)).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { sound: backups.iter().all(|backup| backup.damaged.is_empty()), backups })
+    }
+}
+
+impl Backup {
+    fn of(folder: &Path) -> Result<Self, Failure> {
+        let list = manifest::existing::<Value>(folder)?;
+        let copies: Vec<_> = list.files.iter().filter_map(|entry| entry.copy.as_ref()).collect();
+        Ok(Self {
+            folder: folder.display().to_string(),
+            complete: list.complete,
+            files: copies.len(),
+            damaged: copies.iter().filter_map(|copy| copy.check(folder).err()).collect(),
+            family: list.family,
+            robot: list.robot,
+        })
+    }
+}
+
+impl Report for Checked {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["folder", "robot", "family", "files", "result"], "no backups");
+        for backup in &self.backups {
+            let result = match (&backup.damaged[..], backup.complete) {
+                ([], true) => Cell::from("sound").tone(Tone::Good),
+                ([], false) => Cell::from("sound, but not whole: --resume completes it").tone(Tone::Warning),
+                ([first, ..], _) => {
+                    let all = backup.damaged.len();
+                    Cell::from(format!("{all} of {} damaged: {}", backup.files, first.message)).tone(Tone::Bad)
+                }
+            };
+            let (folder, robot) = (backup.folder.as_str().into(), backup.robot.as_str().into());
+            table.row([folder, robot, backup.family.as_str().into(), backup.files.into(), result]);
+        }
+        View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let first = self.backups.iter().flat_map(|backup| &backup.damaged).next()?;
+        let (damaged, all) = self
+            .backups
+            .iter()
+            .fold((0, 0), |(damaged, all), backup| (damaged + backup.damaged.len(), all + backup.files));
+        Some(Failure { message: format!("{damaged} of {all} files damaged: {}", first.message), ..first.clone() })
+    }
+}

@@ -1,0 +1,338 @@
+//! Two backups of one family, file by file.
+
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::tolerance::Tolerance;
+use crate::command::Report;
+use crate::command::backup::manifest::{Entry, Manifest, Saved};
+use crate::command::backup::text_diff::{Change, Hunk, MOST_TEXT, TextDifference, unified};
+use crate::command::backup::{Only, gravity};
+use crate::controller::text::Encoding;
+use crate::failure::{Failure, Kind};
+use crate::files;
+use crate::output::escape;
+use crate::output::view::{Cell, Section, Table, Tone, View};
+
+/// One of the two.
+#[derive(Debug)]
+pub struct Side {
+    /// The folder.
+    pub folder: PathBuf,
+    /// Its list.
+    pub manifest: Manifest,
+    /// Whether it was read for this alone.
+    pub is_controller: bool,
+}
+
+/// How two backups, or a backup and a controller, differ.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Differences {
+    old: Of,
+    new: Of,
+    /// Whether nothing differs by more than the tolerance.
+    equal: bool,
+    tolerance: Tolerance,
+    files: Vec<FileDifference>,
+}
+
+/// One of the two.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Of {
+    /// The folder of the backup; null for the controller.
+    folder: Option<String>,
+    robot: String,
+    /// When the backup began, or the controller was read.
+    taken_at: String,
+}
+
+/// How a file, or a part, differs.
+#[derive(Debug, Serialize, JsonSchema)]
+struct FileDifference {
+    /// Its name on the controller, or the name of the part; `controller` for what the lists say of model and versions.
+    name: String,
+    state: State,
+    /// Changes from the old one to the new one; null if one of them is no text, too large or missing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hunks: Option<Vec<Hunk>>,
+    /// Whether nothing but ends of lines differs.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    only_line_endings: bool,
+    /// Why it could not be compared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<Failure>,
+    #[serde(skip)]
+    file: String,
+}
+
+/// How two files stand to each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum State {
+    /// Byte for byte.
+    Same,
+    /// But for positions that are near each other.
+    WithinTolerance,
+    /// They differ.
+    Changed,
+    /// The old one alone is there.
+    OnlyOld,
+    /// The new one alone is there.
+    OnlyNew,
+    /// It is not known: one of them was not saved, or was changed since.
+    Unknown,
+}
+
+/// The part that stands for what a list says of the controller itself.
+const CONTROLLER: &str = "controller";
+
+impl Differences {
+    /// Compares.
+    pub fn of(old: &Side, new: &Side, only: &Only, tolerance: Tolerance) -> Result<Self, Failure> {
+        let (a, b) = (&old.manifest, &new.manifest);
+        if a.family != b.family {
+            return Err(Failure::usage(format!(
+                "one backup is of a {} controller, the other of {}",
+                a.family, b.family
+            ))
+            .hint("compare backups of one family"));
+        }
+        let both = a.files.iter().chain(&b.files).map(|entry| entry.name.as_str());
+        only.check(&both.chain([CONTROLLER]).collect::<Vec<_>>())?;
+        let mut files: Vec<FileDifference> = Vec::new();
+        if only.has(CONTROLLER) {
+            files.extend(of_controllers(a, b)?);
+        }
+        let partner = |entry: &Entry, of: &Manifest| of.files.iter().find(|other| key(other) == key(entry)).cloned();
+        for entry in a.files.iter().filter(|entry| only.has(&entry.name)) {
+            files.push(of_files(old, new, Some(entry), partner(entry, b).as_ref(), tolerance));
+        }
+        for entry in b.files.iter().filter(|entry| only.has(&entry.name) && partner(entry, a).is_none()) {
+            files.push(of_files(old, new, None, Some(entry), tolerance));
+        }
+        let equal = files.iter().all(|file| matches!(file.state, State::Same | State::WithinTolerance));
+        Ok(Self { old: Of::new(old), new: Of::new(new), equal, tolerance, files })
+    }
+
+    fn count(&self, states: &[State]) -> usize {
+        self.files.iter().filter(|file| states.contains(&file.state)).count()
+    }
+
+    fn summary(&self) -> String {
+        let named = [
+            (self.count(&[State::Changed, State::OnlyOld, State::OnlyNew]), "different"),
+            (self.count(&[State::Unknown]), "not compared"),
+            (self.count(&[State::WithinTolerance]), "the same within the tolerance"),
+            (self.count(&[State::Same]), "the same"),
+        ];
+        let parts = named.iter().filter(|(count, _)| *count > 0).map(|(count, words)| format!("{count} {words}"));
+        let parts: Vec<String> = parts.collect();
+        let files = if self.files.len() == 1 { "file" } else { "files" };
+        format!("{} and {}: {} {files}, {}", self.old, self.new, self.files.len(), parts.join(", "))
+    }
+}
+
+impl std::fmt::Display for Of {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match &self.folder {
+            Some(folder) => f.write_str(folder),
+            None => write!(f, "the controller of {}", self.robot),
+        }
+    }
+}
+
+impl Of {
+    fn new(side: &Side) -> Self {
+        let Side { folder, manifest, is_controller } = side;
+        let folder = (!is_controller).then(|| folder.display().to_string());
+        Self { folder, robot: manifest.robot.clone(), taken_at: manifest.taken_at.to_string() }
+    }
+
+    /// A file of it, as the head of a diff.
+    fn of(&self, file: &str) -> String {
+        match &self.folder {
+            Some(folder) => Path::new(folder).join(file).display().to_string(),
+            None => format!("{file} (controller)"),
+        }
+    }
+}
+
+/// What tells a file from the others.
+fn key(entry: &Entry) -> String {
+    entry.name_hex.as_ref().map_or_else(|| entry.name.clone(), |digits| digits.to_lowercase())
+}
+
+/// What the lists say of the controllers themselves, if it differs.
+fn of_controllers(old: &Manifest, new: &Manifest) -> Result<Option<FileDifference>, Failure> {
+    if old.controller == new.controller {
+        return Ok(None);
+    }
+    let text = |manifest: &Manifest| {
+        let text = escape::json_pretty(&manifest.controller);
+        text.map(|text| text + "\n").map_err(|error| Failure::local(format!("list as JSON: {error}")))
+    };
+    let (old, new) = (text(old)?, text(new)?);
+    let found = TextDifference::of(Encoding::Utf8, old.as_bytes(), new.as_bytes());
+    Ok(Some(FileDifference {
+        hunks: found.map(|found| found.hunks),
+        ..FileDifference::new(CONTROLLER.to_owned(), State::Changed)
+    }))
+}
+
+/// Compares a file that one or both have.
+fn of_files(
+    old: &Side,
+    new: &Side,
+    entry: Option<&Entry>,
+    partner: Option<&Entry>,
+    tolerance: Tolerance,
+) -> FileDifference {
+    let name = entry.or(partner).map(|entry| entry.name.clone()).unwrap_or_default();
+    let state = match (entry, partner) {
+        (Some(_), None) if covers(&new.manifest, &old.manifest, &name) => State::OnlyOld,
+        (None, Some(_)) if covers(&old.manifest, &new.manifest, &name) => State::OnlyNew,
+        (Some(entry), Some(partner)) => {
+            return match both(old, new, entry, partner, tolerance) {
+                Ok(file) => FileDifference { name, ..file },
+                Err(failure) => FileDifference::unknown(name, failure),
+            };
+        }
+        _ => {
+            let side = if entry.is_some() { new } else { old };
+            let why = if side.manifest.complete { "it was not asked for" } else { "the backup is not whole" };
+            let why = format!("{} does not have it: {why}", Of::new(side));
+            let failure = Failure::new(Kind::ConditionNotMet, why);
+            return FileDifference::unknown(name, failure.hint("`armctl backup --resume` completes a backup"));
+        }
+    };
+    FileDifference::new(name, state)
+}
+
+/// Whether a file that is not in a backup was not on the controller: it would have been asked for.
+fn covers(backup: &Manifest, other: &Manifest, name: &str) -> bool {
+    let is_common = |word: &String| Only::of_scope(std::slice::from_ref(word)) != Only::default();
+    backup.complete
+        && Only::of_scope(&backup.scope).has(name)
+        && backup.scope.iter().all(|word| is_common(word) || other.scope.contains(word))
+}
+
+fn both(
+    old: &Side,
+    new: &Side,
+    entry: &Entry,
+    partner: &Entry,
+    tolerance: Tolerance,
+) -> Result<FileDifference, Failure> {
+    let (ours, theirs) = (copy(old, entry)?, copy(new, partner)?);
+    let file = |state| FileDifference { file: ours.file.clone(), ..FileDifference::new(String::new(), state) };
+    if ours.sha256.eq_ignore_ascii_case(&theirs.sha256) {
+        return Ok(file(State::Same));
+    }
+    let most = MOST_TEXT as u64;
+    if ours.bytes > most || theirs.bytes > most {
+        return Ok(file(State::Changed));
+    }
+    let (before, after) = (read(&old.folder, ours)?, read(&new.folder, theirs)?);
+    let encoding = old.manifest.controller.get("encoding").and_then(|name| name.as_str()?.parse().ok());
+    let after = tolerance.align(entry, &before, &after);
+    Ok(match TextDifference::of(encoding.unwrap_or(Encoding::Utf8), &before, &after) {
+        Some(TextDifference { hunks, .. }) if hunks.is_empty() => file(State::WithinTolerance),
+        Some(TextDifference { hunks, only_line_endings }) => {
+            FileDifference { hunks: Some(hunks), only_line_endings, ..file(State::Changed) }
+        }
+        None => file(State::Changed),
+    })
+}
+
+/// The copy of an entry, unless there is none or it was changed since.
+fn copy<'e>(side: &Side, entry: &'e Entry) -> Result<&'e Saved, Failure> {
+    let copy = entry.copy.as_ref().ok_or_else(|| {
+        let why = entry.error.as_ref().map_or("no reason is told", |reason| &reason.message);
+        Failure::new(Kind::ConditionNotMet, format!("{} does not have it: {why}", Of::new(side)))
+            .hint("look into manifest.json: what a controller refused is not in its backup")
+    })?;
+    copy.check(&side.folder)?;
+    Ok(copy)
+}
+
+fn read(folder: &Path, copy: &Saved) -> Result<Vec<u8>, Failure> {
+    let path = folder.join(&copy.file);
+    let failed = |error: &std::io::Error| Failure::io(path.display(), error);
+    let file = files::open(&path).map_err(|error| failed(&error))?;
+    let mut bytes = Vec::new();
+    file.take(MOST_TEXT as u64 + 1).read_to_end(&mut bytes).map_err(|error| failed(&error))?;
+    Ok(bytes)
+}
+
+impl FileDifference {
+    fn new(name: String, state: State) -> Self {
+        Self { name, state, hunks: None, only_line_endings: false, error: None, file: String::new() }
+    }
+
+    fn unknown(name: String, failure: Failure) -> Self {
+        Self { error: Some(failure), ..Self::new(name, State::Unknown) }
+    }
+
+    fn result(&self, old: &Of, new: &Of) -> Cell {
+        let only = |of: &Of| match &of.folder {
+            Some(folder) => Cell::from(format!("only in {folder}")).tone(Tone::Warning),
+            None => Cell::from("only on the controller").tone(Tone::Warning),
+        };
+        let count = |change| {
+            let lines = self.hunks.iter().flatten().flat_map(|hunk| &hunk.lines);
+            lines.filter(|line| line.change == change).count()
+        };
+        match (self.state, &self.error) {
+            (State::Same, _) => Cell::from("the same").tone(Tone::Good),
+            (State::WithinTolerance, _) => Cell::from("the same within the tolerance").tone(Tone::Good),
+            (State::OnlyOld, _) => only(old),
+            (State::OnlyNew, _) => only(new),
+            (State::Unknown, error) => {
+                let why = error.as_ref().map_or("", |error| error.message.as_str());
+                Cell::from(format!("not compared: {why}")).tone(Tone::Bad)
+            }
+            (State::Changed, _) if self.hunks.is_none() => Cell::from("differs").tone(Tone::Bad),
+            (State::Changed, _) if self.only_line_endings => Cell::from("only line endings differ").tone(Tone::Bad),
+            (State::Changed, _) => {
+                let (less, more) = (count(Change::Removed), count(Change::Added));
+                Cell::from(format!("differs: -{less} +{more} lines")).tone(Tone::Bad)
+            }
+        }
+    }
+}
+
+impl Report for Differences {
+    fn view(&self) -> View {
+        let mut view = View::default();
+        for file in &self.files {
+            let Some(hunks) = file.hunks.as_ref().filter(|_| !file.only_line_endings) else { continue };
+            let named = |of: &Of| match &*file.file {
+                "" => format!("{of}: {}", file.name),
+                own => of.of(own),
+            };
+            view = view.and(Section::Lines(unified(&named(&self.old), &named(&self.new), hunks)));
+        }
+        let mut table = Table::new(&["name", "result"], "");
+        for file in self.files.iter().filter(|file| file.state != State::Same) {
+            table.row([file.name.as_str().into(), file.result(&self.old, &self.new)]);
+        }
+        if !table.rows.is_empty() {
+            view = view.and(Section::Table(table));
+        }
+        if self.equal { view.and(Section::Text(self.summary())) } else { view }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        if self.equal {
+            return None;
+        }
+        let gravest = self.files.iter().filter_map(|file| file.error.as_ref()).max_by_key(|error| gravity(error.kind));
+        Some(match gravest {
+            Some(error) => Failure { message: self.summary(), code: None, ..error.clone() },
+            None => Failure::new(Kind::ConditionNotMet, self.summary()),
+        })
+    }
+}

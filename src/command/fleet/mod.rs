@@ -1,0 +1,8 @@
+//! Commands for robots of any family.
+
+pub mod backup;
+pub mod robots;
+pub mod session;
+pub mod status;
+pub mod tools;
+pub mod top;

@@ -1,0 +1,93 @@
+//! `armctl robots check`: from the name of a robot to its alarms, and what to set where something is wrong.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::ValueKind;
+use crate::command::face::layers;
+use crate::command::face::layers::Layer;
+use crate::command::families;
+use crate::command::frame::dry_run::Plan;
+use crate::command::{Access, Command, ConnectMode, Context, Family, Report};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::output::view::View;
+use crate::settings::{Robot, target};
+
+/// Looks at each layer between this machine and a robot that is ready, changes nothing, and says what to set. Exit code 8
+/// if a layer failed.
+#[derive(Debug, Args)]
+pub struct Check {
+    /// A robot of the inventory or a target URL; without it, what -r, -t and the like say
+    #[arg(value_name = "NAME|URL", add = ValueKind::RobotOrUrl)]
+    pub name: Option<String>,
+}
+
+/// Robots of any family, each of which its own check connects to.
+#[derive(Debug)]
+pub struct Checked;
+
+impl Family for Checked {
+    const FAMILY: Option<target::Family> = None;
+    /// How the check may connect.
+    type Link = Access;
+
+    async fn connect(_robot: &Robot, access: Access, _screen: &Screen) -> Result<Access, Failure> {
+        Ok(access)
+    }
+
+    async fn halt(_link: &mut Access) -> Result<String, Failure> {
+        Ok("nothing was sent that moves the robot".to_owned())
+    }
+
+    fn planned(_link: &mut Access) -> Plan {
+        Plan::default()
+    }
+
+    async fn close(_link: Access, _screen: &Screen) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
+impl Command for Check {
+    type Family = Checked;
+    type Report = CheckReport;
+    const ID: &'static str = "robots.check";
+
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
+    }
+
+    async fn run(&self, context: Context<'_, Checked>) -> Result<CheckReport, Failure> {
+        let Context { robot, screen, .. } = context;
+        let access = context.link.clone();
+        if access.dry_run {
+            return Err(Failure::usage("what a check asks next depends on the answers").hint("it only reads"));
+        }
+        let layers = families::of(robot.family).check(robot, access, screen).await?;
+        Ok(CheckReport { layers, family: robot.family.name() })
+    }
+}
+
+/// The layers of a robot.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct CheckReport {
+    layers: Vec<Layer>,
+    #[serde(skip)]
+    family: &'static str,
+}
+
+impl Report for CheckReport {
+    fn view(&self) -> View {
+        View::table(layers::table(&self.layers))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let (layer, found) = layers::first_failed(&self.layers)?;
+        Some(
+            Failure::new(Kind::ConditionNotMet, format!("{layer}: {found}"))
+                .hint(format!("`armctl help {}-setup` tells the settings of a controller", self.family)),
+        )
+    }
+}

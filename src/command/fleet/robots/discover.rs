@@ -1,0 +1,104 @@
+//! `armctl robots discover`: controllers that answer on a network, and the serial ports of this machine.
+
+use std::time::Duration;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::frame::run::{Run, RunError};
+use crate::command::toyo::ports::{self, Port};
+use crate::command::yrcx::buses::Searches;
+use crate::command::yrcx::discover::{self, FoundDevice};
+use crate::command::yrcx::fieldbus::Scope;
+use crate::command::{Access, ConnectMode, Report};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, View};
+use crate::settings::duration;
+
+/// Asks who is there (ListIdentity), and lists serial ports without opening them.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "A broadcast stays in the network of the card that it leaves by: --bind chooses the card by its \
+                        address, --broadcast the network, as in 192.168.0.255. yerc controllers answer no such question: \
+                        `armctl robots check udp://ADDRESS` asks one."
+)]
+pub struct Discover {
+    #[command(flatten)]
+    searches: Searches,
+    /// How long to wait for answers
+    #[arg(long, value_name = "TIME", default_value = "2500ms", value_parser = wait)]
+    wait: Duration,
+}
+
+/// Longest wait.
+const LONGEST: Duration = Duration::from_secs(60);
+
+fn wait(text: &str) -> Result<Duration, String> {
+    match duration::parse_some(text)? {
+        wait if wait <= LONGEST => Ok(wait),
+        _ => Err(format!("{} at most", duration::display(LONGEST))),
+    }
+}
+
+impl Discover {
+    pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
+        if run.gate.dry_run {
+            return Err(Failure::usage("nothing is found without asking").hint("it only asks who is there").into());
+        }
+        let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Explicit) };
+        run.begin_trace()?;
+        let boards = discover::discover(&self.searches, self.wait, &access, &run.screen).await?;
+        let has_ports = discover::scope(&self.searches) < Scope::Devices;
+        let serial_ports = if has_ports { serial_ports(run) } else { Vec::new() };
+        let nothing = if has_ports { NOTHING } else { "nobody answered" };
+        run.local("robots.discover", &Discovered { boards, serial_ports, nothing })
+    }
+}
+
+fn serial_ports(run: &Run) -> Vec<Port> {
+    ports::all().unwrap_or_else(|failure| {
+        run.screen.note(&format!("warning: {failure}"));
+        Vec::new()
+    })
+}
+
+/// What was found.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Discovered {
+    /// Network boards that answered.
+    boards: Vec<FoundDevice>,
+    /// Serial ports of this machine, where broadcasts were asked for.
+    serial_ports: Vec<Port>,
+    #[serde(skip)]
+    nothing: &'static str,
+}
+
+/// Said of an empty report.
+const NOTHING: &str = "nobody answered, and no serial port was found; is this machine in the robots' network? \
+                       --broadcast 192.168.0.255 asks a certain one";
+
+impl Report for Discovered {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["family", "target", "device"], self.nothing);
+        for FoundDevice { target, family, device, .. } in &self.boards {
+            table.row([Cell::maybe(*family), Cell::from(target.as_str()).whole(), device.as_str().into()]);
+        }
+        for port in &self.serial_ports {
+            let device = format!("serial port: {}", port.device());
+            table.row(["toyo?".into(), Cell::from(port.target()).whole(), device.into()]);
+        }
+        View::table(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nobody_waits_for_ever() {
+        assert!(wait("2m").unwrap_err().contains("at most"));
+        assert!(wait("0s").is_err());
+    }
+}

@@ -1,0 +1,131 @@
+//! `armctl session close`: has sessions end, and waits until they are gone.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::list::spots;
+use crate::command::Report;
+use crate::command::ValueKind;
+use crate::command::frame::attach::{no_place, refused};
+use crate::command::frame::run::{Run, RunError};
+use crate::controller::nearest::nearest;
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Table, View};
+use crate::settings::target::Target;
+use crate::transport::session::client::{AttachError, close};
+use crate::transport::session::place::Spot;
+use crate::transport::session::wire::Info;
+
+/// Arguments of `session close`.
+#[derive(Debug, Args)]
+pub struct Close {
+    /// Robots whose sessions shall end, by name or target URL; -r, -t and --all name them, too
+    #[arg(add = ValueKind::Session)]
+    names: Vec<String>,
+    /// Although a motion is under way, which a controller then breaks off
+    #[arg(long)]
+    force: bool,
+}
+
+/// What became of sessions.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Closed {
+    sessions: Vec<Session>,
+    #[serde(skip)]
+    failure: Option<Failure>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct Session {
+    robot: String,
+    family: String,
+    target: String,
+    /// `closed`, `forgotten` (it had died) or `open` (it stays so).
+    became: &'static str,
+}
+
+impl Close {
+    pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
+        let selection = &run.sources.selection;
+        let mut names: Vec<&str> = self.names.iter().chain(&selection.robots).map(String::as_str).collect();
+        names.extend(selection.target.as_ref().map(Target::url));
+        if selection.sim {
+            names.push("sim:");
+        }
+        if names.is_empty() && !selection.all {
+            return Err(Failure::usage("no session is named")
+                .hint("name a robot, or close them --all; `armctl session list` shows them")
+                .into());
+        }
+        let found: Vec<(Spot, Info)> =
+            spots()?.into_iter().filter_map(|spot| Some((spot.clone(), spot.owner()?))).collect();
+        for name in &names {
+            if !found.iter().any(|(_, info)| is_named(info, name)) {
+                let known = found.iter().map(|(_, info)| info.robot.as_str());
+                let failure = Failure::usage(format!("there is no session of '{name}'"));
+                return Err(match nearest(name, known) {
+                    Some(near) => failure.hint(format!("did you mean '{near}'?")),
+                    None => failure.hint("`armctl session list` shows those there are"),
+                }
+                .into());
+            }
+        }
+        let mut closed = Closed { sessions: Vec::new(), failure: None };
+        for (spot, info) in found {
+            if selection.all || names.iter().any(|name| is_named(&info, name)) {
+                let label = format!("{} ({})", info.robot, info.target);
+                let became = match close(&spot, self.force).await {
+                    Ok(true) => "closed",
+                    Ok(false) => {
+                        spot.clear().map_err(|error| no_place(&error))?;
+                        "forgotten"
+                    }
+                    Err(error) => {
+                        closed.failure.get_or_insert(still_open(&label, &error));
+                        "open"
+                    }
+                };
+                let Info { robot, family, target, .. } = info;
+                closed.sessions.push(Session { robot, family, target, became });
+            }
+        }
+        match closed.failure.take_if(|_| closed.sessions.len() == 1) {
+            Some(failure) => Err(failure.into()),
+            None => run.local("session.close", &closed),
+        }
+    }
+}
+
+fn is_named(info: &Info, name: &str) -> bool {
+    info.robot == name || info.target == name
+}
+
+fn still_open(label: &str, error: &AttachError) -> Failure {
+    match error {
+        AttachError::Refused(why) => Failure::new(Kind::RefusedHere, format!("{label}: it stays open: {why}")).hint(
+            "wait for the end of that, or stop it; --force closes the session all the same, and a controller then \
+                   breaks the motion off",
+        ),
+        _ => refused(label, error),
+    }
+}
+
+impl Report for Closed {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["robot", "family", "target", "became"], "no session was open");
+        for session in &self.sessions {
+            table.row([
+                session.robot.as_str().into(),
+                session.family.as_str().into(),
+                session.target.as_str().into(),
+                session.became.into(),
+            ]);
+        }
+        View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.failure.clone()
+    }
+}

@@ -1,0 +1,203 @@
+//! Links that are held: for a session that others use, or as long as this process runs one command line after the other.
+
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::thread::JoinHandle;
+
+use tokio::sync::{mpsc, oneshot, watch};
+use tokio::task::{JoinSet, LocalSet};
+
+use crate::command::Access;
+use crate::command::face::HeldLink;
+use crate::command::families;
+use crate::command::frame::attach::{key_of, no_place};
+use crate::command::frame::session_manager::{By, Order, SessionManager};
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::settings::Robot;
+use crate::transport::session::host::Host;
+use crate::transport::session::place::Place;
+use crate::transport::session::wire::Info;
+
+/// A link that this process holds, and lets clients have.
+pub struct SessionHost {
+    host: Host,
+    /// What is to be done once the link is closed.
+    finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
+    label: String,
+}
+
+/// Whether a link could be held.
+pub enum Attempt {
+    /// It is.
+    Held(Box<SessionHost>),
+    /// Somebody has it already.
+    Taken,
+    /// There is no place for sessions, and why.
+    NoPlace(Failure),
+}
+
+impl SessionHost {
+    /// Opens the link to a robot, and lets clients in. `say` is told what happens from then on.
+    pub async fn open(
+        robot: &Robot,
+        access: &Access,
+        screen: &Screen,
+        say: impl FnMut(&str) + 'static,
+    ) -> Result<Attempt, Failure> {
+        let place = match Place::make() {
+            Ok(place) => place,
+            Err(error) => return Ok(Attempt::NoPlace(no_place(&error))),
+        };
+        let key = key_of(robot);
+        let spot = place.spot(&key);
+        let info = Info::own(&robot.name, robot.family.name(), robot.target.value.url());
+        let claim = match spot.claim(&info) {
+            Ok(Some(claim)) => claim,
+            Ok(None) => return Ok(Attempt::Taken),
+            Err(error) => return Ok(Attempt::NoPlace(no_place(&error))),
+        };
+        let face = families::of(robot.family);
+        let HeldLink { held, finish } = face.hold(robot, access, screen).await?;
+        let host =
+            Host::new(claim, key, info, held, say).map_err(|error| Failure::io(spot.socket().display(), &error))?;
+        let host = if robot.read_only.value { host.guarded(face.guard()) } else { host };
+        Ok(Attempt::Held(Box::new(Self { host, finish, label: robot.label() })))
+    }
+
+    /// Serves until a client has it end. The future may be dropped: [`SessionHost::end`] goes on from there.
+    pub async fn serve(&mut self) {
+        self.host.serve().await;
+    }
+
+    /// Whether the controller shows that something is under way.
+    pub fn under_way(&mut self) -> bool {
+        self.host.under_way()
+    }
+
+    /// Ends it: clients are told why, the link is closed, the record is whole.
+    pub async fn end(self, why: &str, screen: &Screen) -> Result<(), Failure> {
+        if let Err(trouble) = self.host.end(why).await {
+            screen.note(&format!("{}: the connection was not closed properly: {trouble}", self.label));
+        }
+        self.finish.map_or(Ok(()), |finish| finish())
+    }
+}
+
+/// What a link has to tell at any time, to whoever types.
+type Say = Arc<dyn Fn(&str) + Send + Sync>;
+
+/// Begins to hold nothing yet. What happens to links is told to `say`.
+pub fn start(say: impl Fn(&str) + Send + Sync + 'static) -> Result<(SessionManager, ManagerThread), Failure> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(|error| Failure::io("start", &error))?;
+    let (orders, ordered) = mpsc::unbounded_channel();
+    let say: Say = Arc::new(say);
+    let work = move || LocalSet::new().block_on(&runtime, work(ordered, say));
+    let thread = std::thread::Builder::new().name("links".to_owned()).spawn(work);
+    let thread = thread.map_err(|error| Failure::io("start", &error))?;
+    let manager = SessionManager::new(orders);
+    Ok((manager.clone(), ManagerThread { manager, thread }))
+}
+
+/// The thread behind a [`SessionManager`].
+#[derive(Debug)]
+pub struct ManagerThread {
+    manager: SessionManager,
+    thread: JoinHandle<()>,
+}
+
+impl ManagerThread {
+    /// Lets all links go, and waits until they are gone.
+    pub async fn end(self) {
+        let (done, is_done) = oneshot::channel();
+        // A thread that has ended holds nothing.
+        if self.manager.end(done) && is_done.await.is_ok() {
+            let _ = self.thread.join();
+        }
+    }
+}
+
+/// What the thread does.
+async fn work(mut orders: mpsc::UnboundedReceiver<Order>, say: Say) {
+    let held = Rc::new(RefCell::new(BTreeSet::new()));
+    let (end, ended) = watch::channel(false);
+    let mut holdings = JoinSet::new();
+    while let Some(order) = orders.recv().await {
+        match order {
+            Order::Hold { robot, access, screen, done } => {
+                let (held, say, ended) = (Rc::clone(&held), Arc::clone(&say), ended.clone());
+                holdings.spawn_local(hold(*robot, access, screen, done, held, say, ended));
+            }
+            Order::End(done) => {
+                end.send_replace(true);
+                while holdings.join_next().await.is_some() {}
+                // Whoever waited may have gone.
+                let _ = done.send(());
+                return;
+            }
+        }
+    }
+}
+
+async fn hold(
+    robot: Robot,
+    access: Access,
+    screen: Screen,
+    mut done: oneshot::Sender<Result<By, Failure>>,
+    held: Rc<RefCell<BTreeSet<String>>>,
+    say: Say,
+    mut ended: watch::Receiver<bool>,
+) {
+    let key = key_of(&robot);
+    let label = robot.label();
+    let tell = {
+        let (say, label) = (Arc::clone(&say), label.clone());
+        move |text: &str| say(&format!("{label}: {text}"))
+    };
+    let is_held = held.borrow().contains(&key);
+    let records = access.trace.is_some() && families::of(robot.family).session_records();
+    let access = Access { trace: access.trace.filter(|_| records), ..access };
+    let attempt = async {
+        match Place::find() {
+            _ if !is_held => SessionHost::open(&robot, &access, &screen, tell).await.map(Some),
+            Ok(Some(place)) if place.spot(&key).socket().exists() => Ok(None),
+            // A line that goes around the link that is held would meet another simulator, or open a second connection.
+            _ => Err(Failure::local(format!("{label}: somebody has removed the socket of the link that is held"))
+                .hint("leave, and begin again")),
+        }
+    };
+    let attempt = tokio::select! {
+        attempt = attempt => attempt,
+        () = done.closed() => return,
+    };
+    let (by, holding) = match attempt {
+        Ok(None) => (Ok(By::This { records }), None),
+        Ok(Some(Attempt::Held(holding))) => (Ok(By::This { records }), Some(holding)),
+        Ok(Some(Attempt::Taken)) => (Ok(By::Another), None),
+        Ok(Some(Attempt::NoPlace(why))) => (Ok(By::Nobody(why)), None),
+        Err(failure) => (Err(failure), None),
+    };
+    // Whoever asked may have been interrupted; the link is there for the next line.
+    let _ = done.send(by);
+    let Some(mut holding) = holding else { return };
+    held.borrow_mut().insert(key.clone());
+    let why = tokio::select! {
+        () = holding.serve() => {
+            say(&format!("{label}: another process had the session closed"));
+            "the session was closed"
+        }
+        _ = ended.wait_for(|ended| *ended) => {
+            if holding.under_way() {
+                say(&format!("{label}: something is under way, which the controller breaks off now that the link ends"));
+            }
+            "the process that held it has ended"
+        }
+    };
+    held.borrow_mut().remove(&key);
+    if let Err(failure) = holding.end(why, &screen).await {
+        say(&format!("{label}: {failure}"));
+    }
+}

@@ -1,0 +1,175 @@
+//! `armctl session list`: which links are held, and who uses them.
+
+use std::time::Duration;
+
+use clap::Args;
+use jiff::Timestamp;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::Report;
+use crate::command::frame::attach::no_place;
+use crate::command::frame::run::{Run, RunError};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Table, Tone, View};
+use crate::transport::session::client::{AttachError, status};
+use crate::transport::session::place::{Place, Spot};
+use crate::transport::session::wire::{Leftover, Peer, Status, VERSION};
+
+/// Arguments of `session list`.
+#[derive(Debug, Args)]
+pub struct List {}
+
+impl List {
+    pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
+        let mut sessions = Vec::new();
+        for spot in spots()? {
+            sessions.push(Session::of(&spot, status(&spot).await));
+        }
+        sessions.sort_by(|one, other| one.robot.cmp(&other.robot));
+        run.local("session.list", &Sessions { sessions })
+    }
+}
+
+/// Where sessions are, or were.
+pub fn spots() -> Result<Vec<Spot>, Failure> {
+    match Place::find().and_then(|place| place.map_or(Ok(Vec::new()), |place| place.spots())) {
+        Ok(spots) => Ok(spots),
+        Err(error) => Err(no_place(&error)),
+    }
+}
+
+/// The sessions of this user on this machine.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Sessions {
+    sessions: Vec<Session>,
+}
+
+/// A session.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+struct Session {
+    robot: String,
+    family: String,
+    target: String,
+    /// The process that holds the link, or held it.
+    pid: u32,
+    /// `up`, `down` (it is being opened again), `silent` (the process does not answer) or `dead` (it was killed).
+    link: &'static str,
+    /// Why it is not up.
+    why: Option<String>,
+    /// Since when it is held.
+    since: Option<String>,
+    /// How often the link was lost and opened again.
+    reopenings: u32,
+    /// Who uses it now.
+    clients: Vec<Client>,
+    /// Who moves the robot.
+    motion: Option<Client>,
+    /// Whether the controller shows that something moves (yrcx).
+    under_way: bool,
+    /// Who left a remote command to itself, whatever became of it.
+    leftover: Option<Left>,
+}
+
+/// A process that uses a session.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Client {
+    pid: u32,
+    /// Its command line.
+    command: String,
+    since: String,
+}
+
+/// A process that left a command to itself.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Left {
+    #[serde(flatten)]
+    client: Client,
+    /// Whether it died, instead of being told not to wait.
+    died: bool,
+}
+
+impl Session {
+    fn of(spot: &Spot, found: Result<Option<Status>, AttachError>) -> Self {
+        let (link, why) = match found {
+            Ok(Some(status)) => return Self::living(status),
+            Ok(None) => ("dead", "`armctl session close` forgets it, `armctl session open` opens it again".to_owned()),
+            Err(error) => ("silent", error.to_string()),
+        };
+        let owner = spot.owner();
+        let (robot, family, target, pid) =
+            owner.map_or_else(Default::default, |owner| (owner.robot, owner.family, owner.target, owner.pid));
+        Self { robot, family, target, pid, link, why: Some(why), ..Self::default() }
+    }
+
+    fn living(status: Status) -> Self {
+        let foreign = (status.version != VERSION)
+            .then(|| "another version of armctl holds it; close it, and open it again to use it".to_owned());
+        Self {
+            robot: status.info.robot,
+            family: status.info.family,
+            target: status.info.target,
+            pid: status.info.pid,
+            link: if status.down.is_some() { "down" } else { "up" },
+            why: status.down.or(foreign),
+            since: Some(moment(status.for_ms)),
+            reopenings: status.reopenings,
+            clients: status.clients.into_iter().map(Client::from).collect(),
+            motion: status.motion.map(Client::from),
+            under_way: status.under_way,
+            leftover: status.leftover.map(|Leftover { by, died }| Left { client: by.into(), died }),
+        }
+    }
+
+    /// What is worth knowing beside the columns.
+    fn remark(&self) -> String {
+        let mut remarks = Vec::new();
+        remarks.extend(self.why.clone());
+        if self.reopenings > 0 {
+            remarks.push(format!("opened again {} times", self.reopenings));
+        }
+        if let Some(client) = &self.motion {
+            remarks.push(format!("process {} moves it: {}", client.pid, client.command));
+        } else if self.under_way {
+            remarks.push("something is under way".to_owned());
+        }
+        if let Some(Left { client, died }) = &self.leftover {
+            let how = if *died { "has died" } else { "did not wait" };
+            remarks.push(format!("process {} {how}: {}", client.pid, client.command));
+        }
+        remarks.join("; ")
+    }
+}
+
+impl From<Peer> for Client {
+    fn from(peer: Peer) -> Self {
+        Self { pid: peer.pid, command: peer.command, since: moment(peer.for_ms) }
+    }
+}
+
+fn moment(for_ms: u64) -> String {
+    let then = Timestamp::now().checked_sub(Duration::from_millis(for_ms)).unwrap_or(Timestamp::MIN);
+    then.strftime("%Y-%m-%dT%H:%M:%SZ").to_string()
+}
+
+impl Report for Sessions {
+    fn view(&self) -> View {
+        let mut table = Table::new(
+            &["robot", "family", "link", "process", "clients", "target", "remark"],
+            "no session is open; `armctl session open -r NAME` opens one",
+        );
+        for session in &self.sessions {
+            let tone = if session.link == "up" { Tone::Good } else { Tone::Bad };
+            table.row([
+                session.robot.as_str().into(),
+                session.family.as_str().into(),
+                Cell::from(session.link).tone(tone),
+                session.pid.into(),
+                session.clients.len().into(),
+                session.target.as_str().into(),
+                session.remark().into(),
+            ]);
+        }
+        View::table(table)
+    }
+}

@@ -1,0 +1,45 @@
+//! `armctl session`: a link that outlives commands.
+
+mod close;
+pub mod host;
+mod list;
+mod open;
+
+use clap::Subcommand;
+
+pub use close::Closed;
+pub use list::Sessions;
+
+use crate::command::frame::run::{Run, RunError};
+
+/// What can be done with sessions.
+#[derive(Debug, Subcommand)]
+pub enum Session {
+    /// Hold the link to a robot, for all commands that follow
+    Open(open::Open),
+    /// Which links are held, and who uses them
+    List(list::List),
+    /// Let the link to a robot go
+    Close(close::Close),
+}
+
+impl Session {
+    /// Whether it makes a link, and so must know all about a robot.
+    pub fn opens(&self) -> bool {
+        matches!(self, Self::Open(_))
+    }
+
+    /// Whether it goes on until somebody ends it.
+    pub fn stays(&self) -> bool {
+        matches!(self, Self::Open(open) if open.stays())
+    }
+
+    /// Does it.
+    pub async fn run(self, run: &Run) -> Result<(), RunError> {
+        match self {
+            Self::Open(open) => open.run(run).await,
+            Self::List(list) => list.run(run).await,
+            Self::Close(close) => close.run(run).await,
+        }
+    }
+}

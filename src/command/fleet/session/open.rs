@@ -1,0 +1,164 @@
+//! `armctl session open`: holds the link to a robot, in the foreground or behind it.
+
+use std::cell::RefCell;
+use std::fs::OpenOptions;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::rc::Rc;
+
+use clap::Args;
+use jiff::Timestamp;
+
+use super::host::{Attempt, SessionHost};
+use crate::command::ValueKind;
+use crate::command::families;
+use crate::command::frame::attach::{key_of, no_place, since};
+use crate::command::frame::background::{self, Opened, Start};
+use crate::command::frame::interrupt::{catch_interrupts, interruptible};
+use crate::command::frame::run::{Run, RunError};
+use crate::command::{Access, ConnectMode};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::settings::Robot;
+use crate::settings::target::Family;
+use crate::transport::session::client::status;
+use crate::transport::session::leave_terminal;
+use crate::transport::session::place::{Place, Spot};
+
+/// Arguments of `session open`.
+#[derive(Debug, Args)]
+pub struct Open {
+    /// Go on behind the terminal; return once the link is up
+    #[arg(long)]
+    background: bool,
+    /// The family, where the target does not tell
+    #[arg(long, add = ValueKind::Family)]
+    family: Option<Family>,
+    /// This is the process that `--background` has started.
+    #[arg(long, hide = true, conflicts_with = "background")]
+    detached: bool,
+}
+
+impl Open {
+    /// Whether it holds the terminal, too.
+    pub fn stays(&self) -> bool {
+        !self.background
+    }
+
+    pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
+        let robots = run.sources.robots(self.family)?;
+        let [robot] = &robots[..] else {
+            return Err(Failure::usage("a session is for one robot").hint("open one for each").into());
+        };
+        if robot.read_only.value && families::of(robot.family).session_commands() && !robot.target.value.is_simulated()
+        {
+            let message = format!("{} is read-only, and a session commands the controller", robot.label());
+            return Err(Failure::new(Kind::RefusedHere, message)
+                .hint("`yrcx status` and `yrcx io get` read without a command connection")
+                .into());
+        }
+        if run.gate.dry_run {
+            return Err(Failure::usage("there is nothing to see beforehand: a session sends no command by itself")
+                .hint("leave --dry-run away")
+                .into());
+        }
+        if run.trace.is_some() && !families::of(robot.family).session_records() {
+            return Err(Failure::usage(format!("a session of {} records nothing", robot.family))
+                .hint("give --trace to the commands that go through it")
+                .into());
+        }
+        catch_interrupts();
+        if self.background {
+            let words = std::env::args_os().skip(1);
+            let words = words.map(|word| if word == "--background" { "--detached".into() } else { word });
+            return run.local("session.open", &background::start(robot, words).await?);
+        }
+        if !self.detached {
+            let (host, opened) = Self::open(run, robot, false).await?;
+            run.local("session.open", &opened)?;
+            run.screen.note("Ctrl-C ends it");
+            return Ok(serve(run, host).await?);
+        }
+        leave_terminal().map_err(|error| Failure::io("the terminal", &error))?;
+        match Self::open(run, robot, true).await {
+            Ok((host, opened)) => {
+                run.screen.json(&Start::Opened(opened))?;
+                Ok(serve(run, host).await?)
+            }
+            Err(failure) => {
+                run.screen.json(&Start::Failed(failure.clone()))?;
+                Err(RunError { told: true, ..failure.into() })
+            }
+        }
+    }
+
+    /// Opens the link, and lets clients in.
+    async fn open(run: &Run, robot: &Robot, background: bool) -> Result<(Box<SessionHost>, Opened), Failure> {
+        let place = Place::make().map_err(|error| no_place(&error))?;
+        let spot = place.spot(&key_of(robot));
+        let log = background.then(|| spot.log());
+        let diary = Diary { screen: run.screen, label: robot.label(), file: log.clone() };
+        let diary = Rc::new(RefCell::new(diary));
+        let say = Rc::clone(&diary);
+        let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Control) };
+        let opening = SessionHost::open(robot, &access, &run.screen, move |text| say.borrow_mut().say(text));
+        let holding = match interruptible(opening).await?? {
+            Attempt::Held(holding) => holding,
+            Attempt::Taken => return Err(taken(robot, &spot).await),
+            Attempt::NoPlace(failure) => return Err(failure),
+        };
+        diary.borrow_mut().say("the link is open");
+        let opened = Opened::here(robot, background, log.as_deref());
+        Ok((holding, opened))
+    }
+}
+
+/// Serves until somebody wants it to end; that is no failure.
+async fn serve(run: &Run, mut holding: Box<SessionHost>) -> Result<(), Failure> {
+    let why = match interruptible(holding.serve()).await {
+        Ok(()) => "the session was closed".to_owned(),
+        Err(asked) => format!("the session has ended: {}", asked.message),
+    };
+    holding.end(&why, &run.screen).await
+}
+
+/// Somebody else holds the link already.
+async fn taken(robot: &Robot, spot: &Spot) -> Failure {
+    let who = match (status(spot).await, spot.owner()) {
+        (Ok(Some(status)), _) => format!("process {}, since {}", status.info.pid, since(status.for_ms)),
+        (_, Some(owner)) => format!("process {}, which does not answer", owner.pid),
+        (_, None) => "a process that does not answer".to_owned(),
+    };
+    Failure::new(Kind::NoAnswer, format!("{}: a session is open already: {who}", robot.label()))
+        .hint(format!("commands go through it by themselves; `armctl session close {}` ends it", robot.name))
+}
+
+/// Where it is told what happens: on the terminal, or in a file.
+struct Diary {
+    screen: Screen,
+    label: String,
+    file: Option<PathBuf>,
+}
+
+/// The file is begun anew at this size; the one before is kept.
+const LONGEST: u64 = 1 << 18;
+
+impl Diary {
+    fn say(&mut self, text: &str) {
+        let Some(path) = &self.file else {
+            self.screen.note(&format!("{}: {text}", self.label));
+            return;
+        };
+        // A full disk must not end the session: a robot may be moving.
+        let _ = (|| {
+            if path.metadata().is_ok_and(|found| found.len() > LONGEST) {
+                std::fs::rename(path, path.with_extension("log.1"))?;
+            }
+            let mut options = OpenOptions::new();
+            options.append(true).create(true);
+            #[cfg(unix)]
+            std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+            options.open(path)?.write_all(format!("{} {}: {text}\n", Timestamp::now(), self.label).as_bytes())
+        })();
+    }
+}

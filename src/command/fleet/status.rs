@@ -1,0 +1,107 @@
+//! `armctl status`: one line a robot, of whichever family.
+
+use clap::Args;
+
+use crate::command::face::Face;
+use crate::command::face::overview::OverviewReport;
+use crate::command::families;
+use crate::command::frame::authority::Authority;
+use crate::command::frame::dry_run::Plan;
+use crate::command::frame::script_line::Line;
+use crate::command::{Access, Command, ConnectMode, Connection, Context, Entry, Family};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::settings::{Robot, target};
+
+/// Robots of any family, for what all of them can be asked.
+#[derive(Debug)]
+pub struct Fleet;
+
+/// A connection to a robot of any family.
+pub enum Link {
+    /// One, and what its family can be asked.
+    Open(&'static dyn Face, Box<dyn Connection>),
+    /// To nobody: this is why.
+    Absent(Failure),
+}
+
+impl Family for Fleet {
+    const FAMILY: Option<target::Family> = None;
+    type Link = Link;
+
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
+        let face = families::of(robot.family);
+        match face.connect(robot, access, screen).await {
+            Ok(connection) => Ok(Link::Open(face, connection)),
+            // A robot that is not there has a line as well.
+            Err(failure) if failure.kind == Kind::NoAnswer => Ok(Link::Absent(failure)),
+            Err(failure) => Err(failure),
+        }
+    }
+
+    async fn halt(link: &mut Link) -> Result<String, Failure> {
+        match link {
+            Link::Open(_, connection) => connection.halt().await,
+            Link::Absent(_) => Ok("nothing was sent".to_owned()),
+        }
+    }
+
+    fn planned(link: &mut Link) -> Plan {
+        match link {
+            Link::Open(_, connection) => connection.planned(),
+            Link::Absent(_) => Plan::default(),
+        }
+    }
+
+    fn entry(robot: &Robot, mode: ConnectMode) -> Entry {
+        families::of(robot.family).entry(robot, mode)
+    }
+
+    async fn close(link: Link, screen: &Screen) -> Result<(), Failure> {
+        match link {
+            Link::Open(_, connection) => connection.close(screen).await,
+            Link::Absent(_) => Ok(()),
+        }
+    }
+}
+
+/// Whether robots answer, their mode, servo, alarm and position.
+#[derive(Debug, Args)]
+pub struct Overview {}
+
+impl Command for Overview {
+    type Family = Fleet;
+    type Report = OverviewReport;
+    const ID: &'static str = "status";
+
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Monitor
+    }
+
+    async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport, Failure> {
+        let found = match context.link {
+            Link::Open(face, connection) => face.overview(&mut **connection).await,
+            Link::Absent(failure) => Err(failure.clone()),
+        };
+        match found {
+            Ok(report) => Ok(report),
+            Err(failure) if failure.kind == Kind::NoAnswer => {
+                Ok(OverviewReport { failure: Some(failure), ..OverviewReport::default() })
+            }
+            Err(failure) => Err(failure),
+        }
+    }
+}
+
+/// How a robot is, asked among other lines of this process.
+pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<OverviewReport, Failure> {
+    let overview = Overview {};
+    let access = Access::reading(overview.connect_mode());
+    let access = line.connecting(robot, access, screen).await?;
+    let mut connection = Fleet::connect(robot, access, screen).await?;
+    let authority = Authority::reading(screen, robot);
+    let context = Context { robot, link: &mut connection, screen, several: false, authority };
+    let report = overview.run(context).await;
+    Fleet::close(connection, screen).await?;
+    report
+}

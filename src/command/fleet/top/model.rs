@@ -1,0 +1,485 @@
+//! What a live view knows: robots with their latest samples and a bounded past, and what is chosen of them. It is handed
+//! samples, orders and the time, and knows no terminal, no line and no clock.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use super::keys::Order;
+use super::track::Track;
+use crate::command::face::sample::Sample;
+use crate::failure::{Failure, Kind};
+use crate::output::view::Tone;
+use crate::settings::{Robot, target};
+
+/// A moment: the time since the view began.
+pub type Moment = Duration;
+
+/// Times of answers that are kept of each robot.
+const ANSWERS: usize = 24;
+/// Intervals that can be chosen by keys, ascending.
+const INTERVALS: [Duration; 8] = [
+    Duration::from_millis(100),
+    Duration::from_millis(200),
+    Duration::from_millis(500),
+    Duration::from_secs(1),
+    Duration::from_secs(2),
+    Duration::from_secs(5),
+    Duration::from_secs(10),
+    Duration::from_secs(30),
+];
+/// An answer is old after so many intervals, and not before this time.
+const OLD_AFTER: (u32, Duration) = (3, Duration::from_secs(2));
+/// Longest filter.
+const FILTER: usize = 40;
+
+/// Everything that a picture is made of.
+#[derive(Debug)]
+pub struct Model {
+    /// As they are now; a pause shows others.
+    robots: Vec<Seen>,
+    /// What a pause shows, and since when.
+    frozen: Option<(Moment, Vec<Seen>)>,
+    /// Time from look to look.
+    pub every: Duration,
+    /// The robot at the cursor.
+    pub cursor: usize,
+    /// Whether it has the screen for itself.
+    pub is_open: bool,
+    /// The axis at the cursor.
+    pub axis: usize,
+    /// Order of the list.
+    pub sort: Sort,
+    /// Only robots with this in name, family, place or tags are in the list.
+    pub filter: String,
+    /// Whether keys go into the filter.
+    pub is_typing: bool,
+    /// Whether the keys are explained.
+    pub has_help: bool,
+}
+
+/// Order of the list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sort {
+    /// As chosen, or in the inventory.
+    Given,
+    /// What wants to be looked at first.
+    Trouble,
+    /// By name.
+    Name,
+    /// The slowest first.
+    Answer,
+}
+
+impl Sort {
+    const ALL: [(Self, &'static str); 4] = [
+        (Self::Given, "as given"),
+        (Self::Trouble, "trouble first"),
+        (Self::Name, "by name"),
+        (Self::Answer, "slowest first"),
+    ];
+
+    /// In words.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(sort, _)| *sort == self).map_or("", |(_, name)| name)
+    }
+
+    fn next(self) -> Self {
+        let at = Self::ALL.iter().position(|(sort, _)| *sort == self).unwrap_or_default();
+        Self::ALL[(at + 1) % Self::ALL.len()].0
+    }
+}
+
+/// One robot.
+#[derive(Debug, Clone)]
+pub struct Seen {
+    /// Its name.
+    pub name: String,
+    /// Its family.
+    pub family: target::Family,
+    /// Where it is, as a URL.
+    pub place: String,
+    tags: Vec<String>,
+    /// Whether it answers.
+    pub contact: Contact,
+    /// The latest sample, and when it came.
+    pub last: Option<(Moment, Sample)>,
+    /// How long the last answers took, the latest at the end.
+    pub answers: VecDeque<Duration>,
+    /// The past of each axis of the latest whole sample.
+    pub tracks: Vec<Track>,
+}
+
+/// Whether a robot answers.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Contact {
+    /// It was not asked yet, or has not answered yet.
+    Waiting,
+    /// It does.
+    Answers,
+    /// It does not, or not as it should.
+    Fails(Failure),
+}
+
+/// What wants to be looked at, the least of it first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Trouble {
+    /// Nothing.
+    None,
+    /// It is held, or was not heard yet.
+    Held,
+    /// An alarm or error.
+    Alarm,
+    /// No answer.
+    Silent,
+}
+
+impl Model {
+    /// Robots that nothing is known of yet.
+    pub fn new(robots: &[Robot], every: Duration) -> Self {
+        Self {
+            robots: robots.iter().map(Seen::new).collect(),
+            frozen: None,
+            every,
+            cursor: 0,
+            // A single one needs no list.
+            is_open: robots.len() == 1,
+            axis: 0,
+            sort: Sort::Given,
+            filter: String::new(),
+            is_typing: false,
+            has_help: false,
+        }
+    }
+
+    /// Takes what a look came to.
+    pub fn take(&mut self, now: Moment, robot: usize, looked: Result<Sample, Failure>) {
+        let every = self.every;
+        if let Some(seen) = self.robots.get_mut(robot) {
+            seen.take(now, every, looked);
+        }
+    }
+
+    /// What is shown of the robots, in the order they were given.
+    pub fn robots(&self) -> &[Seen] {
+        self.frozen.as_ref().map_or(&self.robots, |(_, robots)| robots)
+    }
+
+    /// The moment that is shown.
+    pub fn moment(&self, now: Moment) -> Moment {
+        self.frozen.as_ref().map_or(now, |(since, _)| *since)
+    }
+
+    /// Whether the picture stands still.
+    pub fn is_paused(&self) -> bool {
+        self.frozen.is_some()
+    }
+
+    /// The robot that has the screen for itself, which is looked at in full.
+    pub fn open(&self) -> Option<usize> {
+        self.is_open.then_some(self.cursor)
+    }
+
+    /// The robot at the cursor.
+    pub fn chosen(&self) -> Option<&Seen> {
+        self.robots().get(self.cursor)
+    }
+
+    /// Numbers of the robots in the list, in its order.
+    pub fn listed(&self) -> Vec<usize> {
+        let robots = self.robots();
+        let wanted = self.filter.to_lowercase();
+        let mut listed: Vec<usize> = (0..robots.len()).filter(|robot| robots[*robot].has(&wanted)).collect();
+        match self.sort {
+            Sort::Given => {}
+            Sort::Trouble => listed.sort_by_key(|robot| std::cmp::Reverse(robots[*robot].trouble())),
+            Sort::Name => listed.sort_by(|a, b| robots[*a].name.cmp(&robots[*b].name)),
+            Sort::Answer => listed.sort_by_key(|robot| std::cmp::Reverse(robots[*robot].answers.back())),
+        }
+        listed
+    }
+
+    /// Does what a key orders. What is about the process and not about the picture is left to the caller.
+    pub fn obey(&mut self, now: Moment, order: Order) {
+        // Whatever is pressed, whoever has read the help wants it gone.
+        if std::mem::take(&mut self.has_help) {
+            return;
+        }
+        match order {
+            Order::Up(steps) if self.is_open => self.axis = self.axis.saturating_sub(steps),
+            Order::Down(steps) if self.is_open => self.axis = self.axis.saturating_add(steps).min(self.last_axis()),
+            Order::Up(steps) => self.step(|at, _| at.saturating_sub(steps)),
+            Order::Down(steps) => self.step(|at, last| at.saturating_add(steps).min(last)),
+            Order::Previous => self.step(|at, _| at.saturating_sub(1)),
+            Order::Next => self.step(|at, last| (at + 1).min(last)),
+            Order::Open => self.is_open = !self.listed().is_empty(),
+            Order::Back if !self.is_open => self.filter.clear(),
+            Order::Back => self.is_open = false,
+            Order::Sort => self.sort = self.sort.next(),
+            Order::Pause if self.is_paused() => self.frozen = None,
+            Order::Pause => self.frozen = Some((now, self.robots.clone())),
+            Order::Faster => self.every = nearest(self.every, true),
+            Order::Slower => self.every = nearest(self.every, false),
+            Order::Help => self.has_help = true,
+            Order::Filter => (self.is_typing, self.is_open) = (true, false),
+            Order::Type(character) if self.filter.chars().count() < FILTER => self.filter.push(character),
+            Order::Erase => _ = self.filter.pop(),
+            Order::Keep => self.is_typing = false,
+            Order::Discard => (self.is_typing, self.filter) = (false, String::new()),
+            Order::Type(_) | Order::Quit | Order::Interrupt | Order::Suspend | Order::Refresh => {}
+        }
+        self.keep_cursor();
+    }
+
+    /// Moves the cursor to another place in the list.
+    fn step(&mut self, to: impl FnOnce(usize, usize) -> usize) {
+        let listed = self.listed();
+        let at = listed.iter().position(|robot| *robot == self.cursor).unwrap_or_default();
+        if let Some(robot) = listed.get(to(at, listed.len().saturating_sub(1))) {
+            self.cursor = *robot;
+        }
+        let axis = self.axis.min(self.last_axis());
+        self.axis = axis;
+    }
+
+    /// The cursor is on a robot of the list.
+    fn keep_cursor(&mut self) {
+        let listed = self.listed();
+        if !self.is_open
+            && !listed.contains(&self.cursor)
+            && let Some(first) = listed.first()
+        {
+            self.cursor = *first;
+        }
+    }
+
+    fn last_axis(&self) -> usize {
+        self.chosen().map_or(0, |seen| seen.tracks.len().saturating_sub(1))
+    }
+}
+
+impl Seen {
+    fn new(robot: &Robot) -> Self {
+        Self {
+            name: robot.name.clone(),
+            family: robot.family,
+            place: robot.target.value.url().to_owned(),
+            tags: robot.tags.clone(),
+            contact: Contact::Waiting,
+            last: None,
+            answers: VecDeque::with_capacity(ANSWERS),
+            tracks: Vec::new(),
+        }
+    }
+
+    /// Whether its name, family, place or a tag has this in it.
+    fn has(&self, wanted: &str) -> bool {
+        let own = [self.name.as_str(), self.family.name(), self.place.as_str()];
+        own.into_iter().chain(self.tags.iter().map(String::as_str)).any(|text| text.to_lowercase().contains(wanted))
+    }
+
+    fn take(&mut self, now: Moment, every: Duration, looked: Result<Sample, Failure>) {
+        let sample = match looked {
+            Ok(sample) => sample,
+            Err(failure) => {
+                self.contact = Contact::Fails(failure);
+                return;
+            }
+        };
+        self.contact = Contact::Answers;
+        if let Some(answered_in) = sample.answered_in {
+            if self.answers.len() == ANSWERS {
+                self.answers.pop_front();
+            }
+            self.answers.push_back(answered_in);
+        }
+        if let Some(whole) = &sample.whole {
+            if !Track::fit(&self.tracks, &whole.axes) {
+                self.tracks = whole.axes.iter().map(Track::new).collect();
+            }
+            for (track, axis) in self.tracks.iter_mut().zip(&whole.axes) {
+                track.push(now, every, axis);
+            }
+        }
+        let whole = sample.whole.or_else(|| self.last.take().and_then(|(_, last)| last.whole));
+        self.last = Some((now, Sample { whole, ..sample }));
+    }
+
+    /// The latest sample, as long as the robot answers.
+    pub fn sample(&self) -> Option<&Sample> {
+        let answers = matches!(self.contact, Contact::Answers);
+        self.last.as_ref().filter(|_| answers).map(|(_, sample)| sample)
+    }
+
+    /// Time since the last answer.
+    pub fn age(&self, now: Moment) -> Option<Duration> {
+        self.last.as_ref().map(|(then, _)| now.saturating_sub(*then))
+    }
+
+    /// Whether the last answer is older than it should be.
+    pub fn is_old(&self, now: Moment, every: Duration) -> bool {
+        let (intervals, least) = OLD_AFTER;
+        self.age(now).is_some_and(|age| age > every.saturating_mul(intervals).max(least))
+    }
+
+    /// What wants to be looked at.
+    pub fn trouble(&self) -> Trouble {
+        if let Contact::Fails(_) = self.contact {
+            return Trouble::Silent;
+        }
+        let Some(line) = self.sample().map(|sample| &sample.line) else { return Trouble::Held };
+        match (line.alarm == Some(true) || line.error == Some(true), line.held) {
+            (true, _) => Trouble::Alarm,
+            (_, Some(true)) => Trouble::Held,
+            _ => Trouble::None,
+        }
+    }
+
+    /// Its alarm in a few words, and how bad that is.
+    pub fn alarm(&self) -> (String, Tone) {
+        if let Contact::Fails(failure) = &self.contact {
+            return (in_short(failure.kind).to_owned(), Tone::Bad);
+        }
+        let Some(sample) = self.sample() else { return ("waiting".to_owned(), Tone::Plain) };
+        match (sample.alarms.first(), sample.line.alarm, sample.line.error) {
+            (Some(alarm), ..) => (format!("{} {}", alarm.code, alarm.text), Tone::Bad),
+            (None, Some(true), _) => ("alarm".to_owned(), Tone::Bad),
+            (None, _, Some(true)) => ("error".to_owned(), Tone::Bad),
+            _ => (String::new(), Tone::Plain),
+        }
+    }
+}
+
+/// Why there is no sample, in two words.
+fn in_short(kind: Kind) -> &'static str {
+    match kind {
+        Kind::NoAnswer => "no answer",
+        Kind::Refused => "refuses to tell",
+        Kind::Malformed => "answers nonsense",
+        _ => "cannot be asked",
+    }
+}
+
+/// The next interval of those that keys can choose.
+fn nearest(every: Duration, faster: bool) -> Duration {
+    let found = if faster {
+        INTERVALS.into_iter().rev().find(|interval| *interval < every)
+    } else {
+        INTERVALS.into_iter().find(|interval| *interval > every)
+    };
+    found.unwrap_or(every)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{fleet, sample, silence};
+    use super::*;
+
+    const NOW: Moment = Duration::from_secs(10);
+    const EVERY: Duration = Duration::from_millis(500);
+
+    fn names(model: &Model) -> Vec<&str> {
+        model.listed().into_iter().map(|robot| model.robots()[robot].name.as_str()).collect()
+    }
+
+    #[test]
+    fn trouble_comes_first_if_that_is_wanted() {
+        let mut model = Model::new(&fleet(4), EVERY);
+        model.take(NOW, 0, Ok(sample(0.0)));
+        model.take(NOW, 1, Err(silence()));
+        let mut alarmed = sample(0.0);
+        alarmed.line.alarm = Some(true);
+        model.take(NOW, 2, Ok(alarmed));
+        assert_eq!(names(&model), ["cell1", "cell2", "cell3", "cell4"]);
+        model.obey(NOW, Order::Sort);
+        assert_eq!(names(&model), ["cell2", "cell3", "cell4", "cell1"]);
+        assert_eq!(model.robots()[1].alarm(), ("no answer".to_owned(), Tone::Bad));
+    }
+
+    #[test]
+    fn the_filter_keeps_the_cursor_in_the_list() {
+        let mut model = Model::new(&fleet(12), EVERY);
+        model.obey(NOW, Order::Filter);
+        "L1".chars().for_each(|character| model.obey(NOW, Order::Type(character)));
+        assert_eq!(names(&model), ["cell1", "cell10", "cell11", "cell12"]);
+        model.obey(NOW, Order::Type('2'));
+        assert_eq!((names(&model), model.cursor), (vec!["cell12"], 11));
+        model.obey(NOW, Order::Type('x'));
+        assert!(names(&model).is_empty());
+        model.obey(NOW, Order::Keep);
+        model.obey(NOW, Order::Open);
+        assert!(!model.is_open, "there is none to open");
+        model.obey(NOW, Order::Back);
+        assert_eq!((model.listed().len(), model.cursor), (12, 11));
+    }
+
+    #[test]
+    fn a_pause_shows_what_was_and_loses_nothing() {
+        let mut model = Model::new(&fleet(1), EVERY);
+        model.take(NOW, 0, Ok(sample(1.0)));
+        model.obey(NOW, Order::Pause);
+        let later = NOW + EVERY;
+        model.take(later, 0, Ok(sample(2.0)));
+        assert_eq!(model.robots()[0].tracks[0].positions.len(), 1);
+        assert_eq!(model.moment(later), NOW);
+        model.obey(later, Order::Pause);
+        assert_eq!(model.robots()[0].tracks[0].positions.len(), 2);
+        assert_eq!(model.moment(later), later);
+    }
+
+    #[test]
+    fn only_the_open_robot_is_asked_for_everything() {
+        let mut model = Model::new(&fleet(2), EVERY);
+        assert_eq!(model.open(), None);
+        model.obey(NOW, Order::Open);
+        assert_eq!(model.open(), Some(0));
+        model.obey(NOW, Order::Next);
+        assert_eq!(model.open(), Some(1));
+        model.obey(NOW, Order::Back);
+        assert_eq!(model.open(), None);
+        assert_eq!(Model::new(&fleet(1), EVERY).open(), Some(0), "a single one needs no list");
+    }
+
+    #[test]
+    fn intervals_go_up_and_down_in_steps() {
+        let mut model = Model::new(&fleet(1), Duration::from_millis(300));
+        model.obey(NOW, Order::Faster);
+        assert_eq!(model.every, Duration::from_millis(200));
+        (0..9).for_each(|_| model.obey(NOW, Order::Faster));
+        assert_eq!(model.every, Duration::from_millis(100));
+        (0..9).for_each(|_| model.obey(NOW, Order::Slower));
+        assert_eq!(model.every, Duration::from_secs(30));
+    }
+
+    #[test]
+    fn what_a_robot_said_before_it_fell_silent_is_not_shown_as_if_it_were_now() {
+        let mut model = Model::new(&fleet(1), EVERY);
+        model.take(NOW, 0, Ok(sample(1.0)));
+        model.take(NOW + EVERY, 0, Err(silence()));
+        let seen = &model.robots()[0];
+        assert_eq!(seen.sample(), None);
+        assert_eq!(seen.age(NOW + EVERY), Some(EVERY));
+        assert!(seen.is_old(NOW + Duration::from_secs(3), EVERY));
+        model.take(NOW + 2 * EVERY, 0, Ok(sample(2.0)));
+        assert!(model.robots()[0].sample().is_some());
+    }
+
+    #[test]
+    fn cursors_stay_where_there_is_something() {
+        let mut model = Model::new(&fleet(3), EVERY);
+        model.obey(NOW, Order::Down(99));
+        assert_eq!(model.cursor, 2);
+        model.obey(NOW, Order::Up(99));
+        assert_eq!(model.cursor, 0);
+        model.take(NOW, 0, Ok(sample(0.0)));
+        model.obey(NOW, Order::Open);
+        model.obey(NOW, Order::Down(99));
+        assert_eq!(model.axis, model.robots()[0].tracks.len() - 1);
+        model.obey(NOW, Order::Next);
+        assert_eq!((model.cursor, model.axis), (1, 0));
+        let mut empty = Model::new(&[], EVERY);
+        for order in [Order::Down(1), Order::Up(1), Order::Next, Order::Previous, Order::Open, Order::Back] {
+            empty.obey(NOW, order);
+        }
+        assert!(empty.chosen().is_none());
+    }
+}

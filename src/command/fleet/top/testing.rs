@@ -1,0 +1,100 @@
+//! Robots and samples for tests.
+
+use crate::command::face::overview::{OverviewReport, PositionMm};
+use crate::command::face::sample::{Alarm, Axis, Bank, Eight, Lamp, Sample, Whole};
+use crate::failure::{Failure, Kind};
+use crate::output::view::Tone;
+use crate::settings::inventory::Inventory;
+use crate::settings::{Robot, Selection, Sources};
+
+use std::time::Duration;
+
+/// Robots cell1, cell2 and so on, of the three families in turn.
+pub fn fleet(robots: usize) -> Vec<Robot> {
+    let target = |number: usize| match number % 3 {
+        0 => "serial:///dev/ttyUSB0".to_owned(),
+        1 => format!("udp://192.168.1.{number}"),
+        _ => format!("eip://192.168.1.{number}"),
+    };
+    let entries: Vec<String> = (1..=robots)
+        .map(|number| format!("[[robot]]\nname = \"cell{number}\"\ntarget = \"{}\"\n", target(number)))
+        .collect();
+    let inventory = Inventory::parse(&entries.concat(), "robots.toml").unwrap();
+    let selection = Selection { all: true, ..Selection::default() };
+    let sources = Sources { selection, inventory, ..Sources::default() };
+    if robots == 0 { Vec::new() } else { sources.robots(None).unwrap() }
+}
+
+/// A robot that runs, with everything a screen shows; its first axis is at `position`.
+pub fn sample(position: f64) -> Sample {
+    let line = OverviewReport {
+        reachable: true,
+        mode: Some("play"),
+        servo_on: Some(true),
+        running: Some(true),
+        held: Some(false),
+        alarm: Some(false),
+        error: Some(false),
+        position: Some(PositionMm { x_mm: 1000.5, y_mm: -20.25, z_mm: 1234.0 }),
+        not_asked: None,
+        failure: None,
+    };
+    let joint = |name: &str, position, torque| Axis {
+        name: name.to_owned(),
+        position,
+        unit: "pulses",
+        torque: Some(torque),
+        error: Some(0.0),
+        ..Axis::default()
+    };
+    let coordinate = |name: &str, position, limits| Axis {
+        name: name.to_owned(),
+        position,
+        unit: "mm",
+        decimals: 3,
+        limits,
+        ..Axis::default()
+    };
+    let lamp = Lamp::new;
+    let whole = Whole {
+        lamps: vec![
+            lamp("teach", false, Tone::Warning),
+            lamp("play", true, Tone::Good),
+            lamp("servo", true, Tone::Good),
+            lamp("running", true, Tone::Good),
+            lamp("hold", false, Tone::Warning),
+            lamp("alarm", false, Tone::Bad),
+            Lamp::should("CPU OK", true, Tone::Bad),
+        ],
+        axes: vec![
+            joint("S", position, 12.0),
+            joint("L", -90_000.0, -3.0),
+            coordinate("X", 1000.5, Some((-2000.0, 2000.0))),
+            coordinate("Y", -20.25, None),
+        ],
+        torque_unit: Some("raw"),
+        banks: vec![
+            Bank { name: "inputs", groups: (1..=4).map(|at| Eight::rising(format!("#{at}0"), at)).collect() },
+            Bank { name: "outputs", groups: (1..=4).map(|at| Eight::rising(format!("#100{at}0"), 0)).collect() },
+        ],
+        not_asked: None,
+    };
+    Sample { line, answered_in: Some(Duration::from_micros(4200)), alarms: Vec::new(), whole: Some(whole) }
+}
+
+/// The same with two alarms, in a text that would steer a terminal.
+pub fn alarmed() -> Sample {
+    let mut alarmed = sample(0.0);
+    alarmed.line.alarm = Some(true);
+    alarmed.line.running = Some(false);
+    let alarm = |code: &str, text: &str| Alarm { code: code.to_owned(), text: text.to_owned(), remedy: String::new() };
+    alarmed.alarms = vec![alarm("4315", "COLLISION DETECT [SLURBT]"), alarm("1020", "衝突\x1b[2J検出")];
+    alarmed.alarms[0].remedy = "look for what the robot ran into".to_owned();
+    alarmed
+}
+
+/// No answer.
+pub fn silence() -> Failure {
+    Failure::new(Kind::NoAnswer, "cell2 (udp://192.168.1.2): no answer within 3s")
+        .hint("check address, cable and firewall")
+}

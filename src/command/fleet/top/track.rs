@@ -1,0 +1,99 @@
+//! The past of an axis: what a chart shows, and the range that a bar is measured by.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use super::model::Moment;
+use crate::command::face::sample::Axis;
+
+/// Most points that are kept.
+const POINTS: usize = 600;
+/// A chart shows so many intervals, and no less than this time.
+const SHOWN: (u32, Duration) = (120, Duration::from_secs(30));
+
+/// The past of an axis. Times are seconds since the view began.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Track {
+    name: String,
+    unit: &'static str,
+    /// Where it was, the latest at the end.
+    pub positions: VecDeque<(f64, f64)>,
+    /// Its torque, likewise.
+    pub torques: VecDeque<(f64, f64)>,
+    /// The least and the greatest position seen.
+    pub range: (f64, f64),
+}
+
+impl Track {
+    /// Of an axis that nothing is known of yet.
+    pub fn new(axis: &Axis) -> Self {
+        Self {
+            name: axis.name.clone(),
+            unit: axis.unit,
+            positions: VecDeque::new(),
+            torques: VecDeque::new(),
+            range: (axis.position, axis.position),
+        }
+    }
+
+    /// Whether these are the tracks of these axes.
+    pub fn fit(tracks: &[Self], axes: &[Axis]) -> bool {
+        let same = |(track, axis): (&Self, &Axis)| track.name == axis.name && track.unit == axis.unit;
+        tracks.len() == axes.len() && tracks.iter().zip(axes).all(same)
+    }
+
+    /// Adds where the axis is, and forgets what no chart shows any more.
+    pub fn push(&mut self, now: Moment, every: Duration, axis: &Axis) {
+        let (least, most) = self.range;
+        self.range = (least.min(axis.position), most.max(axis.position));
+        let now = now.as_secs_f64();
+        self.positions.push_back((now, axis.position));
+        self.torques.extend(axis.torque.map(|torque| (now, torque)));
+        let start = now - window(every).as_secs_f64();
+        for points in [&mut self.positions, &mut self.torques] {
+            while points.len() > POINTS || points.front().is_some_and(|(then, _)| *then < start) {
+                points.pop_front();
+            }
+        }
+    }
+}
+
+/// The time that a chart shows.
+pub fn window(every: Duration) -> Duration {
+    let (intervals, least) = SHOWN;
+    every.saturating_mul(intervals).max(least)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis(position: f64) -> Axis {
+        Axis { name: "S".to_owned(), position, unit: "pulses", torque: Some(1.0), ..Axis::default() }
+    }
+
+    #[test]
+    fn the_past_is_bounded_by_time_and_by_number() {
+        let every = Duration::from_millis(500);
+        let mut track = Track::new(&axis(0.0));
+        for look in 0..1000_u32 {
+            track.push(every * look, every, &axis(f64::from(look)));
+        }
+        assert_eq!(track.positions.len(), 121);
+        assert_eq!(track.torques.len(), 121);
+        assert_eq!(track.range, (0.0, 999.0), "the range is that of all that was seen");
+        let fast = Duration::from_millis(10);
+        for look in 0..2000_u32 {
+            track.push(every * 1000 + fast * look, fast, &axis(0.0));
+        }
+        assert_eq!(track.positions.len(), POINTS);
+    }
+
+    #[test]
+    fn other_axes_begin_anew() {
+        let tracks = [Track::new(&axis(0.0))];
+        assert!(Track::fit(&tracks, &[axis(5.0)]));
+        assert!(!Track::fit(&tracks, &[Axis { unit: "mm", ..axis(5.0) }]));
+        assert!(!Track::fit(&tracks, &[]));
+    }
+}

@@ -1,0 +1,104 @@
+//! A value over time.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use ratatui::layout::Rect;
+use ratatui::style::Color;
+use ratatui::symbols::Marker;
+use ratatui::widgets::Widget as _;
+use ratatui::widgets::canvas::{Canvas, Line};
+
+use super::pen::{Pen, after, line_of, width};
+use super::whole;
+use crate::command::fleet::top::model::Moment;
+use crate::command::fleet::top::track::window;
+use crate::output::view::Tone;
+
+/// What is drawn.
+#[derive(Debug)]
+pub struct Chart<'a> {
+    /// Whose value.
+    pub of: &'a str,
+    /// Which, in which unit.
+    pub what: &'a str,
+    /// Digits of the numbers at the side.
+    pub decimals: u8,
+    /// Seconds and values, ascending.
+    pub points: &'a VecDeque<(f64, f64)>,
+}
+
+impl Chart<'_> {
+    /// Columns of the numbers at the side.
+    pub fn side(&self) -> u16 {
+        let (bottom, top) = self.numbers();
+        u16::try_from(width(&top).max(width(&bottom))).unwrap_or(u16::MAX)
+    }
+
+    /// The least and the greatest value, as they stand at the side.
+    fn numbers(&self) -> (String, String) {
+        let (least, most) = range(self.points);
+        let text = |value: f64| format!("{value:.*}", usize::from(self.decimals));
+        (text(least), text(most))
+    }
+}
+
+/// Draws it: a heading, the greatest and the least value in `side` columns at the left, and the line.
+pub fn draw(pen: &mut Pen<'_>, area: Rect, chart: &Chart<'_>, side: u16, now: Moment, every: Duration) {
+    let (quiet, style) = (pen.palette.quiet(), pen.palette.heading());
+    let time = window(every);
+    let heading = line_of(area, 0);
+    pen.paint(heading, style);
+    pen.parts(heading, &[(chart.of, style), ("  ", style), (chart.what, style)]);
+    pen.right(heading, &format!("last {}", whole(time)), style);
+    if area.height < 3 || chart.points.is_empty() {
+        return;
+    }
+    let (bottom, top) = chart.numbers();
+    let side = side.min(area.width / 2);
+    let first = line_of(area, 1);
+    let last = line_of(area, area.height - 1);
+    pen.right(Rect { width: side, ..first }, &top, quiet);
+    pen.right(Rect { width: side, ..last }, &bottom, quiet);
+    for line in 1..area.height {
+        let place = after(line_of(area, line), side);
+        pen.left(Rect { width: place.width.min(2), ..place }, " │", quiet);
+    }
+    let picture = after(Rect { y: first.y, height: area.height - 1, ..area }, side + 2);
+    let color = pen.palette.tone(Tone::Good).fg.unwrap_or_default();
+    plot(pen, picture, chart.points, (now.as_secs_f64(), time.as_secs_f64()), color);
+}
+
+fn plot(pen: &mut Pen<'_>, area: Rect, points: &VecDeque<(f64, f64)>, (now, long): (f64, f64), color: Color) {
+    let area = area.intersection(pen.buffer.area);
+    if area.is_empty() {
+        return;
+    }
+    let (least, most) = range(points);
+    let marker = if pen.palette.is_unicode { Marker::Braille } else { Marker::Custom('*') };
+    let canvas = Canvas::default().marker(marker).x_bounds([now - long, now]).y_bounds([least, most]);
+    let canvas = canvas.paint(|context| {
+        for ((x1, y1), (x2, y2)) in points.iter().zip(points.iter().skip(1)) {
+            context.draw(&Line::new(*x1, *y1, *x2, *y2, color));
+        }
+    });
+    canvas.render(area, pen.buffer);
+}
+
+/// The least and the greatest value, apart also where nothing changes.
+fn range(points: &VecDeque<(f64, f64)>) -> (f64, f64) {
+    let values = || points.iter().map(|(_, value)| *value);
+    let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    if most > least { (least, most) } else { (least - 1.0, most + 1.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_that_stays_has_room_around_it() {
+        assert_eq!(range(&VecDeque::from([(0.0, 5.0), (1.0, 5.0)])), (4.0, 6.0));
+        assert_eq!(range(&VecDeque::from([(0.0, 5.0), (1.0, -5.0)])), (-5.0, 5.0));
+    }
+}

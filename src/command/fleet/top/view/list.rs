@@ -1,0 +1,283 @@
+//! The list: a line a robot.
+
+use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
+
+use super::pen::{Pen, after, line_of, width};
+use super::{answer, pace};
+use crate::command::fleet::top::model::{Contact, Model, Moment, Seen, Sort, Trouble};
+use crate::output::view::Tone;
+
+/// A column of the list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Column {
+    Name,
+    Family,
+    Mode,
+    Servo,
+    State,
+    /// Takes what the others leave.
+    Alarm,
+    Position {
+        decimals: usize,
+    },
+    Answer,
+    /// The times of the last answers.
+    Past,
+}
+
+/// Widest and narrowest names, and the least that an alarm gets.
+const NAME: (usize, usize) = (5, 20);
+const ALARM: u16 = 8;
+/// Times of answers in the column of the past.
+const PAST: usize = 12;
+/// Signs of the past, the lowest first.
+const LEVELS: [&str; 8] = ["▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"];
+
+/// The first line: how many there are, and how they are.
+pub fn head(pen: &mut Pen<'_>, line: Rect, model: &Model) {
+    let robots = model.robots();
+    let count = |trouble| robots.iter().filter(|seen| seen.trouble() == trouble).count();
+    let (silent, alarms) = (count(Trouble::Silent), count(Trouble::Alarm));
+    let waiting = robots.iter().filter(|seen| seen.contact == Contact::Waiting).count();
+    let plural = if robots.len() == 1 { "" } else { "s" };
+    let mut parts = vec![
+        (" armctl top".to_owned(), pen.palette.accent()),
+        (format!("  {} robot{plural}", robots.len()), Style::new()),
+    ];
+    let mut told = |count: usize, what: &str, tone| {
+        if count > 0 {
+            parts.push((format!(" · {count} {what}"), pen.palette.tone(tone)));
+        }
+    };
+    told(robots.len() - silent - waiting, "answer", Tone::Good);
+    told(alarms, if alarms == 1 { "alarm" } else { "alarms" }, Tone::Bad);
+    told(silent, "silent", Tone::Bad);
+    told(waiting, "waiting", Tone::Warning);
+    if !model.filter.is_empty() && !model.is_typing {
+        parts.push((format!(" · only '{}'", model.filter), pen.palette.accent()));
+    }
+    if model.sort != Sort::Given {
+        parts.push((format!(" · {}", model.sort.name()), pen.palette.quiet()));
+    }
+    let parts: Vec<(&str, Style)> = parts.iter().map(|(text, style)| (text.as_str(), *style)).collect();
+    pen.parts(Rect { width: line.width.saturating_sub(14), ..line }, &parts);
+    pace(pen, line, model);
+}
+
+/// Headings, robots, and at the end the trouble of the one at the cursor in full.
+pub fn body(pen: &mut Pen<'_>, area: Rect, model: &Model, now: Moment) {
+    let columns = columns(area.width, model.robots());
+    let heading = line_of(area, 0);
+    pen.paint(heading, pen.palette.heading());
+    let style = pen.palette.heading();
+    for (column, place) in &columns {
+        if column.is_right() {
+            pen.right(on(*place, heading), column.title(), style);
+        } else {
+            pen.left(on(*place, heading), column.title(), style);
+        }
+    }
+    let room = Rect { y: area.y.saturating_add(1), height: area.height.saturating_sub(2), ..area };
+    let listed = model.listed();
+    let cursor = listed.iter().position(|robot| *robot == model.cursor).unwrap_or_default();
+    let first = first_line(cursor, listed.len(), room.height.into());
+    for (line, robot) in (0..room.height).zip(listed.iter().skip(first)) {
+        let line = line_of(room, line);
+        let Some(seen) = model.robots().get(*robot) else { continue };
+        for (column, place) in &columns {
+            column.draw(pen, on(*place, line), seen, now, model);
+        }
+        if *robot == model.cursor {
+            pen.left(Rect { width: line.width.min(1), ..line }, "▌", pen.palette.accent());
+            pen.paint(after(line, 1), Style::new().add_modifier(Modifier::BOLD));
+        }
+    }
+    if listed.is_empty() {
+        pen.left(after(line_of(room, 1), 2), "no robot fits the filter", pen.palette.quiet());
+    } else if area.height > 2 {
+        trouble(pen, line_of(area, area.height - 1), model);
+    }
+}
+
+/// The first robot that is shown, so that the cursor is in the middle as far as there are others.
+fn first_line(cursor: usize, robots: usize, lines: usize) -> usize {
+    cursor.saturating_sub(lines / 2).min(robots.saturating_sub(lines))
+}
+
+/// What is wrong with the robot at the cursor.
+fn trouble(pen: &mut Pen<'_>, line: Rect, model: &Model) {
+    let Some(seen) = model.chosen() else { return };
+    let (text, tone) = if let Contact::Fails(failure) = &seen.contact {
+        let hint = failure.hint.as_ref().map(|hint| format!("; {hint}")).unwrap_or_default();
+        (format!("{}{hint}", failure.message), Tone::Bad)
+    } else {
+        let (alarm, tone) = seen.alarm();
+        (if alarm.is_empty() { seen.place.clone() } else { format!("{}: {alarm}", seen.name) }, tone)
+    };
+    let style = if tone == Tone::Plain { pen.palette.quiet() } else { pen.palette.tone(tone) };
+    pen.left(after(line, 1), &text, style);
+}
+
+/// The columns that there is room for, with place and width.
+fn columns(width: u16, robots: &[Seen]) -> Vec<(Column, Rect)> {
+    let name = robots.iter().map(|seen| super::width(&seen.name)).max().unwrap_or_default();
+    let name = u16::try_from(name.clamp(NAME.0, NAME.1)).unwrap_or_default();
+    let is_mixed = robots.windows(2).any(|pair| pair[0].family != pair[1].family);
+    let gap = if width >= 100 { 2 } else { 1 };
+    // The least width of the whole at which a column is there.
+    let all = [
+        (Column::Name, name, 0),
+        (Column::Family, 6, if is_mixed { 76 } else { 90 }),
+        (Column::Mode, 9, 40),
+        (Column::Servo, 5, 50),
+        (Column::State, 7, 30),
+        (Column::Alarm, 0, 20),
+        (Column::Position { decimals: 1 }, 26, 110),
+        (Column::Position { decimals: 0 }, 17, 80),
+        (Column::Answer, 7, 60),
+        (Column::Past, u16::try_from(PAST).unwrap_or_default(), 120),
+    ];
+    let has_fine = width >= 110;
+    let there = all
+        .into_iter()
+        .filter(|(column, _, least)| width >= *least && !(has_fine && *column == Column::Position { decimals: 0 }));
+    let mut there: Vec<(Column, u16)> = there.map(|(column, columns, _)| (column, columns)).collect();
+    let taken: u16 = 2 + there.iter().map(|(_, columns)| columns + gap).sum::<u16>();
+    for (column, columns) in &mut there {
+        if *column == Column::Alarm {
+            *columns = width.saturating_sub(taken).max(ALARM);
+        }
+    }
+    let mut x = 2;
+    let mut placed = Vec::with_capacity(there.len());
+    for (column, columns) in there {
+        placed.push((column, Rect { x, width: columns.min(width.saturating_sub(x)), ..Rect::ZERO }));
+        x += columns + gap;
+    }
+    placed
+}
+
+/// The place of a column in a line.
+fn on(column: Rect, line: Rect) -> Rect {
+    Rect { x: line.x + column.x, y: line.y, width: column.width, height: line.height }
+}
+
+impl Column {
+    fn title(self) -> &'static str {
+        match self {
+            Self::Name => "NAME",
+            Self::Family => "FAMILY",
+            Self::Mode => "MODE",
+            Self::Servo => "SERVO",
+            Self::State => "STATE",
+            Self::Alarm => "ALARM",
+            Self::Position { .. } => "X Y Z (mm)",
+            Self::Answer => "ANSWER",
+            Self::Past => "LAST ANSWERS",
+        }
+    }
+
+    fn is_right(self) -> bool {
+        matches!(self, Self::Position { .. } | Self::Answer)
+    }
+
+    fn draw(self, pen: &mut Pen<'_>, place: Rect, seen: &Seen, now: Moment, model: &Model) {
+        let palette = pen.palette;
+        let line = seen.sample().map(|sample| &sample.line);
+        let is_old = seen.is_old(now, model.every);
+        // What is old stands back.
+        let plain = if is_old { palette.quiet() } else { Style::new() };
+        let toned = |tone| if is_old { palette.quiet() } else { palette.tone(tone) };
+        let dash = ("-", palette.quiet());
+        let (text, style) = match self {
+            Self::Name => (seen.name.as_str(), Style::new()),
+            Self::Family => (seen.family.name(), palette.quiet()),
+            Self::Mode => line.and_then(|line| line.mode).map_or(dash, |mode| (mode, plain)),
+            Self::Servo => match line.and_then(|line| line.servo_on) {
+                Some(true) => ("on", toned(Tone::Good)),
+                Some(false) => ("off", plain),
+                None => dash,
+            },
+            Self::State => match line.map(|line| (line.held, line.running)) {
+                Some((Some(true), _)) => ("hold", toned(Tone::Warning)),
+                Some((_, Some(true))) => ("running", toned(Tone::Good)),
+                Some((_, Some(false))) => ("stopped", plain),
+                Some(_) | None => dash,
+            },
+            Self::Alarm => {
+                let (text, tone) = seen.alarm();
+                let style = if tone == Tone::Plain { palette.quiet() } else { palette.tone(tone) };
+                pen.left(place, &text, style);
+                return;
+            }
+            Self::Position { decimals } => return position(pen, place, seen, decimals, plain),
+            Self::Answer => {
+                let (text, style) = answer(pen, seen, now, model.every);
+                pen.right(place, &text, style);
+                return;
+            }
+            Self::Past => return past(pen, place, seen),
+        };
+        pen.left(place, text, style);
+    }
+}
+
+/// Three coordinates, each in a column of its own.
+fn position(pen: &mut Pen<'_>, place: Rect, seen: &Seen, decimals: usize, style: Style) {
+    let Some(sample) = seen.sample() else { return pen.right(place, "-", pen.palette.quiet()) };
+    let Some(at) = sample.line.position else {
+        let why = if sample.line.not_asked.is_some() { "not asked" } else { "-" };
+        return pen.right(place, why, pen.palette.quiet());
+    };
+    let columns = (place.width.saturating_sub(2)) / 3;
+    for (index, value) in (0..).zip([at.x_mm, at.y_mm, at.z_mm]) {
+        let column = after(place, index * (columns + 1));
+        pen.right(Rect { width: columns.min(column.width), ..column }, &format!("{value:.decimals$}"), style);
+    }
+}
+
+/// The times of the last answers, the tallest being the longest.
+fn past(pen: &mut Pen<'_>, place: Rect, seen: &Seen) {
+    let last = seen.answers.iter().rev().take(PAST).rev();
+    let longest = last.clone().max().copied().unwrap_or_default().as_secs_f64();
+    let signs = last.map(|time| {
+        let share = if longest > 0.0 { time.as_secs_f64() / longest } else { 0.0 };
+        let level = LEVELS.iter().zip(1..).find(|(_, level)| share * 8.0 <= f64::from(*level));
+        level.map_or(LEVELS[7], |(sign, _)| *sign)
+    });
+    let signs: String = signs.collect();
+    debug_assert!(width(&signs) <= PAST);
+    pen.left(place, &signs, pen.palette.quiet());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cursor_is_always_in_sight() {
+        assert_eq!(first_line(0, 50, 10), 0);
+        assert_eq!(first_line(20, 50, 10), 15);
+        assert_eq!(first_line(49, 50, 10), 40);
+        assert_eq!(first_line(3, 5, 10), 0);
+        for cursor in 0..50 {
+            for lines in 1..60 {
+                let first = first_line(cursor, 50, lines);
+                assert!((first..first + lines).contains(&cursor), "{cursor} {lines}");
+            }
+        }
+    }
+
+    #[test]
+    fn columns_fit_the_line() {
+        for columns_of_line in [80, 100, 120, 200] {
+            let columns = columns(columns_of_line, &[]);
+            assert!(
+                columns.iter().all(|(_, place)| place.right() <= columns_of_line),
+                "{columns_of_line}: {columns:?}"
+            );
+            assert!(columns.iter().any(|(column, _)| *column == Column::Alarm));
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Whether a session holds the link to a robot, and the way through it.
+
+use std::path::Path;
+use std::time::Duration;
+
+use jiff::Timestamp;
+use jiff::tz::TimeZone;
+
+use crate::command::frame::Access;
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::settings::{Robot, Sessions};
+use crate::transport::session::client::{self, AttachError, Attached, Found, SessionBusy};
+use crate::transport::session::place::{Place, PlaceError, key};
+use crate::transport::session::process;
+use crate::transport::session::wire::Peer;
+
+/// The session that holds the robot's link, if there is one and `--no-session` does not go around it.
+pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
+    let attached = attach_if_there(robot, access, screen).await?;
+    if attached.is_none() && robot.sessions == Sessions::Only {
+        let failure = Failure::new(Kind::NoAnswer, format!("{}: no session holds its link", robot.label()));
+        return Err(failure.hint("`armctl session open` opens one"));
+    }
+    Ok(attached)
+}
+
+async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
+    if robot.sessions == Sessions::None || access.dry_run {
+        return Ok(None);
+    }
+    let attached = match client::attach(&key_of(robot), &command_line(access)).await {
+        Ok(Found::Session(attached)) => attached,
+        Ok(Found::Nothing) => return Ok(None),
+        Ok(Found::Dead) => {
+            let open = "`armctl session open` opens another one, `armctl session close` forgets it";
+            screen.note(&format!("{}: its session has died, so this goes without it; {open}", robot.label()));
+            return Ok(None);
+        }
+        // Somebody else's folder is none of ours: there is no session, but somebody may want one to be.
+        Err(AttachError::Place(error @ PlaceError::Unsafe { .. })) => {
+            screen.note(&format!("warning: sessions are not used: {error}"));
+            return Ok(None);
+        }
+        Err(error) => return Err(refused(&robot.label(), &error)),
+    };
+    let welcome = &attached.welcome;
+    if screen.verbosity > 0 {
+        // To find out about the time zone takes longer than all else that a status does.
+        let since = since(welcome.for_ms);
+        let through = format!("through the session of process {}, open since {since}", welcome.pid);
+        screen.detail(1, &format!("{}: {through}", robot.label()));
+    }
+    if let Some(leftover) = welcome.leftover.as_ref().filter(|leftover| leftover.died) {
+        let peer = peer(&leftover.by);
+        screen.note(&format!("{}: a command was left under way by a client that has died: {peer}", robot.label()));
+    }
+    if let Some(why) = &welcome.down {
+        screen.note(&format!("{}: the link of the session is down: {why}; it is being opened again", robot.label()));
+    }
+    if access.trace.as_deref().is_some_and(|path| path != Path::new("-")) {
+        let missing = "packets and addresses are the session's (yrcx: `armctl session open --trace FILE`)";
+        screen.note(&format!("{}: --trace records what passes through the session; {missing}", robot.label()));
+    }
+    Ok(Some(attached))
+}
+
+/// Whether a session holds the robot's link, and commands may go through it.
+pub fn is_held(robot: &Robot) -> bool {
+    robot.sessions != Sessions::None
+        && Place::find().is_ok_and(|place| place.is_some_and(|place| place.spot(&key_of(robot)).is_open()))
+}
+
+/// What the robot's session is named by.
+pub fn key_of(robot: &Robot) -> String {
+    let (family, url) = (robot.family.name(), robot.target.value.url());
+    if let Some(address) = robot.target.value.address().key() {
+        return key(family, &address);
+    }
+    if robot.sessions == Sessions::OwnSimulators && robot.target.value.is_simulated() {
+        return key(family, &format!("{url} as {} in process {}", robot.name, process()));
+    }
+    key(family, url)
+}
+
+/// What was typed, for others who want the same robot.
+fn command_line(access: &Access) -> String {
+    if let Some(typed) = &access.typed {
+        return typed.to_string();
+    }
+    let mut words = std::env::args_os();
+    let program = words.next().unwrap_or_default();
+    let program = Path::new(&program).file_name().unwrap_or(&program).to_string_lossy().into_owned();
+    let words = words.map(|word| word.to_string_lossy().into_owned());
+    std::iter::once(program).chain(words).collect::<Vec<_>>().join(" ")
+}
+
+/// There is no place for sessions.
+pub fn no_place(error: &PlaceError) -> Failure {
+    let failure = Failure::new(Kind::Local, format!("sessions: {error}"));
+    match error {
+        PlaceError::Unsafe { path, .. } => {
+            failure.hint(format!("remove {}, or set XDG_RUNTIME_DIR to a folder of your own", path.display()))
+        }
+        PlaceError::Io { .. } => failure.hint("XDG_RUNTIME_DIR names the folder that they are kept in"),
+    }
+}
+
+/// A session that is there and is not used.
+pub fn refused(label: &str, error: &AttachError) -> Failure {
+    let hint = "`armctl session list` shows what there is; --no-session goes around it";
+    let kind = match error {
+        AttachError::Place(_) | AttachError::Io(_) => Kind::Local,
+        AttachError::Silent | AttachError::Refused(_) => Kind::NoAnswer,
+        AttachError::Foreign => Kind::Malformed,
+    };
+    Failure::new(kind, format!("{label}: {error}")).hint(hint)
+}
+
+/// What stands in the way within a session.
+pub fn session_busy(label: &str, busy: &SessionBusy) -> Failure {
+    match busy {
+        SessionBusy::Ended(why) => Failure::new(Kind::NoAnswer, format!("{label}: {why}"))
+            .hint("look at the robot; `armctl session open` opens another session"),
+        SessionBusy::Busy(holder) => {
+            let who = holder.as_ref().map_or_else(|| "another client".to_owned(), peer);
+            Failure::new(Kind::NoAnswer, format!("{label}: the link is in use by {who}"))
+                .hint("wait for its end; stops get through: `yrcx stop`, `toyo stop`, `yerc hold on`")
+        }
+        SessionBusy::Moved(holder) => {
+            let message = format!("{label}: another client moves the robot: {}; nothing was sent", peer(holder));
+            Failure::new(Kind::RefusedHere, message)
+                .hint("wait for its end; stops get through: `yrcx stop`, `toyo stop`, `yerc hold on`")
+        }
+    }
+}
+
+/// Who, and since when.
+pub fn peer(peer: &Peer) -> String {
+    format!("process {} (`{}`), since {}", peer.pid, peer.command, since(peer.for_ms))
+}
+
+/// The moment so long ago, in the time of this machine.
+pub fn since(for_ms: u64) -> String {
+    let then = Timestamp::now().checked_sub(Duration::from_millis(for_ms)).unwrap_or(Timestamp::MIN);
+    then.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S").to_string()
+}

@@ -1,0 +1,196 @@
+//! What a command is: its arguments, what it does at most, and how it is done.
+
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+
+use super::authority::Authority;
+use super::connection::{self, Access, ConnectMode, Connection, Entry, Family};
+use super::report::{Outcome, Report};
+use crate::controller::Risk;
+use crate::failure::Failure;
+use crate::gate::{Confirmation, Intent};
+use crate::output::Screen;
+use crate::settings::{Robot, target};
+
+/// What a command line needs beside its own arguments.
+#[derive(Debug)]
+pub struct Context<'a, F: Family> {
+    /// The robot.
+    pub robot: &'a Robot,
+    /// The connection to it.
+    pub link: &'a mut F::Link,
+    /// For progress and notes; reports go back to the caller.
+    pub screen: &'a Screen,
+    /// Whether other robots may run the same command, so that files need a folder for each.
+    pub several: bool,
+    /// Confirms what is deleted or overwritten, once that is known.
+    pub authority: Authority<'a>,
+}
+
+/// [`Context`] with a connection of whichever family.
+pub struct AnyContext<'a> {
+    /// See [`Context::robot`].
+    pub robot: &'a Robot,
+    /// The connection to it.
+    pub connection: &'a mut dyn Connection,
+    /// See [`Context::screen`].
+    pub screen: &'a Screen,
+    /// See [`Context::several`].
+    pub several: bool,
+    /// See [`Context::authority`].
+    pub authority: Authority<'a>,
+}
+
+impl<'a> AnyContext<'a> {
+    /// The same for a command of one family, whose connection it must be.
+    pub fn of<F: Family>(self) -> Result<Context<'a, F>, Failure> {
+        let Self { robot, connection, screen, several, authority } = self;
+        Ok(Context { robot, link: connection::link::<F>(connection)?, screen, several, authority })
+    }
+}
+
+/// A parsed command line for a robot.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Command {
+    /// The family it is for.
+    type Family: Family;
+    /// What it reports.
+    type Report: Report + 'static;
+    /// `yerc.status`: its name in envelopes and schemas.
+    const ID: &'static str;
+
+    /// The most that it does.
+    fn risk(&self) -> Risk {
+        Risk::Read
+    }
+
+    /// The most that it does to this robot, where that depends on it; not more than [`risk`](Self::risk).
+    fn risk_on(&self, _robot: &Robot) -> Risk {
+        self.risk()
+    }
+
+    /// Completes "This will …" in the question before a motion.
+    fn intent(&self) -> String {
+        String::new()
+    }
+
+    /// How a yes is given to what moves, deletes or overwrites.
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::Question
+    }
+
+    /// Whether it stops the robot, which is always allowed.
+    fn is_stop(&self) -> bool {
+        false
+    }
+
+    /// Whether it moves the robot until somebody ends it: a jog without `--for`.
+    fn moves_until_stopped(&self) -> bool {
+        false
+    }
+
+    /// Whether it is repeated until something ends it, each run waiting for the next thing to tell.
+    fn is_endless(&self) -> bool {
+        false
+    }
+
+    /// What it wants of the connection.
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Control
+    }
+
+    /// Does it. In a dry run orders are noted and count as done; what reads ends in a failure that says its answer is not
+    /// known ([`dry_run::unknown`]), behind which nothing can be foreseen unless the command does.
+    async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
+}
+
+/// [`Command`] without its types, for the one loop that runs them all.
+pub trait AnyCommand {
+    /// See [`Command::ID`].
+    fn id(&self) -> &'static str;
+    /// What the gate is told: of this robot, or at the most.
+    fn intent(&self, robot: Option<&Robot>) -> Intent;
+    /// What it reports, if it takes no robot to do it.
+    fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {
+        None
+    }
+    /// Whether it is for a robot.
+    fn takes_robot(&self) -> bool {
+        true
+    }
+    /// See [`Command::moves_until_stopped`].
+    fn moves_until_stopped(&self) -> bool {
+        false
+    }
+    /// See [`Command::is_endless`].
+    fn is_endless(&self) -> bool {
+        false
+    }
+    /// See [`Family::FAMILY`].
+    fn family(&self) -> Option<target::Family>;
+    /// See [`Family::entry`].
+    fn entry(&self, robot: &Robot) -> Entry;
+    /// See [`Command::connect_mode`].
+    fn connect_mode(&self) -> ConnectMode;
+    /// See [`Family::connect`].
+    fn connect<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>>;
+    /// See [`Command::run`].
+    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome>;
+}
+
+impl<C: Command> AnyCommand for C {
+    fn id(&self) -> &'static str {
+        C::ID
+    }
+
+    fn intent(&self, robot: Option<&Robot>) -> Intent {
+        Intent {
+            risk: robot.map_or_else(|| Command::risk(self), |robot| Command::risk_on(self, robot)),
+            text: Command::intent(self),
+            confirmation: Command::confirmation(self),
+            is_stop: Command::is_stop(self),
+        }
+    }
+
+    fn moves_until_stopped(&self) -> bool {
+        Command::moves_until_stopped(self)
+    }
+
+    fn is_endless(&self) -> bool {
+        Command::is_endless(self)
+    }
+
+    fn family(&self) -> Option<target::Family> {
+        C::Family::FAMILY
+    }
+
+    fn entry(&self, robot: &Robot) -> Entry {
+        C::Family::entry(robot, Command::connect_mode(self))
+    }
+
+    fn connect_mode(&self) -> ConnectMode {
+        Command::connect_mode(self)
+    }
+
+    fn connect<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>> {
+        connection::connect::<C::Family>(robot, access, screen)
+    }
+
+    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
+        async move {
+            let report = Command::run(self, context.of()?).await?;
+            Ok(Box::new(report) as Box<_>)
+        }
+        .boxed_local()
+    }
+}

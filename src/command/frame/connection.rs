@@ -1,0 +1,149 @@
+//! Connections to robots: how they may be used, and what the one loop does with them whatever their family.
+
+use std::any::Any;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+
+use super::dry_run::Plan;
+use crate::controller::Risk;
+use crate::failure::Failure;
+use crate::gate::Grant;
+use crate::output::Screen;
+use crate::settings::{Robot, target};
+
+/// How a link may be used.
+#[derive(Debug, Clone)]
+pub struct Access {
+    /// Nothing riskier leaves: the last check, after the gate.
+    pub granted: Grant,
+    /// Note what would be sent instead of sending it.
+    pub dry_run: bool,
+    /// Where frames are recorded.
+    pub trace: Option<PathBuf>,
+    /// What the command wants of the connection.
+    pub mode: ConnectMode,
+    /// The command line, where it is not that of the process.
+    pub typed: Option<Arc<str>>,
+    /// The robot of the controller that commands are for (yrcx), 1 to 4; 0 for the first, or for all.
+    pub unit: u8,
+}
+
+impl Access {
+    /// For what only looks.
+    pub fn reading(mode: ConnectMode) -> Self {
+        Self { granted: Grant::of(Risk::Read), dry_run: false, trace: None, mode, typed: None, unit: 0 }
+    }
+}
+
+/// What a command wants of the connection. Where a controller takes the end of a connection for a fault, as YRCX does,
+/// nothing is opened that is more than this.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ConnectMode {
+    /// To ask and to command.
+    #[default]
+    Control,
+    /// To see what the controller shows by itself.
+    Monitor,
+    /// To ask its network board, which answers without a connection to the controller (yrcx).
+    Explicit,
+}
+
+/// What a connection does to a controller by being there.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Entry {
+    /// Nothing.
+    Harmless,
+    /// Nothing, as a session holds it; another way would not be harmless.
+    ThroughSession,
+    /// It stops the robot when it ends; completes "This will …".
+    Stops(String),
+}
+
+/// A controller family as its commands see it.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Family: Sized + 'static {
+    /// Its name; `None` for what is for robots of any family.
+    const FAMILY: Option<target::Family>;
+    /// A connection to one robot.
+    type Link: 'static;
+
+    /// Connects. With `dry_run` nothing is opened.
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Self::Link, Failure>;
+
+    /// Stops what this link set in motion, and says what was done: "the robot was stopped: HOLD is on".
+    async fn halt(link: &mut Self::Link) -> Result<String, Failure>;
+
+    /// Whether what this link set in motion is stopped even if `--on-interrupt` says to leave it.
+    fn must_halt(_link: &Self::Link) -> bool {
+        false
+    }
+
+    /// What a dry run would have sent, in the order of sending.
+    fn planned(link: &mut Self::Link) -> Plan;
+
+    /// What a connection of this kind does to the controller by being opened, and closed at the end.
+    fn entry(_robot: &Robot, _mode: ConnectMode) -> Entry {
+        Entry::Harmless
+    }
+
+    /// Closes the connection, and says at `-v` what it was like.
+    async fn close(link: Self::Link, screen: &Screen) -> Result<(), Failure>;
+}
+
+/// A connection to one robot, whatever its family: what [`Family`] says, without its type.
+pub trait Connection {
+    /// See [`Family::halt`].
+    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>>;
+    /// See [`Family::must_halt`].
+    fn must_halt(&self) -> bool;
+    /// See [`Family::planned`].
+    fn planned(&mut self) -> Plan;
+    /// See [`Family::close`].
+    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
+    /// The [`Family::Link`].
+    fn as_any(&mut self) -> &mut dyn Any;
+}
+
+/// Connects as a family does.
+pub fn connect<'a, F: Family>(
+    robot: &'a Robot,
+    access: Access,
+    screen: &'a Screen,
+) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>> {
+    let connected = F::connect(robot, access, screen);
+    async move { Ok(Box::new(Connected::<F>(connected.await?)) as Box<dyn Connection>) }.boxed_local()
+}
+
+/// The link of a family behind a connection; anything else is a fault of this program.
+pub fn link<F: Family>(connection: &mut dyn Connection) -> Result<&mut F::Link, Failure> {
+    let link = connection.as_any().downcast_mut();
+    link.ok_or_else(|| Failure::local("internal error: this connection is one of another family"))
+}
+
+/// The link of a family as a [`Connection`].
+struct Connected<F: Family>(F::Link);
+
+impl<F: Family> Connection for Connected<F> {
+    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>> {
+        F::halt(&mut self.0).boxed_local()
+    }
+
+    fn must_halt(&self) -> bool {
+        F::must_halt(&self.0)
+    }
+
+    fn planned(&mut self) -> Plan {
+        F::planned(&mut self.0)
+    }
+
+    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
+        F::close(self.0, screen).boxed_local()
+    }
+
+    fn as_any(&mut self) -> &mut dyn Any {
+        &mut self.0
+    }
+}

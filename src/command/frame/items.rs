@@ -1,0 +1,161 @@
+//! The several things that one command asks for or does: each answers for itself, and the exit code for all of them.
+//!
+//! Some failed, some not: exit 9. All failed: the exit code that they have in common, or that of the gravest.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::backup::gravity;
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Tone};
+
+/// Why one of several things failed: `{"asked":"B300","kind":"refused","code":"0xA001","message":…}`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct ItemError {
+    /// What was asked for, as the operator would type it or as the report names it.
+    asked: String,
+    #[serde(flatten)]
+    failure: Failure,
+}
+
+impl ItemError {
+    /// The failure of one thing; its message need not name the thing.
+    pub fn new(asked: impl Into<String>, failure: Failure) -> Self {
+        Self { asked: asked.into(), failure }
+    }
+
+    /// As the failure of a whole command.
+    pub fn failure(&self) -> Failure {
+        let Self { asked, failure } = self;
+        Failure { message: format!("{asked}: {}", failure.message), ..failure.clone() }
+    }
+
+    /// What fits a column.
+    pub fn cell(&self) -> Cell {
+        Cell::from(brief(&self.failure)).tone(Tone::Bad)
+    }
+}
+
+/// What fits a column: the first sentence and the code.
+pub fn brief(failure: &Failure) -> String {
+    let sentence = failure.message.split(". ").next().unwrap_or_default();
+    match &failure.code {
+        Some(code) => format!("{sentence} [{code}]"),
+        None => sentence.to_owned(),
+    }
+}
+
+/// What one of several things came to, beside its name in a report: `{"ok":true, …}` with its data, or
+/// `{"ok":false,"error":{…}}`.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ItemOutcome<T> {
+    /// Whether it was answered, or done.
+    ok: bool,
+    #[serde(flatten)]
+    data: Option<T>,
+    /// Why not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "ItemError")]
+    error: Option<ItemError>,
+}
+
+impl<T> ItemOutcome<T> {
+    /// The outcome of what was asked for.
+    pub fn new(asked: impl Into<String>, outcome: Result<T, Failure>) -> Self {
+        match outcome {
+            Ok(data) => Self { ok: true, data: Some(data), error: None },
+            Err(failure) => Self { ok: false, data: None, error: Some(ItemError::new(asked, failure)) },
+        }
+    }
+
+    /// What there is.
+    pub fn data(&self) -> Option<&T> {
+        self.data.as_ref()
+    }
+
+    /// Why there is nothing.
+    pub fn error(&self) -> Option<&ItemError> {
+        self.error.as_ref()
+    }
+}
+
+/// Why a report of `total` things is not a success; `None` where nothing failed.
+pub fn verdict<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>) -> Option<Failure> {
+    let errors: Vec<&ItemError> = errors.into_iter().collect();
+    let first = *errors.first()?;
+    if total <= 1 {
+        return Some(first.failure());
+    }
+    let kinds = || errors.iter().map(|error| error.failure.kind);
+    let (kind, how_many) = if errors.len() < total {
+        (Kind::Mixed, format!("{} of {total} failed", errors.len()))
+    } else {
+        // Of equally grave ones, the first.
+        (kinds().rev().max_by_key(|kind| gravity(*kind))?, format!("all {total} failed"))
+    };
+    let told = errors.iter().find(|error| error.failure.kind == kind).copied().unwrap_or(first);
+    let has_same_code = errors.iter().all(|error| error.failure.code == told.failure.code);
+    let failure = told.failure();
+    let code = failure.code.filter(|_| has_same_code);
+    Some(Failure { kind, code, message: format!("{how_many}: {}", failure.message), hint: failure.hint })
+}
+
+/// The failure of a command that got nothing, for one and the same reason: there is no report then. Where the reasons
+/// differ, the report has them.
+pub fn nothing<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>) -> Result<(), Failure> {
+    let errors: Vec<&ItemError> = errors.into_iter().collect();
+    let reason = |error: &ItemError| (error.failure.kind, error.failure.code.clone());
+    let is_one = errors.windows(2).all(|pair| reason(pair[0]) == reason(pair[1]));
+    if errors.len() < total || !is_one {
+        return Ok(());
+    }
+    verdict(total, errors).map_or(Ok(()), Err)
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn refused(asked: &str, code: &str) -> ItemError {
+        ItemError::new(asked, Failure::new(Kind::Refused, "the controller refused. Because").code(code).hint("x"))
+    }
+
+    #[test]
+    fn an_outcome_is_its_data_or_its_error() {
+        #[derive(Serialize)]
+        struct Value {
+            value: u8,
+        }
+        let json = |outcome: &ItemOutcome<Value>| serde_json::to_value(outcome).unwrap();
+        assert_eq!(json(&ItemOutcome::new("B0", Ok(Value { value: 1 }))), json!({"ok": true, "value": 1}));
+        let failed = ItemOutcome::new("B300", Err(Failure::new(Kind::Refused, "no").code("0xA001")));
+        let error = json!({"asked": "B300", "kind": "refused", "code": "0xA001", "message": "no"});
+        assert_eq!(json(&failed), json!({"ok": false, "error": error}));
+    }
+
+    #[test]
+    fn some_is_nine_and_all_is_what_they_have_in_common() {
+        let of = |total, errors: &[ItemError]| verdict(total, errors).unwrap();
+        assert_eq!(verdict(3, &[]), None);
+        let some = of(3, &[refused("B300", "0xA001")]);
+        assert_eq!((some.kind.exit(), some.code.as_deref()), (9, Some("0xA001")));
+        assert_eq!(some.message, "1 of 3 failed: B300: the controller refused. Because");
+        let all = of(2, &[refused("B300", "0xA001"), refused("B301", "0x2010")]);
+        assert_eq!((all.kind, all.code), (Kind::Refused, None));
+        let silent = ItemError::new("B301", Failure::new(Kind::NoAnswer, "silence"));
+        let gravest = of(2, &[refused("B300", "0xA001"), silent]);
+        assert_eq!((gravest.kind, gravest.message.as_str()), (Kind::NoAnswer, "all 2 failed: B301: silence"));
+        assert_eq!(of(1, &[refused("B300", "0xA001")]).message, "B300: the controller refused. Because");
+    }
+
+    #[test]
+    fn nothing_for_one_reason_fails_as_a_command() {
+        let one = refused("B300", "0xA001");
+        assert_eq!(nothing(1, [&one]).unwrap_err().message, "B300: the controller refused. Because");
+        assert_eq!(nothing(2, [&one, &one]).unwrap_err().kind, Kind::Refused);
+        assert!(nothing(2, [&one]).is_ok() && nothing(1, []).is_ok());
+        assert!(nothing(2, [&one, &refused("B301", "0x2010")]).is_ok(), "the report has both reasons");
+    }
+}

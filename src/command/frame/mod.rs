@@ -1,0 +1,34 @@
+//! What runs every command.
+//!
+//! A command is a struct of its arguments that implements [`Command`]; a noun with verbs is a clap enum. Both are
+//! [`CommandSet`]s, and a line in the family's `commands!` list makes them part of the tool: command line, help, man page,
+//! completion and schema follow from it.
+
+pub mod attach;
+pub mod authority;
+pub mod background;
+pub mod batch;
+pub mod command;
+pub mod command_set;
+pub mod connection;
+pub mod dry_run;
+pub mod interrupt;
+pub mod items;
+mod kind;
+pub mod local;
+pub mod orders;
+pub mod repl;
+pub mod report;
+pub mod run;
+pub mod script_line;
+pub mod session_manager;
+#[cfg(test)]
+pub mod testing;
+pub mod trace;
+
+pub use command::{AnyCommand, AnyContext, Command, Context};
+pub(crate) use command_set::commands;
+pub use command_set::{CommandSet, Offline, OfflineCommand, Subcommands};
+pub use connection::{Access, ConnectMode, Connection, Entry, Family};
+pub use kind::ValueKind;
+pub use report::{AnyReport, Outcome, Report, SchemaEntry};

@@ -1,0 +1,476 @@
+//! The one loop that every robot command goes through: choose robots, pass the gate, run, report, repeat.
+
+mod print;
+mod rounds;
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use futures_util::StreamExt as _;
+use futures_util::stream;
+use tokio::time::timeout_at;
+
+use self::print::{Place, timed};
+pub use self::rounds::Repeat;
+use self::rounds::Rounds;
+use super::authority::{self, Authority};
+use super::background;
+use super::command::{AnyCommand, AnyContext};
+use super::connection::{Access, Connection, Entry};
+use super::dry_run::{Plan, is_end};
+use super::interrupt::{catch_interrupts, interruptible};
+use super::report::Outcome;
+use super::script_line::Line;
+use crate::controller::Risk;
+use crate::failure::{Failure, Kind};
+use crate::gate::{Confirmation, Gate, Grant, Intent, OnInterrupt};
+use crate::output::Screen;
+use crate::output::envelope::Envelope;
+use crate::output::jq::{Filter, after_a_change};
+use crate::output::redraw::Redraw;
+use crate::settings::{Robot, Sessions, Sources};
+
+/// What the command line says about how to run a command.
+#[derive(Debug)]
+pub struct Run {
+    /// Where to write.
+    pub screen: Screen,
+    /// Which robots, and their settings.
+    pub sources: Sources,
+    /// What is allowed.
+    pub gate: Gate,
+    /// How often.
+    pub repeat: Repeat,
+    /// `--jq`.
+    pub filter: Option<Filter>,
+    /// `--trace`.
+    pub trace: Option<PathBuf>,
+    /// What is around it, where it is one of several lines.
+    pub line: Option<Line>,
+    /// What a watch has on the screen.
+    pub redraw: Redraw,
+    /// `--unit`: the robot of the controller that commands are for.
+    pub unit: u8,
+}
+
+/// A failure on its way to stderr, with what the envelope needs to know.
+#[derive(Debug)]
+pub struct RunError {
+    /// What happened.
+    pub failure: Failure,
+    /// To whom, in doing what.
+    pub envelope: Option<Box<Envelope>>,
+    /// The report on stdout tells it already: only the exit code is left.
+    pub told: bool,
+}
+
+impl From<Failure> for RunError {
+    fn from(failure: Failure) -> Self {
+        Self { failure, envelope: None, told: false }
+    }
+}
+
+impl RunError {
+    fn at(robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Self {
+        let envelope = Some(Box::new(Envelope::of(robot, command.id(), Err(failure.clone()))));
+        Self { failure, envelope, told: false }
+    }
+}
+
+/// Pause between runs where only a condition or a count is given.
+const EVERY: Duration = Duration::from_secs(1);
+/// Robots talked to at the same time: enough that a plant of which half is switched off takes one wait for an answer, and
+/// no more than the files that a process may have open where that is least, 256.
+const PARALLEL: usize = 128;
+
+impl Run {
+    /// Runs `command` on the robots it is for, and reports.
+    pub async fn robots(&self, command: &dyn AnyCommand) -> Result<(), RunError> {
+        if let Some(outcome) = command.without_robot(&self.screen) {
+            return self.local(command.id(), &*outcome?);
+        }
+        let mut robots = self.chosen(command)?;
+        let asks = |robot: &Robot| {
+            let intent = self.intent(command, robot);
+            intent.risk == Risk::Motion || intent.confirmation != Confirmation::Question
+        };
+        if robots.iter().any(asks) {
+            // From here on Ctrl-C, at a question too, ends in a message and an exit code instead of a killed process.
+            catch_interrupts();
+            for robot in &robots {
+                self.check_model(command, robot).await.map_err(|failure| RunError::at(robot, command, failure))?;
+            }
+        }
+        for robot in &robots {
+            let intent = self.intent(command, robot);
+            let passed = authority::pass(self.gate, &self.screen, robot, &intent).await;
+            passed.map_err(|failure| RunError::at(robot, command, failure))?;
+        }
+        for robot in robots.iter_mut().filter(|robot| self.opens_session(command, robot)) {
+            let opened = background::open_for(robot, self.sources.inventory.path.as_deref(), &self.screen).await;
+            opened.map_err(|failure| RunError::at(robot, command, failure))?;
+            robot.sessions = Sessions::Only;
+        }
+        self.begin_trace()?;
+        match &robots[..] {
+            [robot] if !self.sources.selection.is_plural() => self.one(command, robot).await,
+            robots => self.many(command, robots).await,
+        }
+    }
+
+    /// The robots that a command is for, if it can be for these.
+    fn chosen(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, Failure> {
+        if command.intent(None).risk > Risk::Read && self.repeat.is_wanted() {
+            return Err(Failure::usage("--watch, --count and --until repeat commands that only read")
+                .hint("run this command once, and watch `status` or `position`"));
+        }
+        if command.moves_until_stopped() && !self.gate.dry_run && !self.screen.can_interrupt() {
+            return Err(Failure::usage("nothing would end this motion: there is no terminal for Ctrl-C")
+                .hint("add --for TIME, such as --for 500ms"));
+        }
+        let mut robots = self.sources.robots(command.family())?;
+        for robot in &mut robots {
+            // A session that ends meanwhile must not leave the way that nobody was asked about.
+            if !self.gate.dry_run && command.entry(robot) == Entry::ThroughSession {
+                robot.sessions = Sessions::Only;
+            }
+        }
+        if command.is_endless() && robots.len() > 1 {
+            return Err(Failure::usage("this watches one robot at a time").hint("name one with -r"));
+        }
+        let intents: Vec<_> = robots.iter().map(|robot| (robot, self.intent(command, robot))).collect();
+        Gate::pass_many(&intents, |robot| self.sources.selection.robots.contains(&robot.name))?;
+        Ok(robots)
+    }
+
+    /// Whether a session is to be opened for what a command does, because the robot's entry says so.
+    fn opens_session(&self, command: &dyn AnyCommand, robot: &Robot) -> bool {
+        let is_wanted = robot.hold.value && !robot.read_only.value && robot.sessions == Sessions::Shared;
+        is_wanted
+            && !self.gate.dry_run
+            && !command.intent(Some(robot)).is_stop
+            && matches!(command.entry(robot), Entry::Stops(_))
+    }
+
+    /// What the gate is told of a command for a robot: what it does, and what its connection does.
+    fn intent(&self, command: &dyn AnyCommand, robot: &Robot) -> Intent {
+        let intent = command.intent(Some(robot)).of_unit(self.unit);
+        let is_free = self.gate.dry_run || intent.is_stop || self.opens_session(command, robot);
+        let entry = if is_free { Entry::Harmless } else { command.entry(robot) };
+        let Entry::Stops(entry) = entry else { return intent };
+        // What asks by itself, later, says then what it does; whatever else needs a yes says it in this question.
+        let (asks, confirmation) = match intent.confirmation {
+            Confirmation::Word(_) => (true, intent.confirmation),
+            Confirmation::Question => (intent.risk >= Risk::Destroy, Confirmation::Question),
+            Confirmation::WhenKnown => (intent.risk == Risk::Motion, Confirmation::Question),
+        };
+        let text = if asks { format!("{}, and {entry}", intent.text) } else { entry };
+        Intent { risk: Risk::Motion, text, confirmation, ..intent }
+    }
+
+    /// Finds what is refused without asking anybody: robots that are not there, a gate that stays closed.
+    pub fn check_gate(&self, command: &dyn AnyCommand) -> Result<(), Failure> {
+        if !command.takes_robot() {
+            return Ok(());
+        }
+        let robots = self.chosen(command)?;
+        let mut asked = robots.iter().map(|robot| (robot, self.intent(command, robot)));
+        asked.try_for_each(|(robot, intent)| self.gate.must_ask(&self.screen, robot, &intent).map(|_| ()))
+    }
+
+    async fn one(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), RunError> {
+        if (self.repeat.is_wanted() || command.is_endless()) && !self.gate.dry_run {
+            return self.watch(command, robot).await;
+        }
+        let report = self.once(command, robot).await.map_err(|failure| RunError::at(robot, command, failure))?;
+        let printed = self.print(robot, command.id(), &*report, Place::Alone);
+        match report.failure() {
+            // A reader that went away, or a full disk behind stdout, does not turn a failure into something else.
+            Some(failure) => {
+                let told = printed.is_ok() && !self.is_for_people();
+                Err(RunError { failure, envelope: None, told })
+            }
+            None => Ok(printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?),
+        }
+    }
+
+    /// A failure to report what was done: nobody should do it again for that.
+    fn unprinted(&self, risk: Risk, failure: Failure) -> Failure {
+        if risk == Risk::Read || failure.kind == Kind::PipeClosed || self.gate.dry_run {
+            return failure;
+        }
+        after_a_change(failure)
+    }
+
+    /// Repeats a reading command over one connection.
+    async fn watch(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), RunError> {
+        let stopped = |failure| RunError::at(robot, command, failure);
+        let (mut link, _) = self.connect(command, robot).await.map_err(stopped)?;
+        let watched = self.watch_over(command, robot, &mut *link).await;
+        let closed = link.close(&self.screen).await;
+        watched?;
+        closed.map_err(stopped)
+    }
+
+    async fn watch_over(
+        &self,
+        command: &dyn AnyCommand,
+        robot: &Robot,
+        link: &mut dyn Connection,
+    ) -> Result<(), RunError> {
+        let stopped = |failure| RunError::at(robot, command, failure);
+        let mut rounds = Rounds::new(&self.repeat, if command.is_endless() { Duration::ZERO } else { EVERY });
+        loop {
+            let grant = Grant::of(Risk::Read);
+            let attempt = self.attempt(command, robot, link, &grant);
+            let attempted = match rounds.deadline().filter(|_| command.is_endless()) {
+                Some(deadline) => timeout_at(deadline, attempt).await,
+                None => Ok(attempt.await),
+            };
+            let Ok(outcome) = attempted else { return rounds.end().map_err(stopped) };
+            let silence = match outcome {
+                Ok(report) => {
+                    let place = self.round(rounds.is_first(), command.is_endless());
+                    self.print(robot, command.id(), &*report, place)?;
+                    if rounds.is_met(&Envelope::of(robot, command.id(), report.data()))? {
+                        return Ok(());
+                    }
+                    None
+                }
+                // A robot that is silent for a while is what one watches for; anything else ends the watch.
+                Err(failure) if failure.kind == Kind::NoAnswer => {
+                    if self.is_for_people() {
+                        self.screen.failure(&failure);
+                        self.redraw.forget();
+                    } else {
+                        self.emit(timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
+                    }
+                    Some(failure)
+                }
+                Err(failure) => return Err(self.broken_off(robot, command, failure)?),
+            };
+            if !rounds.next().await.map_err(stopped)? {
+                return match silence {
+                    Some(failure) => Err(RunError { failure, envelope: None, told: true }),
+                    None => rounds.end().map_err(stopped),
+                };
+            }
+        }
+    }
+
+    /// A failure that ends a watch: in a stream for programs it stands in its place on stdout.
+    fn broken_off(&self, robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Result<RunError, Failure> {
+        if self.is_for_people() || failure.kind == Kind::Interrupted {
+            return Ok(RunError::at(robot, command, failure));
+        }
+        self.emit(timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
+        Ok(RunError { failure, envelope: None, told: true })
+    }
+
+    /// Runs on several robots at a time, over a connection each, and reports in the order they were named.
+    async fn many(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
+        if self.gate.dry_run || !self.repeat.is_wanted() {
+            let outcomes = at_a_time(robots.iter().map(|robot| self.once(command, robot))).await;
+            let printed = self.print_many(command.id(), robots, &outcomes, Place::First);
+            printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
+            return self.verdict(&outcomes);
+        }
+        let mut links = at_a_time(robots.iter().map(|robot| self.connect(command, robot))).await;
+        let verdict = self.many_over(command, robots, &mut links).await;
+        let mut closed = Ok(());
+        for (link, _) in links.into_iter().flatten() {
+            closed = closed.and(link.close(&self.screen).await);
+        }
+        verdict?;
+        Ok(closed?)
+    }
+
+    async fn many_over(
+        &self,
+        command: &dyn AnyCommand,
+        robots: &[Robot],
+        links: &mut [Result<(Box<dyn Connection>, Grant), Failure>],
+    ) -> Result<(), RunError> {
+        let mut rounds = Rounds::new(&self.repeat, EVERY);
+        loop {
+            let attempts = robots.iter().zip(&mut *links).map(|(robot, link)| async move {
+                match link {
+                    Ok((link, grant)) => self.attempt(command, robot, &mut **link, grant).await,
+                    Err(failure) => Err(failure.clone()),
+                }
+            });
+            let outcomes = at_a_time(attempts).await;
+            let place = self.round(rounds.is_first(), false);
+            let envelopes = self.print_many(command.id(), robots, &outcomes, place)?;
+            if rounds.is_met(&envelopes)? {
+                return Ok(());
+            }
+            if !rounds.next().await? {
+                self.verdict(&outcomes)?;
+                return rounds.end().map_err(RunError::from);
+            }
+        }
+    }
+
+    /// What the outcomes of several robots come to.
+    fn verdict(&self, outcomes: &[Outcome]) -> Result<(), RunError> {
+        let failures: Vec<Failure> = outcomes
+            .iter()
+            .filter_map(|outcome| outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |r| r.failure()))
+            .collect();
+        let Some(first) = failures.first() else { return Ok(()) };
+        let failure = if failures.len() == outcomes.len() && failures.iter().all(|failure| failure.kind == first.kind) {
+            Failure::new(first.kind, "every robot failed")
+        } else {
+            Failure::new(Kind::Mixed, format!("{} of {} robots failed", failures.len(), outcomes.len()))
+        };
+        Err(RunError { failure, envelope: None, told: !self.is_for_people() })
+    }
+
+    /// One connection, one run.
+    async fn once(&self, command: &dyn AnyCommand, robot: &Robot) -> Outcome {
+        if self.gate.dry_run {
+            return Ok(Box::new(self.plan(command, robot, &self.screen).await?.into_report()));
+        }
+        let (mut link, grant) = self.connect(command, robot).await?;
+        let outcome = self.attempt(command, robot, &mut *link, &grant).await;
+        // What became of the command is worth more than what became of the record of it.
+        let closed = link.close(&self.screen).await;
+        let report = outcome?;
+        closed.map_err(|failure| Failure { message: format!("it was done, but {}", failure.message), ..failure })?;
+        Ok(report)
+    }
+
+    async fn connect(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(Box<dyn Connection>, Grant), Failure> {
+        let access = self.access(command, robot);
+        let grant = access.granted.clone();
+        let access = match &self.line {
+            Some(line) => line.connecting(robot, access, &self.screen).await?,
+            None => access,
+        };
+        let link = interruptible(command.connect(robot, access, &self.screen)).await??;
+        Ok((link, grant))
+    }
+
+    /// How a command may use its link when it begins.
+    fn access(&self, command: &dyn AnyCommand, robot: &Robot) -> Access {
+        Access {
+            granted: Grant::of(command.intent(Some(robot)).granted_at_first()),
+            dry_run: self.gate.dry_run,
+            trace: self.trace.clone(),
+            mode: command.connect_mode(),
+            typed: None,
+            unit: self.unit,
+        }
+    }
+
+    fn context<'a>(
+        &'a self,
+        command: &dyn AnyCommand,
+        robot: &'a Robot,
+        connection: &'a mut dyn Connection,
+        (screen, grant): (&'a Screen, &Grant),
+    ) -> AnyContext<'a> {
+        let most = command.intent(Some(robot)).risk;
+        let authority = Authority::new(self.gate, screen, robot, most, grant.clone());
+        AnyContext { robot, connection, screen, several: self.sources.selection.is_plural(), authority }
+    }
+
+    /// One run. Ctrl-C during a motion stops the robot first.
+    async fn attempt(
+        &self,
+        command: &dyn AnyCommand,
+        robot: &Robot,
+        link: &mut dyn Connection,
+        grant: &Grant,
+    ) -> Outcome {
+        let risk = command.intent(Some(robot)).risk;
+        let context = self.context(command, robot, link, (&self.screen, grant));
+        match interruptible(command.run(context)).await {
+            Ok(outcome) => outcome,
+            Err(_) if risk == Risk::Motion && (self.gate.on_interrupt == OnInterrupt::Stop || link.must_halt()) => {
+                Err(match link.halt().await {
+                    Ok(done) => Failure::new(Kind::Interrupted, done),
+                    Err(failure) => Failure::new(Kind::Interrupted, format!("the robot may still move: {failure}"))
+                        .hint("use the pendant or the emergency stop if it must not"),
+                })
+            }
+            Err(interrupt) if risk == Risk::Motion => Err(Failure {
+                message: format!("{}: left as it is; what was started goes on", interrupt.message),
+                ..interrupt
+            }),
+            Err(interrupt) if risk > Risk::Read => Err(Failure {
+                message: format!("{}; what was sent may have been done, in whole or in part", interrupt.message),
+                ..interrupt
+            }
+            .hint("look before you repeat it, with the command that reads what this one writes")),
+            Err(interrupt) => Err(interrupt),
+        }
+    }
+
+    /// What `command` would send: it runs to its end against a link that takes notes and has no answers.
+    async fn plan(&self, command: &dyn AnyCommand, robot: &Robot, screen: &Screen) -> Result<Plan, Failure> {
+        let access = Access { dry_run: true, ..self.access(command, robot) };
+        let grant = access.granted.clone();
+        let mut link = command.connect(robot, access, screen).await?;
+        let gate = Gate { dry_run: true, ..self.gate };
+        let several = self.sources.selection.is_plural();
+        let authority = Authority::new(gate, screen, robot, command.intent(Some(robot)).risk, grant);
+        let ended = command.run(AnyContext { robot, connection: &mut *link, screen, several, authority }).await;
+        match ended {
+            Err(failure) if !is_end(&failure) => Err(failure),
+            Ok(_) | Err(_) => Ok(link.planned()),
+        }
+    }
+
+    /// Finds before anybody is asked what this controller's model cannot do: nobody should clear a cell for a mistyped
+    /// command. Simulators ask nobody, and may be of another model than their settings say.
+    async fn check_model(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), Failure> {
+        if self.gate.dry_run || robot.target.value.is_simulated() {
+            return Ok(());
+        }
+        self.plan(command, robot, &self.screen.silenced()).await.map(|_| ())
+    }
+
+    /// Empties the file of `--trace`, to which every connection of this command then appends. Of several lines the first
+    /// one has done it.
+    pub fn begin_trace(&self) -> Result<(), Failure> {
+        begin_trace(self.trace.as_deref().filter(|_| !self.gate.dry_run && self.line.is_none()))
+    }
+}
+
+/// Empties the file of `--trace`; `-` is none.
+pub fn begin_trace(file: Option<&Path>) -> Result<(), Failure> {
+    match file.filter(|path| path.as_os_str() != "-") {
+        Some(path) => std::fs::File::create(path).map(|_| ()).map_err(|error| Failure::io(path.display(), &error)),
+        None => Ok(()),
+    }
+}
+
+/// Does the work of all robots, of so many at the same time, and gives what came of it in their order. One that waits long
+/// holds up nobody but itself.
+async fn at_a_time<T>(work: impl Iterator<Item = impl Future<Output = T>>) -> Vec<T> {
+    let numbered = work.enumerate().map(|(number, work)| async move { (number, work.await) });
+    let mut done: Vec<(usize, T)> = stream::iter(numbered).buffer_unordered(PARALLEL).collect().await;
+    done.sort_unstable_by_key(|(number, _)| *number);
+    done.into_iter().map(|(_, came)| came).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test(start_paused = true)]
+    async fn a_fleet_takes_as_long_as_its_slowest() {
+        // As many as half a plant that is switched off do not answer, here and there among the others.
+        let silent = |robot: usize| robot.is_multiple_of(2);
+        let ask = |robot| async move {
+            tokio::time::sleep(Duration::from_millis(if silent(robot) { 2000 } else { 10 })).await;
+            robot
+        };
+        let start = tokio::time::Instant::now();
+        let robots = at_a_time((0..200).map(ask)).await;
+        assert!(robots.is_sorted() && robots.len() == 200);
+        assert!(start.elapsed() < Duration::from_millis(2100), "{:?}", start.elapsed());
+    }
+}

@@ -1,0 +1,212 @@
+//! What a run writes on stdout: views for people, envelopes for programs.
+
+use jiff::Timestamp;
+use serde::Serialize;
+use serde_json::Value;
+
+use super::{Run, RunError};
+use crate::command::frame::{AnyReport, Outcome};
+use crate::failure::Failure;
+use crate::output::envelope::Envelope;
+use crate::output::view::{Table, View};
+use crate::output::{Format, escape, render};
+use crate::settings::Robot;
+
+/// Where a report stands among others.
+#[derive(Debug, Clone, Copy)]
+pub enum Place<'a> {
+    /// The only one.
+    Alone,
+    /// The first of a watch.
+    First,
+    /// A later one of a watch.
+    Next,
+    /// One of several robots.
+    Among { robot: &'a Robot, first: bool },
+}
+
+impl Run {
+    /// Writes the envelope of a line that has failed in its place among those of the others; `false` for people, who
+    /// read of it elsewhere.
+    pub fn report_failure(&self, stopped: &RunError) -> Result<bool, Failure> {
+        if self.is_for_people() {
+            return Ok(false);
+        }
+        let envelope = stopped.envelope.as_deref().cloned();
+        self.emit(self.of_stream(envelope.unwrap_or_else(|| Envelope::failed(None, stopped.failure.clone()))))?;
+        Ok(true)
+    }
+
+    /// Reports what a command without a robot has to say.
+    pub fn local(&self, id: &str, report: &dyn AnyReport) -> Result<(), RunError> {
+        let failure = report.failure();
+        if self.is_for_people() {
+            self.show(&report.view(), Place::Alone)?;
+        } else {
+            let envelope = Envelope::local(id, report.data()?);
+            let envelope = Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope };
+            self.emit(self.of_stream(envelope))?;
+        }
+        failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: !self.is_for_people() }))
+    }
+
+    /// Writes what several robots reported, and says it as envelopes.
+    pub(super) fn print_many(
+        &self,
+        id: &str,
+        robots: &[Robot],
+        outcomes: &[Outcome],
+        place: Place<'_>,
+    ) -> Result<Vec<Envelope>, Failure> {
+        let envelopes = robots
+            .iter()
+            .zip(outcomes)
+            .map(|(robot, outcome)| enveloped(robot, id, outcome.as_ref().map(AsRef::as_ref).map_err(Clone::clone)));
+        let envelopes: Vec<Envelope> = envelopes.collect::<Result<_, _>>()?;
+        if !self.is_for_people() {
+            if self.screen.format == Format::Jsonl {
+                envelopes.iter().try_for_each(|envelope| self.emit(timed(envelope.clone())))?;
+            } else {
+                self.write(&envelopes.iter().cloned().map(|envelope| self.marked(envelope)).collect::<Vec<_>>())?;
+            }
+            return Ok(envelopes);
+        }
+        let mut views = Vec::new();
+        let mut reasons = Vec::new();
+        for (robot, outcome) in robots.iter().zip(outcomes) {
+            match outcome {
+                Ok(report) => {
+                    views.push((robot, report.view()));
+                    reasons.extend(report.failure().map(|failure| (robot, failure)));
+                }
+                Err(failure) => reasons.push((robot, failure.clone())),
+            }
+        }
+        self.show_many(&views, place)?;
+        for (robot, failure) in reasons {
+            // Failures of the link name the robot already.
+            let label = robot.label();
+            self.redraw.forget();
+            let is_named = failure.message.starts_with(&label);
+            let message = if is_named { failure.message } else { format!("{label}: {}", failure.message) };
+            self.screen.failure(&Failure { message, ..failure });
+        }
+        Ok(envelopes)
+    }
+
+    /// Tables of the same columns become one, with the robot in front; other views stand below each other.
+    fn show_many(&self, views: &[(&Robot, View)], place: Place<'_>) -> Result<(), Failure> {
+        let tables = views.iter().map(|(robot, view)| Some((robot.name.as_str(), view.as_table()?)));
+        match tables.collect::<Option<Vec<_>>>().and_then(|tables| Table::joined("robot", &tables)) {
+            Some(table) => self.show(&View::table(table), place),
+            None => views
+                .iter()
+                .enumerate()
+                .try_for_each(|(index, (robot, view))| self.show(view, Place::Among { robot, first: index == 0 })),
+        }
+    }
+
+    /// Whether reports are shown as views: tables, or CSV.
+    pub fn is_for_people(&self) -> bool {
+        self.filter.is_none() && matches!(self.screen.format, Format::Table | Format::Csv)
+    }
+
+    pub(super) fn print(
+        &self,
+        robot: &Robot,
+        id: &str,
+        report: &dyn AnyReport,
+        place: Place<'_>,
+    ) -> Result<(), Failure> {
+        if self.is_for_people() {
+            return self.show(&report.view(), place);
+        }
+        let envelope = enveloped(robot, id, Ok(report))?;
+        let is_stream = self.screen.format == Format::Jsonl || !matches!(place, Place::Alone);
+        self.emit(if is_stream { timed(envelope) } else { envelope })
+    }
+
+    /// The envelope with the time, in a format that is a stream.
+    fn of_stream(&self, envelope: Envelope) -> Envelope {
+        if self.screen.format == Format::Jsonl { timed(envelope) } else { envelope }
+    }
+
+    /// Begins a round of a watch: what it shows replaces the round before, on a terminal that can; what is told one after
+    /// the other stays.
+    pub(super) fn round(&self, is_first: bool, stays: bool) -> Place<'static> {
+        if !stays && self.screen.can_replace() && self.is_for_people() {
+            self.redraw.begin();
+        }
+        if is_first { Place::First } else { Place::Next }
+    }
+
+    /// Writes an envelope.
+    pub(super) fn emit(&self, envelope: Envelope) -> Result<(), Failure> {
+        self.write(&self.marked(envelope))
+    }
+
+    fn marked(&self, envelope: Envelope) -> Envelope {
+        match &self.line {
+            Some(line) => line.marked(envelope),
+            None => envelope,
+        }
+    }
+
+    /// Writes JSON, or what the filter makes of it: strings as they are, the rest as JSON, a line each.
+    fn write(&self, value: &impl Serialize) -> Result<(), Failure> {
+        let value = match &self.line {
+            Some(line) => line.pass(as_value(value)?),
+            None if self.filter.is_none() => return self.screen.json(value),
+            None => Some(as_value(value)?),
+        };
+        let Some(value) = value else { return Ok(()) };
+        let Some(filter) = &self.filter else { return self.screen.json(&value) };
+        filter.apply(&value, |value| match value {
+            Value::String(text) => self.screen.data(&format!("{}\n", escape::lines(&text))),
+            value => self.screen.json(&value),
+        })
+    }
+
+    fn show(&self, view: &View, place: Place<'_>) -> Result<(), Failure> {
+        let screen = &self.screen;
+        let is_csv = screen.format == Format::Csv;
+        let text = match place {
+            _ if is_csv => {
+                let robot = if let Place::Among { robot, .. } = place { Some(robot.name.as_str()) } else { None };
+                let csv = render::csv(view, robot);
+                let has_header = matches!(place, Place::Alone | Place::First | Place::Among { first: true, .. });
+                if has_header { csv } else { csv.split_once('\n').map_or(String::new(), |(_, rows)| rows.to_owned()) }
+            }
+            _ => {
+                let text = render::text(view, screen.width(), screen.stdout_color());
+                match place {
+                    Place::Alone | Place::First => text,
+                    Place::Next if self.redraw.is_on() => text,
+                    Place::Next => format!("\n{text}"),
+                    Place::Among { robot, first } => {
+                        format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(&robot.label()))
+                    }
+                }
+            }
+        };
+        screen.data(&self.redraw.over(text))
+    }
+}
+
+pub fn enveloped(robot: &Robot, id: &str, outcome: Result<&dyn AnyReport, Failure>) -> Result<Envelope, Failure> {
+    let report = match outcome {
+        Err(failure) => return Ok(Envelope::of(robot, id, Err(failure))),
+        Ok(report) => report,
+    };
+    let failure = report.failure();
+    let envelope = Envelope::of(robot, id, Ok(report.data()?));
+    Ok(Envelope { ok: failure.is_none(), error: failure.map(Into::into), ..envelope })
+}
+
+pub fn timed(envelope: Envelope) -> Envelope {
+    Envelope { time: Some(Timestamp::now()), ..envelope }
+}
+
+pub fn as_value(value: &impl Serialize) -> Result<Value, Failure> {
+    serde_json::to_value(value).map_err(|error| Failure::local(format!("report as JSON: {error}")))
+}

@@ -1,0 +1,160 @@
+//! `--trace` and `-vv`: what goes over the line, as text and as a capture file. Each family has words of its own for it.
+
+use std::io;
+use std::net::SocketAddr;
+use std::path::Path;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use super::connection::Access;
+use crate::controller::text::hex;
+use crate::failure::{Failure, plain};
+use crate::output::Screen;
+use crate::transport::tap::{CaptureWriter, Direction};
+
+/// Where traffic is recorded beside being sent.
+#[derive(Debug)]
+pub struct Trace {
+    screen: Screen,
+    /// Text on stderr: 0 nothing, 1 a line a frame, 2 the bytes too.
+    level: u8,
+    capture: Option<CaptureWriter>,
+    /// Lines of text that wait to be written.
+    held: Option<Vec<String>>,
+    /// Why the record is not whole.
+    broken: Option<Failure>,
+}
+
+impl Trace {
+    /// Of packets with addresses, as flags want it; a capture file is made at once.
+    pub fn of_network(access: &Access, screen: &Screen) -> Result<Self, Failure> {
+        Self::open(access, screen, CaptureWriter::append)
+    }
+
+    /// The same of whole packets of a kind, by its number in capture files.
+    pub fn of_packets(access: &Access, screen: &Screen, link_type: u16) -> Result<Self, Failure> {
+        Self::open(access, screen, |path| CaptureWriter::append_packets(path, link_type))
+    }
+
+    /// The same of lines without addresses.
+    pub fn of_lines(access: &Access, screen: &Screen) -> Result<Self, Failure> {
+        Self::open(access, screen, CaptureWriter::append_streams)
+    }
+
+    fn open(
+        access: &Access,
+        screen: &Screen,
+        begin: impl Fn(&Path) -> io::Result<CaptureWriter>,
+    ) -> Result<Self, Failure> {
+        let mut level = screen.verbosity.saturating_sub(1);
+        let capture = match access.trace.as_deref() {
+            Some(path) if path == Path::new("-") => {
+                level = level.max(2);
+                None
+            }
+            Some(path) if !access.dry_run => Some(begin(path).map_err(|error| Failure::io(path.display(), &error))?),
+            _ => None,
+        };
+        Ok(Self { screen: *screen, level, capture, held: None, broken: None })
+    }
+
+    /// How much text is wanted: 0 nothing, 1 a line a frame, 2 the bytes too.
+    pub fn level(&self) -> u8 {
+        self.level
+    }
+
+    /// Writes a line of text.
+    pub fn line(&mut self, direction: Direction, text: &str) {
+        let line = format!("{} {text}", direction.arrow());
+        match &mut self.held {
+            Some(held) => held.push(line),
+            None => self.screen.note(&line),
+        }
+    }
+
+    /// Writes a line of text, and its bytes where they are wanted.
+    pub fn message(&mut self, direction: Direction, text: &str, bytes: &[u8]) {
+        if self.level > 1 {
+            self.line(direction, &format!("{text}\n   {}", hex(bytes)));
+        } else {
+            self.line(direction, text);
+        }
+    }
+
+    /// Writes no text until [`Trace::release`]: stderr can block for as long as nobody reads it.
+    pub fn hold(&mut self) {
+        self.held.get_or_insert_default();
+    }
+
+    /// Writes what was held.
+    pub fn release(&mut self) {
+        for line in self.held.take().unwrap_or_default() {
+            self.screen.note(&line);
+        }
+    }
+
+    /// Adds a datagram to the capture file; of the two addresses, the own one is first.
+    pub fn datagram(&mut self, direction: Direction, ends: (SocketAddr, SocketAddr), bytes: &[u8]) {
+        let (from, to) = in_order(direction, ends);
+        self.capture(|capture, time| capture.datagram(time, from, to, bytes));
+    }
+
+    /// Adds a piece of a stream to the capture file: of TCP between two addresses, the own one first, or of a line.
+    pub fn piece(&mut self, direction: Direction, ends: Option<(SocketAddr, SocketAddr)>, bytes: &[u8]) {
+        self.capture(|capture, time| match ends.map(|ends| in_order(direction, ends)) {
+            Some((from, to)) => capture.segment(time, from, to, bytes),
+            None => capture.line(time, direction, bytes),
+        });
+    }
+
+    /// Adds to the capture file, with the time. A full disk ends the record, not the conversation: a robot may be moving.
+    pub fn capture(&mut self, add: impl FnOnce(&mut CaptureWriter, Duration) -> io::Result<()>) {
+        let Some(capture) = &mut self.capture else { return };
+        if let Err(error) = add(capture, now()) {
+            self.capture = None;
+            self.broken = Some(not_whole(&plain(&error)));
+        }
+    }
+
+    /// Tells whether the record is whole.
+    pub fn finish(&mut self) -> Result<(), Failure> {
+        self.broken.take().map_or(Ok(()), Err)
+    }
+}
+
+/// Sender and receiver.
+fn in_order(direction: Direction, (own, other): (SocketAddr, SocketAddr)) -> (SocketAddr, SocketAddr) {
+    match direction {
+        Direction::Sent => (own, other),
+        Direction::Received => (other, own),
+    }
+}
+
+/// The time that is recorded, since 1970.
+pub fn now() -> Duration {
+    SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default()
+}
+
+/// The failure of a record.
+pub fn not_whole(why: &str) -> Failure {
+    Failure::local(format!("the record of --trace is not whole: {why}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::ConnectMode;
+    use crate::output::{ColorChoice, Format};
+
+    #[test]
+    fn text_waits_while_it_is_held() {
+        let access = Access::reading(ConnectMode::Control);
+        let screen = Screen::new(Format::Json, ColorChoice::Never, true, 2);
+        let mut trace = Trace::of_lines(&access, &screen).unwrap();
+        trace.hold();
+        trace.line(Direction::Sent, "@HSON");
+        trace.message(Direction::Received, "@OK", b"@OK\r\n");
+        assert_eq!(trace.held.as_deref(), Some(&["-> @HSON".to_owned(), "<- @OK".to_owned()][..]));
+        trace.release();
+        assert_eq!(trace.held, None);
+    }
+}

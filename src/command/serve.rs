@@ -1,0 +1,127 @@
+//! Simulators as servers on real sockets and ports: what is the same for all families. `FAMILY/serve.rs` has the rest;
+//! `armctl sim` brings both together.
+
+use std::io;
+use std::net::{IpAddr, SocketAddr};
+
+use schemars::JsonSchema;
+use serde::Serialize;
+use tokio::io::{AsyncBufReadExt as _, BufReader, Lines, Stdin};
+
+use super::frame::interrupt::interruptible;
+use super::frame::run::{Run, RunError};
+use super::{Report, SchemaEntry};
+use crate::failure::{Failure, Kind, plain};
+use crate::output::view::View;
+
+/// The arguments of `armctl sim FAMILY`.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Serve: Sized {
+    /// `sim.yerc`: its name in envelopes and schemas.
+    const ID: &'static str;
+    /// Says how to reach the simulator.
+    type Report: Report + 'static;
+    /// The simulator.
+    type Server: Server;
+
+    /// Begins to listen.
+    async fn start(self) -> Result<Started<Self>, Failure>;
+}
+
+/// A simulator that listens.
+#[derive(Debug)]
+pub struct Started<S: Serve> {
+    /// How to reach it.
+    pub report: S::Report,
+    /// The simulator.
+    pub server: S::Server,
+    /// Where others may come from; none for a terminal.
+    pub address: Option<SocketAddr>,
+    /// Whether lines on stdin are for it.
+    pub with_console: bool,
+}
+
+/// A simulator behind what clients connect to.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Server {
+    /// Serves until something arrives or is due, and all that follows from it. The future may be dropped.
+    async fn turn(&mut self) -> io::Result<()>;
+    /// Does what a line of the console says, and tells what was done, or why not.
+    fn console(&mut self, line: &str) -> Result<String, String>;
+}
+
+/// The schema of what is said of a simulator that listens.
+pub fn schema<S: Serve>() -> SchemaEntry {
+    SchemaEntry::of::<S::Report>(S::ID)
+}
+
+/// A simulator that listens.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Serving {
+    /// Its family.
+    pub family: &'static str,
+    /// The URL to reach it by.
+    pub target: String,
+}
+
+impl Report for Serving {
+    fn view(&self) -> View {
+        View::text(format!("{} at {}", self.family, self.target))
+    }
+}
+
+/// Starts a simulator, says where, and serves it until Ctrl-C.
+pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
+    let Started { report, mut server, address, with_console } = arguments.start().await?;
+    run.local(S::ID, &report)?;
+    if address.is_some_and(|address| !address.ip().is_loopback()) {
+        run.screen.note("warning: others on the network can reach this simulator");
+    }
+    let mut console = with_console.then(|| BufReader::new(tokio::io::stdin()).lines());
+    loop {
+        let turn = interruptible(async {
+            tokio::select! {
+                turned = server.turn() => turned.map(|()| None).map_err(|error| Failure::io("simulator", &error)),
+                line = next_line(&mut console) => Ok(Some(line)),
+            }
+        });
+        let line = match turn.await {
+            Ok(turned) => turned?,
+            // This is how one ends a server.
+            Err(_) => return Ok(()),
+        };
+        match line {
+            None => {}
+            Some(None) => console = None,
+            Some(Some(line)) if line.trim().is_empty() => {}
+            Some(Some(line)) => match server.console(&line) {
+                Ok(text) => run.screen.note(&text),
+                Err(why) => run.screen.failure(&Failure::usage(why).hint("`help` lists what the console takes")),
+            },
+        }
+    }
+}
+
+/// The next line of the console; `None` at its end.
+async fn next_line(console: &mut Option<Lines<BufReader<Stdin>>>) -> Option<String> {
+    match console {
+        Some(lines) => lines.next_line().await.unwrap_or(None),
+        None => std::future::pending().await,
+    }
+}
+
+/// An address with a port, or without one.
+pub fn address(text: &str, usual_port: u16) -> Result<SocketAddr, String> {
+    let address = text.parse().or_else(|_| text.parse::<IpAddr>().map(|ip| SocketAddr::new(ip, usual_port)));
+    address.map_err(|_| format!("'{text}' is no address such as 127.0.0.1:{usual_port}"))
+}
+
+/// The failure of a server that cannot begin.
+pub fn cannot_listen(on: &str, error: &io::Error) -> Failure {
+    let hint = match error.kind() {
+        io::ErrorKind::AddrInUse => "another simulator may run; choose a port with --bind 127.0.0.1:0",
+        io::ErrorKind::PermissionDenied => "ports below 1024 need rights; choose a higher one",
+        _ => "choose an address of this machine with --bind",
+    };
+    Failure::new(Kind::NoAnswer, format!("cannot listen on {on}: {}", plain(error))).hint(hint)
+}

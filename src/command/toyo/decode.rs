@@ -1,0 +1,243 @@
+//! `armctl decode toyo`: lines of a conversation in words.
+
+mod capture;
+
+use std::path::Path;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+pub use self::capture::LineDecoder;
+use crate::command::Report;
+use crate::command::decode::capture::{Selection, file_among};
+use crate::command::decode::{self, damage, field_table, in_parentheses, problem_lines, stdin};
+use crate::controller::toyo::describe::{Description, FieldNote, Sender, describe};
+use crate::controller::toyo::request::Request;
+use crate::failure::Failure;
+use crate::output::view::{Cell, Section, View};
+
+/// Lines of the host communication, of either side
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Who sent a line is told by its form, or by -> or <- in front of it: `armctl decode toyo -` takes what \
+                        `--trace -` writes. An answer is explained by the request before it. A damaged line is \
+                        explained up to the damage, and the exit code is 5.\n\nOf a capture file, the lines are \
+                        listed in the words of --trace; NUMBER and TIME are those of Wireshark. Nothing found is no \
+                        failure. A file that is damaged is told up to there, and the exit code is 1."
+)]
+pub struct Decode {
+    /// Such as '@STAS SNO=0' or '@STAS SNO=0 ST1=22 ST2=00', - for stdin with one a line, or FILE.pcap or FILE.pcapng
+    #[arg(required = true, value_name = "LINE")]
+    lines: Vec<String>,
+    #[command(flatten)]
+    selection: Selection,
+}
+
+/// How traces mark who sent a line, and where their explanation of it begins.
+const MARKS: [(&str, Sender); 2] = [("->", Sender::Host), ("<-", Sender::Controller)];
+const REMARK: &str = "  # ";
+
+impl decode::Decode for Decode {
+    const ID: &'static str = "decode.toyo";
+    const CAPTURE_ID: &'static str = "decode.toyo.capture";
+    type Report = DecodedLines;
+    type Capture = LineDecoder;
+
+    fn capture(&self) -> Option<(&Path, LineDecoder)> {
+        Some((file_among(&self.lines)?, LineDecoder::default()))
+    }
+
+    fn selection(&self) -> &Selection {
+        &self.selection
+    }
+
+    fn decode(&self) -> Result<DecodedLines, Failure> {
+        Ok(explained(&self.lines()?))
+    }
+}
+
+impl Decode {
+    fn lines(&self) -> Result<Vec<String>, Failure> {
+        let lines =
+            if self.lines == ["-"] { stdin()?.lines().map(str::to_owned).collect() } else { joined(&self.lines) };
+        // A block is never empty, and the bytes in a trace are those of the line above them.
+        let lines: Vec<String> = lines.into_iter().filter(|line| is_line(line)).collect();
+        if lines.is_empty() {
+            return Err(Failure::usage("there are no lines to explain").hint("give lines such as '@STAS SNO=0'"));
+        }
+        Ok(lines)
+    }
+}
+
+fn is_line(line: &str) -> bool {
+    !line.trim().is_empty() && !line.starts_with("   ")
+}
+
+/// Arguments that a shell took apart at blanks, put together: a line begins with its mark or with `@`.
+fn joined(arguments: &[String]) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for argument in arguments {
+        let is_mark = |text: &str| MARKS.iter().any(|(mark, _)| text.trim() == *mark);
+        let begins = argument.starts_with('@') || MARKS.iter().any(|(mark, _)| argument.starts_with(mark));
+        match lines.last_mut() {
+            Some(last) if !begins || is_mark(last) => {
+                last.push(' ');
+                last.push_str(argument);
+            }
+            _ => lines.push(argument.clone()),
+        }
+    }
+    lines
+}
+
+/// Each line in words. An answer is explained by the request before it.
+fn explained(lines: &[String]) -> DecodedLines {
+    let mut asked: Option<Request> = None;
+    let lines = lines.iter().map(|line| {
+        let (marked, text) = unmarked(line);
+        // TYPE is answered in the form of its request.
+        let is_answer = || asked.as_ref().is_some_and(|request| request.answer(text).is_ok());
+        let sender = marked.unwrap_or_else(|| if is_answer() { Sender::Controller } else { Sender::guess(text) });
+        let description = describe(text, sender, asked.take().as_ref());
+        if sender == Sender::Host {
+            asked = Request::parse(text).ok();
+        }
+        DecodedLine::new(text, sender, description)
+    });
+    DecodedLines { lines: lines.collect() }
+}
+
+/// A line without what a trace adds to it.
+fn unmarked(line: &str) -> (Option<Sender>, &str) {
+    let trimmed = line.trim_start();
+    let marked =
+        MARKS.iter().find_map(|(mark, sender)| Some((Some(*sender), trimmed.strip_prefix(mark)?.trim_start())));
+    match marked {
+        Some((sender, text)) => (sender, text.split_once(REMARK).map_or(text, |(text, _)| text)),
+        None => (None, trimmed),
+    }
+}
+
+/// Lines in words.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct DecodedLines {
+    lines: Vec<DecodedLine>,
+}
+
+/// A line in words.
+#[derive(Debug, Serialize, JsonSchema)]
+struct DecodedLine {
+    /// The line itself.
+    text: String,
+    /// What it is.
+    title: String,
+    /// Section of the manual, where the command is known.
+    section: Option<String>,
+    /// `host` or `controller`.
+    sender: &'static str,
+    fields: Vec<FieldRow>,
+    /// What is wrong with it.
+    problem: Option<String>,
+}
+
+/// A piece of a line.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct FieldRow {
+    /// Of its first character, from 1.
+    column: usize,
+    /// Characters.
+    width: usize,
+    /// What it is called.
+    name: &'static str,
+    /// As it stands there.
+    raw: String,
+    /// What it says.
+    meaning: String,
+    /// What it is.
+    about: &'static str,
+}
+
+impl From<FieldNote> for FieldRow {
+    fn from(note: FieldNote) -> Self {
+        let FieldNote { column, width, name, raw, meaning, about } = note;
+        Self { column, width, name, raw, meaning, about }
+    }
+}
+
+impl DecodedLine {
+    fn new(text: &str, sender: Sender, description: Description) -> Self {
+        let Description { title, section, fields, problem } = description;
+        let sender = match sender {
+            Sender::Host => "host",
+            Sender::Controller => "controller",
+        };
+        let fields = fields.into_iter().map(FieldRow::from).collect();
+        Self { text: text.to_owned(), title, section, sender, fields, problem }
+    }
+}
+
+impl decode::Field for FieldRow {
+    const COLUMNS: &'static [&'static str] = &["column", "field", "raw", "meaning"];
+
+    fn cells(&self) -> Vec<Cell> {
+        let Self { column, name, raw, meaning, .. } = self;
+        vec![(*column).into(), (*name).into(), raw.as_str().into(), meaning.as_str().into()]
+    }
+}
+
+impl Report for DecodedLines {
+    fn view(&self) -> View {
+        let mut sections = Vec::new();
+        for DecodedLine { text, title, section, fields, problem, .. } in &self.lines {
+            let (section, problem) = (in_parentheses(section.as_deref()), problem_lines(problem));
+            sections.push(Section::Text(format!("{text}\n{title}{section}{problem}")));
+            if !fields.is_empty() {
+                sections.push(field_table(fields));
+            }
+        }
+        View { sections }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        damage("line", self.lines.iter().map(|line| line.problem.as_ref()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::failure::Kind;
+
+    fn senders(lines: &[&str]) -> Vec<&'static str> {
+        let lines = lines.iter().map(ToString::to_string).collect();
+        let toyo = Decode { lines, selection: Selection::default() };
+        explained(&toyo.lines().unwrap()).lines.iter().map(|line| line.sender).collect()
+    }
+
+    #[test]
+    fn a_line_may_come_in_words_or_as_a_trace_has_it() {
+        assert_eq!(senders(&["@STAS", "SNO=0", "@STAS", "SNO=0", "ST1=22", "ST2=00"]), ["host", "controller"]);
+        assert_eq!(senders(&["-> @HOME  # request: HOME", "<- @OK  # answer to HOME: done"]), ["host", "controller"]);
+        assert_eq!(senders(&["->", "@TYPE", "AX1", "RTYP=000000", "<-", "@NG"]), ["host", "controller"]);
+        assert_eq!(senders(&["@TYPE AX1 RTYP=000001", "@TYPE AX1 RTYP=000000"]), ["host", "controller"]);
+        assert_eq!(senders(&["@HSON", "   40 48 53 4f 4e", "@HSOF"]), ["host", "host"]);
+        assert!(Decode { lines: vec![" ".into()], selection: Selection::default() }.lines().is_err());
+    }
+
+    #[test]
+    fn an_answer_is_explained_by_the_request_before_it() {
+        let lines = ["@HOME", "@OK", "@OK"].map(str::to_owned);
+        let titles: Vec<String> = explained(&lines).lines.into_iter().map(|line| line.title).collect();
+        assert_eq!(titles[1..], ["answer to HOME: done", "answer: done"]);
+    }
+
+    #[test]
+    fn damage_is_a_failure_with_the_fields_before_it() {
+        let lines = explained(&["@STAS SNO=0 ST1=2".to_owned()]);
+        assert_eq!(lines.lines[0].fields.len(), 2);
+        let failure = Report::failure(&lines).unwrap();
+        assert_eq!(failure.kind, Kind::Malformed);
+        assert!(Report::failure(&explained(&["@HOME".to_owned()])).is_none());
+    }
+}

@@ -1,0 +1,334 @@
+//! `armctl decode yerc`: frames in words.
+
+mod capture;
+
+use std::path::Path;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+pub use self::capture::FrameDecoder;
+use crate::command::Report;
+use crate::command::decode::capture::{Selection, file_among};
+use crate::command::decode::{self, damage, field_table, in_parentheses, problem_lines, stdin};
+use crate::controller::yerc::describe::{Description, FieldNote, Sender, describe};
+use crate::controller::yerc::request::Request;
+use crate::controller::yerc::table::service;
+use crate::controller::yerc::wire::{ANSWER_BIT, HEADER_LEN, RequestFrame};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Section, View};
+
+/// Frames of the high-speed Ethernet server, as from a packet capture
+#[derive(Debug, Args)]
+#[command(
+    after_help = "An answer does not say what it answers: give the request before it, or --command. What is not a \
+                        whole frame is explained up to the damage, and the exit code is 5.\n\nOf a capture file, \
+                        the frames are listed in the words of --trace; NUMBER and TIME are those of Wireshark. \
+                        Nothing found is no failure. A file that is damaged is told up to there, and the exit code is 1."
+)]
+pub struct Decode {
+    /// Frames in hexadecimal (blanks, colons and 0x may stand between the bytes), - for stdin with a frame a line, or
+    /// FILE.pcap or FILE.pcapng
+    #[arg(required = true, value_name = "HEX")]
+    hex: Vec<String>,
+    /// Command whose answer it is, such as 0x75
+    #[arg(long, value_name = "N", value_parser = number)]
+    command: Option<u16>,
+    /// Instance that was asked for
+    #[arg(long, value_name = "N", value_parser = number, requires = "command")]
+    instance: Option<u16>,
+    /// Attribute that was asked for
+    #[arg(long, value_name = "N", value_parser = number, requires = "command")]
+    attribute: Option<u16>,
+    #[command(flatten)]
+    selection: Selection,
+}
+
+fn number(text: &str) -> Result<u16, String> {
+    let parsed = match text.strip_prefix("0x") {
+        Some(digits) if digits.bytes().all(|byte| byte.is_ascii_hexdigit()) => u16::from_str_radix(digits, 16).ok(),
+        None if text.bytes().all(|byte| byte.is_ascii_digit()) => text.parse().ok(),
+        _ => None,
+    };
+    parsed.ok_or_else(|| "a number from 0 to 65535 (0x0000 to 0xFFFF) is expected".to_owned())
+}
+
+impl decode::Decode for Decode {
+    const ID: &'static str = "decode.yerc";
+    const CAPTURE_ID: &'static str = "decode.yerc.capture";
+    type Report = DecodedFrames;
+    type Capture = FrameDecoder;
+
+    fn capture(&self) -> Option<(&Path, FrameDecoder)> {
+        Some((file_among(&self.hex)?, FrameDecoder::default()))
+    }
+
+    fn selection(&self) -> &Selection {
+        &self.selection
+    }
+
+    fn decode(&self) -> Result<DecodedFrames, Failure> {
+        Ok(self.explained(&self.frames()?))
+    }
+}
+
+impl Decode {
+    /// The frames that were given, each as its bytes.
+    fn frames(&self) -> Result<Vec<Vec<u8>>, Failure> {
+        let wrong = |error| Failure::usage(error).hint("give bytes as 59455243… or 59 45 52 43 …");
+        let mut pieces = Vec::new();
+        if self.hex == ["-"] {
+            for line in stdin()?.lines().map(str::trim).filter(|line| !line.is_empty()) {
+                pieces.push(parse_hex(line).map_err(wrong)?);
+            }
+        } else {
+            let parsed: Result<Vec<_>, _> = self.hex.iter().map(|text| parse_hex(text)).collect();
+            pieces = joined(parsed.map_err(wrong)?);
+        }
+        let frames: Vec<Vec<u8>> = pieces.iter().flat_map(|bytes| split(bytes)).collect();
+        if frames.is_empty() { Err(wrong("there are no bytes to explain".to_owned())) } else { Ok(frames) }
+    }
+
+    /// Each frame in words. An answer is explained by the request of its id before it, or else by the flags.
+    fn explained(&self, frames: &[Vec<u8>]) -> DecodedFrames {
+        let mut asked: Vec<(u8, Request)> = Vec::new();
+        let mut explained = Vec::new();
+        for bytes in frames {
+            let sender = Sender::guess(bytes);
+            let description = match sender {
+                Sender::Client => {
+                    if let Ok(frame) = RequestFrame::parse(bytes)
+                        && !frame.ack
+                    {
+                        asked.push((frame.id, Request::from(frame)));
+                    }
+                    describe(bytes, sender, None)
+                }
+                Sender::Controller => {
+                    let before = asked.iter().rev().find(|(id, _)| bytes.get(ID_AT) == Some(id));
+                    let request = before.map(|(_, request)| request.clone()).or_else(|| self.request(bytes));
+                    describe(bytes, sender, request.as_ref())
+                }
+            };
+            explained.push(DecodedFrame::new(sender, bytes.len(), description));
+        }
+        DecodedFrames { frames: explained }
+    }
+
+    /// The request that the flags speak of; its service is in the answer.
+    fn request(&self, answer: &[u8]) -> Option<Request> {
+        let service = answer.get(SERVICE_AT)?.wrapping_sub(ANSWER_BIT);
+        let attribute = match (self.attribute, service) {
+            (Some(attribute), _) => u8::try_from(attribute).ok()?,
+            (None, service::GET_SINGLE | service::SET_SINGLE) => 1,
+            (None, _) => 0,
+        };
+        let instance = self.instance.unwrap_or(0);
+        Some(Request { command: self.command?, instance, attribute, service, data: Vec::new() })
+    }
+}
+
+/// Offset of the request id.
+pub const ID_AT: usize = 11;
+/// Offset of the service in an answer.
+const SERVICE_AT: usize = 24;
+/// How every frame begins.
+pub const IDENTIFIER: &[u8] = b"YERC";
+
+/// Bytes from hexadecimal digits, as tools print them: together or apart, with `0x`, colons, commas or dashes.
+pub fn parse_hex(text: &str) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::with_capacity(text.len() / 2);
+    for token in text.split(|c: char| c.is_whitespace() || matches!(c, ':' | ',' | '-' | '_')) {
+        let digits = token.strip_prefix("0x").or_else(|| token.strip_prefix("0X")).unwrap_or(token);
+        if let Some(wrong) = digits.chars().find(|c| !c.is_ascii_hexdigit()) {
+            return Err(format!("'{}' is no hexadecimal digit", wrong.escape_debug()));
+        }
+        if digits.len() > 1 && digits.len() % 2 == 1 {
+            return Err(format!("'{}' has an odd number of digits", shortened(digits, 24)));
+        }
+        // Only digits are left, so every pair is a byte.
+        let pairs = digits.as_bytes().chunks(2).filter_map(|pair| std::str::from_utf8(pair).ok());
+        bytes.extend(pairs.filter_map(|pair| u8::from_str_radix(pair, 16).ok()));
+    }
+    Ok(bytes)
+}
+
+/// Arguments that a shell took apart at blanks, put together: one that begins as a frame, or is as long as one, begins
+/// a new frame.
+fn joined(arguments: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
+    let mut pieces: Vec<Vec<u8>> = Vec::new();
+    for bytes in arguments {
+        match pieces.last_mut() {
+            Some(last) if !bytes.starts_with(IDENTIFIER) && bytes.len() < HEADER_LEN => last.extend(bytes),
+            _ => pieces.push(bytes),
+        }
+    }
+    pieces.retain(|bytes| !bytes.is_empty());
+    pieces
+}
+
+/// Frames that follow each other without a gap: each as long as it says, if another one begins there.
+fn split(mut bytes: &[u8]) -> Vec<Vec<u8>> {
+    let mut frames = Vec::new();
+    while let Some(size) = bytes.get(6..8) {
+        let end = HEADER_LEN + usize::from(u16::from_le_bytes([size[0], size[1]]));
+        let Some((frame, rest)) = bytes.split_at_checked(end).filter(|(_, rest)| rest.starts_with(IDENTIFIER)) else {
+            break;
+        };
+        frames.push(frame.to_vec());
+        bytes = rest;
+    }
+    frames.push(bytes.to_vec());
+    frames
+}
+
+/// Frames in words.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct DecodedFrames {
+    frames: Vec<DecodedFrame>,
+}
+
+/// A frame in words.
+#[derive(Debug, Serialize, JsonSchema)]
+struct DecodedFrame {
+    /// What it is, in a line.
+    title: String,
+    /// Manual and section, where the command is known.
+    section: Option<String>,
+    /// `client` or `controller`.
+    sender: &'static str,
+    bytes: usize,
+    fields: Vec<FieldRow>,
+    /// What is wrong with it.
+    problem: Option<String>,
+}
+
+/// A piece of a frame.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct FieldRow {
+    /// From the start of the frame.
+    pub offset: usize,
+    /// Bytes.
+    pub size: usize,
+    /// What it is called.
+    pub name: String,
+    /// The bytes as they travel.
+    pub raw_hex: String,
+    /// What they say.
+    pub meaning: String,
+}
+
+impl From<FieldNote> for FieldRow {
+    fn from(note: FieldNote) -> Self {
+        let FieldNote { offset, size, name, raw, meaning } = note;
+        Self { offset, size, name, raw_hex: raw, meaning }
+    }
+}
+
+impl DecodedFrame {
+    fn new(sender: Sender, bytes: usize, description: Description) -> Self {
+        let Description { title, section, fields, problem } = description;
+        let sender = match sender {
+            Sender::Client => "client",
+            Sender::Controller => "controller",
+        };
+        Self { title, section, sender, bytes, fields: fields.into_iter().map(FieldRow::from).collect(), problem }
+    }
+}
+
+impl decode::Field for FieldRow {
+    const COLUMNS: &'static [&'static str] = &["offset", "size", "field", "raw", "meaning"];
+    const NONE: &'static str = "no data";
+
+    /// What is long is cut; JSON has it whole.
+    fn cells(&self) -> Vec<Cell> {
+        const LONGEST: usize = 32;
+
+        let Self { offset, size, name, raw_hex, meaning } = self;
+        let raw = shortened(raw_hex, LONGEST);
+        vec![(*offset).into(), (*size).into(), name.as_str().into(), raw.into(), meaning.as_str().into()]
+    }
+}
+
+fn shortened(text: &str, longest: usize) -> String {
+    if text.chars().count() <= longest {
+        return text.to_owned();
+    }
+    text.chars().take(longest).chain(['…']).collect()
+}
+
+impl Report for DecodedFrames {
+    fn view(&self) -> View {
+        let mut sections = Vec::new();
+        for DecodedFrame { title, section, bytes, fields, problem, .. } in &self.frames {
+            let (section, problem) = (in_parentheses(section.as_deref()), problem_lines(problem));
+            sections.push(Section::Text(format!("{title}{section}, {bytes} bytes{problem}")));
+            sections.push(field_table(fields));
+        }
+        View { sections }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        damage("frame", self.frames.iter().map(|frame| frame.problem.as_ref()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STATUS: &str = "5945524320000000030100000000000039393939393939397200010000010000";
+
+    fn yerc(hex: &[&str]) -> Decode {
+        let hex = hex.iter().map(ToString::to_string).collect();
+        Decode { hex, command: None, instance: None, attribute: None, selection: Selection::default() }
+    }
+
+    fn spaced(hex: &str, separator: &str) -> String {
+        hex.as_bytes().chunks(2).map(|pair| std::str::from_utf8(pair).unwrap()).collect::<Vec<_>>().join(separator)
+    }
+
+    #[test]
+    fn bytes_as_tools_print_them() {
+        let bytes = parse_hex(STATUS).unwrap();
+        assert_eq!(bytes.len(), 32);
+        for separator in [" ", ":", ", ", "-", " 0x", "\n"] {
+            assert_eq!(parse_hex(&spaced(STATUS, separator)).unwrap(), bytes, "{separator:?}");
+        }
+        assert_eq!(parse_hex(&format!("0x{STATUS}")).unwrap(), bytes);
+        assert_eq!(parse_hex("9 a").unwrap(), [9, 10]);
+        assert_eq!(parse_hex("595").unwrap_err(), "'595' has an odd number of digits");
+        assert_eq!(parse_hex("59\u{1b}").unwrap_err(), "'\\u{1b}' is no hexadecimal digit");
+    }
+
+    #[test]
+    fn frames_in_pieces_and_in_a_row() {
+        let apart = spaced(STATUS, " ");
+        let words: Vec<&str> = apart.split(' ').collect();
+        assert_eq!(yerc(&words).frames().unwrap().len(), 1);
+        assert_eq!(yerc(&[STATUS, STATUS]).frames().unwrap().len(), 2);
+        assert_eq!(yerc(&[&STATUS.repeat(3)]).frames().unwrap().len(), 3);
+        assert!(yerc(&[""]).frames().is_err());
+    }
+
+    #[test]
+    fn an_answer_is_explained_by_its_request() {
+        let answer = "594552432000080003010100000000803939393939393939810000000000000012000000c0000000";
+        let alone = yerc(&[answer]);
+        let title = |yerc: &Decode, at: usize| yerc.explained(&yerc.frames().unwrap()).frames[at].title.clone();
+        assert_eq!(title(&alone, 0), "answer");
+        assert_eq!(title(&yerc(&[STATUS, answer]), 1), "answer: 0x72 status read");
+        assert_eq!(title(&Decode { command: Some(0x72), ..alone }, 0), "answer: 0x72 status read");
+    }
+
+    #[test]
+    fn damage_is_a_failure_with_the_fields_before_it() {
+        let cut = yerc(&[&STATUS[..40]]);
+        let frames = cut.explained(&cut.frames().unwrap());
+        assert_eq!(frames.frames[0].fields.len(), 8);
+        let failure = Report::failure(&frames).unwrap();
+        assert_eq!(failure.kind.exit(), 5);
+        assert_eq!(failure.message, "the frame is damaged: the frame ends inside 'reserve 2' at offset 16");
+    }
+}

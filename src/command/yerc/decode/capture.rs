@@ -1,0 +1,88 @@
+//! Frames of the high-speed Ethernet server in a capture.
+
+use std::collections::{HashMap, HashSet};
+use std::net::SocketAddr;
+
+use super::{FieldRow, ID_AT, IDENTIFIER};
+use crate::command::decode::capture::{CaptureDecoder, DecodedCapture, DecodedMessage, cut};
+use crate::controller::text::hex;
+use crate::controller::yerc::describe::{Sender, describe, summary};
+use crate::controller::yerc::request::Request;
+use crate::controller::yerc::wire::RequestFrame;
+use crate::transport::capture::{Carrier, Message};
+use crate::transport::tap::Direction;
+
+/// Requests that are remembered until they are answered: of more peers than a plant has.
+const MOST_ASKED: usize = 1 << 16;
+
+/// Datagrams that begin like a frame.
+#[derive(Debug, Default)]
+pub struct FrameDecoder {
+    decoded: DecodedCapture<FieldRow>,
+    /// Who made requests.
+    clients: HashSet<SocketAddr>,
+    /// The last request of each id, with the number of its packet.
+    asked: HashMap<(SocketAddr, SocketAddr, u8), (u64, Request)>,
+}
+
+impl CaptureDecoder for FrameDecoder {
+    type Field = FieldRow;
+
+    fn take(&mut self, message: &Message<'_>) {
+        let Carrier::Datagram { from, to } = message.carrier else { return };
+        let bytes = message.bytes;
+        if !bytes.starts_with(IDENTIFIER) {
+            return;
+        }
+        self.decoded.packets += 1;
+        // In the middle of a file transfer, frames of both sides look alike.
+        let sender = match Sender::guess(bytes) {
+            _ if self.clients.contains(&from) => Sender::Client,
+            _ if self.clients.contains(&to) => Sender::Controller,
+            guess => guess,
+        };
+        let id = bytes.get(ID_AT).copied().unwrap_or_default();
+        let (direction, client, controller) = match sender {
+            Sender::Client => (Direction::Sent, from, to),
+            Sender::Controller => (Direction::Received, to, from),
+        };
+        let key = (client, controller, id);
+        if sender == Sender::Client
+            && let Ok(frame) = RequestFrame::parse(bytes)
+            && !frame.ack
+        {
+            if self.asked.len() >= MOST_ASKED {
+                // Not of a plant; what follows is decoded without the requests before.
+                self.asked.clear();
+                self.clients.clear();
+            }
+            self.clients.insert(client);
+            self.asked.insert(key, (message.number, Request::from(frame)));
+        }
+        let asked = self.asked.get(&key).filter(|_| sender == Sender::Controller);
+        let request = asked.map(|(_, request)| request);
+        let description = describe(bytes, sender, request);
+        self.decoded.messages.push(DecodedMessage {
+            number: message.number,
+            time: message.time,
+            direction,
+            link: (client.to_string(), controller.to_string()),
+            text: summary(bytes, sender, request),
+            answers: asked.map(|(number, _)| *number),
+            section: description.section,
+            raw: hex(bytes),
+            fields: description.fields.into_iter().map(FieldRow::from).collect(),
+            problem: if message.is_cut { Some(cut()) } else { description.problem },
+        });
+    }
+
+    fn decoded(&mut self) -> &mut DecodedCapture<FieldRow> {
+        &mut self.decoded
+    }
+
+    fn finish(&mut self) {}
+
+    fn restart(self) -> Self {
+        Self::default()
+    }
+}

@@ -1,0 +1,119 @@
+//! `armctl sim yerc`: two UDP ports, like a controller.
+
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::PathBuf;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::Report;
+use crate::command::serve::{self, Started, address, cannot_listen};
+use crate::command::yerc::simulated::{self, Simulated};
+use crate::controller::yerc::Model;
+use crate::controller::yerc::simulator::Simulator;
+use crate::failure::Failure;
+use crate::output::view::View;
+use crate::transport::fault::{FaultSpec, Faults};
+use crate::transport::server::Server;
+
+/// An FS100 or DX200 on two UDP ports
+#[derive(Debug, Args)]
+pub struct Serve {
+    /// Address to listen on, with the port of the robot server; port 0 lets the system choose
+    #[arg(
+        long,
+        value_name = "ADDRESS[:PORT]",
+        default_value = "127.0.0.1:10040",
+        value_parser = |text: &str| address(text, ROBOT_PORT)
+    )]
+    bind: SocketAddr,
+    /// Port of the file server; one above the robot server's unless given
+    #[arg(long, value_name = "PORT")]
+    file_port: Option<u16>,
+    /// Controller model, fs100 or dx200
+    #[arg(long, value_name = "MODEL")]
+    model: Option<Model>,
+    /// Start state (TOML): modes, variables, jobs, files, alarms, timed events
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
+    /// Faults on the line, such as drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7
+    #[arg(long, value_name = "FAULTS")]
+    fault: Option<FaultSpec>,
+    /// Take lines on stdin: `alarm 4315`, `mode teach`, `io 20010 on`, `help`
+    #[arg(long)]
+    console: bool,
+}
+
+/// Port of the robot server where the address names none.
+const ROBOT_PORT: u16 = 10040;
+
+impl Default for Serve {
+    fn default() -> Self {
+        let bind = SocketAddr::new(Ipv4Addr::LOCALHOST.into(), ROBOT_PORT);
+        Self { bind, file_port: None, model: None, state: None, fault: None, console: false }
+    }
+}
+
+impl serve::Serve for Serve {
+    const ID: &'static str = "sim.yerc";
+    type Report = Serving;
+    type Server = Yerc;
+
+    async fn start(self) -> Result<Started<Self>, Failure> {
+        let model = self.model.unwrap_or(Model::Dx200);
+        let start = simulated::start(self.state.as_deref(), model, self.fault.as_ref())?;
+        if let Some(model) = self.model.filter(|model| *model != start.model()) {
+            let message = format!("the start state is for model {}, not {model}", start.model());
+            return Err(Failure::usage(message).hint("leave --model away, or change the file"));
+        }
+        let model = start.model();
+        let robot = self.bind;
+        let file_port = self.file_port.unwrap_or(if robot.port() == 0 { 0 } else { robot.port().saturating_add(1) });
+        let file = SocketAddr::new(robot.ip(), file_port);
+        let bound = Server::bind([robot, file], self.fault.map(Faults::pair)).await;
+        let server = bound.map_err(|error| cannot_listen(&format!("UDP {robot} and {}", file.port()), &error))?;
+        let local = |channel| server.local(channel).map_err(|error| Failure::io("socket", &error));
+        let (robot, file) = (local(0)?, local(1)?);
+        let target = format!("udp://{robot}?file_port={}&model={model}", file.port());
+        Ok(Started {
+            report: Serving { family: "yerc", model: model.name(), target },
+            server: Yerc { server, simulated: Simulated(Simulator::new(start)) },
+            address: Some(robot),
+            with_console: self.console,
+        })
+    }
+}
+
+/// A simulated controller on its sockets.
+#[derive(Debug)]
+pub struct Yerc {
+    server: Server,
+    simulated: Simulated,
+}
+
+impl serve::Server for Yerc {
+    async fn turn(&mut self) -> io::Result<()> {
+        self.server.turn(&mut self.simulated).await
+    }
+
+    fn console(&mut self, line: &str) -> Result<String, String> {
+        self.simulated.0.console(self.server.now(), line)
+    }
+}
+
+/// A simulator that listens.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Serving {
+    family: &'static str,
+    model: &'static str,
+    /// The URL to reach it by.
+    target: String,
+}
+
+impl Report for Serving {
+    fn view(&self) -> View {
+        View::text(format!("{} {} at {}", self.family, self.model, self.target))
+    }
+}

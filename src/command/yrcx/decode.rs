@@ -1,0 +1,144 @@
+//! `armctl decode yrcx`: words of a remote command and its answer, in words.
+
+mod capture;
+pub mod images;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+pub use self::capture::ImageDecoder;
+pub use self::images::FieldRow;
+use super::raw::words;
+use crate::command::Report;
+use crate::command::decode::capture::Selection;
+use crate::command::decode::{self, field_table, in_parentheses, problem_lines};
+use crate::controller::yrcx::describe::{Description, answer, command};
+use crate::controller::yrcx::image::Words;
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Section, View};
+
+/// Words of remote commands and their answers
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Words that are left away are 0. An answer is explained by its command, where that is given. Words that \
+    must not be sent are explained as far as they go, and the exit code is 5.\n\nOf a capture file, what the images \
+    say is listed in the words of --trace when it is new, with the messages of the fieldbus around it; NUMBER and TIME are \
+    those of Wireshark. Nothing found is no failure. A file that is damaged is told up to there, and the exit code is 1."
+)]
+pub struct Decode {
+    /// WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013
+    #[arg(long, value_name = "WORDS", required_unless_present_any = ["wo", "file"], value_parser = words)]
+    wi: Option<Words>,
+    /// WO0 to WO15, as in 0x4000,0x0002,0x014E
+    #[arg(long, value_name = "WORDS", value_parser = words)]
+    wo: Option<Words>,
+    /// A capture: FILE.pcap or FILE.pcapng
+    #[arg(conflicts_with_all = ["wi", "wo"])]
+    file: Option<PathBuf>,
+    #[command(flatten)]
+    selection: Selection,
+    /// Images that say nothing new, too
+    #[arg(long, help_heading = "Capture files")]
+    every_image: bool,
+}
+
+impl decode::Decode for Decode {
+    const ID: &'static str = "decode.yrcx";
+    const CAPTURE_ID: &'static str = "decode.yrcx.capture";
+    type Report = DecodedWords;
+    type Capture = ImageDecoder;
+
+    fn capture(&self) -> Option<(&Path, ImageDecoder)> {
+        Some((self.file.as_deref()?, ImageDecoder::new(self.every_image)))
+    }
+
+    fn selection(&self) -> &Selection {
+        &self.selection
+    }
+
+    fn needs_capture(&self) -> bool {
+        self.every_image || self.selection.is_given()
+    }
+
+    fn decode(&self) -> Result<DecodedWords, Failure> {
+        let wi = self.wi.map(|wi| Part::new("command", command(&wi)));
+        let wo = self.wo.map(|wo| Part::new("answer", answer(&wo, self.wi.as_ref())));
+        Ok(DecodedWords { parts: wi.into_iter().chain(wo).collect() })
+    }
+}
+
+/// Words in words.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct DecodedWords {
+    parts: Vec<Part>,
+}
+
+/// A command or an answer.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Part {
+    /// `command` or `answer`.
+    kind: &'static str,
+    /// What it is.
+    title: String,
+    /// Section of the manual, in chapter 2, where the command is known.
+    section: Option<&'static str>,
+    fields: Vec<FieldRow>,
+    /// What is wrong with it.
+    problems: Vec<String>,
+}
+
+impl Part {
+    fn new(kind: &'static str, description: Description) -> Self {
+        let Description { title, section, fields, problems } = description;
+        Self { kind, title, section, fields: fields.into_iter().map(FieldRow::from).collect(), problems }
+    }
+}
+
+impl Report for DecodedWords {
+    fn view(&self) -> View {
+        let mut sections = Vec::new();
+        for Part { kind, title, section, fields, problems } in &self.parts {
+            let (section, problems) = (in_parentheses(*section), problem_lines(problems));
+            sections.push(Section::Text(format!("{kind}: {title}{section}{problems}")));
+            sections.push(field_table(fields));
+        }
+        View { sections }
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let problem = self.parts.iter().flat_map(|part| &part.problems).next()?;
+        let failure = Failure::new(Kind::Malformed, format!("the words are not as the manual has them: {problem}"));
+        Some(failure.hint("they are explained as far as they go; the section of the manual is named"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::decode::Decode as _;
+
+    fn explained(wi: Option<&str>, wo: Option<&str>) -> DecodedWords {
+        let read = |text: &str| words(text).unwrap();
+        let (selection, file) = (Selection::default(), None);
+        Decode { wi: wi.map(read), wo: wo.map(read), file, selection, every_image: false }.decode().unwrap()
+    }
+
+    #[test]
+    fn a_command_explains_its_answer() {
+        let both = explained(Some("0x0001,0x8004,0,0x0032,0x0013"), Some("0x0200,0,0,0,0x3039"));
+        assert_eq!(both.parts[1].section, Some("4.2.1"));
+        let axis = both.parts[1].fields.iter().find(|field| field.key == Some("axis_1")).unwrap();
+        assert_eq!(axis.meaning, "12.345 mm");
+        assert!(both.failure().is_none());
+    }
+
+    #[test]
+    fn words_that_must_not_be_sent_are_a_failure_with_their_fields() {
+        let wrong = explained(Some("1,0xC000"), None);
+        assert!(!wrong.parts[0].fields.is_empty());
+        assert_eq!(wrong.failure().unwrap().kind, Kind::Malformed);
+    }
+}

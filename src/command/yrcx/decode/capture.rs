@@ -1,0 +1,54 @@
+//! A capture: what each fieldbus finds in it.
+
+use super::images::{BusDecoder, FieldRow, Images};
+use crate::command::decode::capture::{CaptureDecoder, DecodedCapture};
+use crate::command::yrcx::buses::BUSES;
+use crate::command::yrcx::fieldbus::Fieldbus;
+use crate::controller::yrcx::image::Image;
+use crate::transport::capture::{Carrier, Message};
+
+/// All that is decoded.
+#[derive(Debug)]
+pub struct ImageDecoder {
+    images: Images,
+    buses: Vec<Box<dyn BusDecoder>>,
+}
+
+impl ImageDecoder {
+    /// Begins; `all` lists every image.
+    pub fn new(all: bool) -> Self {
+        let images = Images::new(all);
+        Self { images, buses: BUSES.into_iter().map(Fieldbus::decoder).collect() }
+    }
+}
+
+impl CaptureDecoder for ImageDecoder {
+    type Field = FieldRow;
+
+    fn take(&mut self, message: &Message<'_>) {
+        if let Carrier::Line { direction, .. } = message.carrier
+            && let Some(image) = Image::from_bytes(message.bytes)
+        {
+            self.images.count();
+            let link = ("host".to_owned(), "simulator".to_owned());
+            self.images.image(message, direction, &link, &image);
+        }
+        for bus in &mut self.buses {
+            bus.take(message, &mut self.images);
+        }
+    }
+
+    fn decoded(&mut self) -> &mut DecodedCapture<FieldRow> {
+        self.images.decoded()
+    }
+
+    fn finish(&mut self) {
+        for bus in &mut self.buses {
+            bus.finish(&mut self.images);
+        }
+    }
+
+    fn restart(self) -> Self {
+        Self::new(self.images.lists_all())
+    }
+}

@@ -1,0 +1,202 @@
+//! Images and remote commands in a capture, with the messages of their fieldbus around them.
+
+use std::collections::HashMap;
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::decode;
+use crate::command::decode::capture::{DecodedCapture, DecodedMessage, cut, note};
+use crate::controller::text::hex;
+use crate::controller::yrcx::answer::Status;
+use crate::controller::yrcx::changes::{Change, changes};
+use crate::controller::yrcx::describe::{Description, FieldNote, answer, command};
+use crate::controller::yrcx::image::{Image, Words};
+use crate::controller::yrcx::signal::Side;
+use crate::controller::yrcx::value::Key;
+use crate::output::view::Cell;
+use crate::transport::capture::Message;
+use crate::transport::tap::Direction;
+
+/// Most connections, requests and the like that are remembered: no plant has so many.
+pub const MOST: usize = 1 << 16;
+
+/// Finds the images of one fieldbus in a capture, and the messages around them.
+pub trait BusDecoder: fmt::Debug {
+    /// Takes a packet that may be one of this fieldbus.
+    fn take(&mut self, message: &Message<'_>, images: &mut Images);
+
+    /// Takes note of what is missing, at the end.
+    fn finish(&mut self, images: &mut Images);
+}
+
+/// Images, and what was said around them.
+#[derive(Debug, Default)]
+pub struct Images {
+    decoded: DecodedCapture<FieldRow>,
+    /// Whether images that say nothing new are listed, too.
+    all: bool,
+    shown: HashMap<(String, String), Shown>,
+}
+
+/// What both ends of a connection showed last.
+#[derive(Debug, Default)]
+struct Shown {
+    /// Of the client, and of the controller.
+    images: [Option<Image>; 2],
+    /// The command that runs, or ran last.
+    command: Option<(u64, Words)>,
+}
+
+impl Images {
+    /// Begins; `all` lists every image.
+    pub fn new(all: bool) -> Self {
+        Self { all, ..Self::default() }
+    }
+
+    /// Whether every image is listed.
+    pub fn lists_all(&self) -> bool {
+        self.all
+    }
+
+    /// All that was decoded.
+    pub fn decoded(&mut self) -> &mut DecodedCapture<FieldRow> {
+        &mut self.decoded
+    }
+
+    /// A packet is one of the fieldbus.
+    pub fn count(&mut self) {
+        self.decoded.packets += 1;
+    }
+
+    /// Adds a message of the fieldbus.
+    pub fn message(&mut self, message: DecodedMessage<FieldRow>) {
+        self.decoded.messages.push(message);
+    }
+
+    /// Says something of the whole capture.
+    pub fn note(&mut self, text: String) {
+        note(&mut self.decoded.notes, text);
+    }
+
+    /// An image that one end showed.
+    pub fn image(&mut self, message: &Message<'_>, direction: Direction, link: &(String, String), image: &Image) {
+        if self.shown.len() >= MOST {
+            self.shown.clear();
+        }
+        let shown = self.shown.entry(link.clone()).or_default();
+        let (at, side) = match direction {
+            Direction::Sent => (0, Side::Input),
+            Direction::Received => (1, Side::Output),
+        };
+        let before = shown.images[at].replace(*image);
+        let changes = changes(side, before.as_ref(), image);
+        if changes.is_empty() && self.all {
+            let decoded = decoded(message, direction, link.clone(), "image: nothing new".to_owned());
+            self.decoded.messages.push(DecodedMessage { raw: hex(&image.to_bytes()), ..decoded });
+        }
+        for change in changes {
+            let mut decoded = decoded(message, direction, link.clone(), change.line(false));
+            match &change {
+                Change::Words { side: Side::Input, words, .. } => {
+                    let was = before.map_or(0, |before| before.0[0]);
+                    if words[0] != 0 && (words[0] != was || shown.command.is_none()) {
+                        shown.command = Some((message.number, *words));
+                    }
+                    // Without a command, words are data of the next one, and no problem yet.
+                    if words[0] != 0 {
+                        describe(&mut decoded, command(words));
+                    }
+                }
+                Change::Words { words, .. } => {
+                    let answered = shown.command.filter(|_| Status::of(words[0]) != Status::Ready);
+                    decoded.answers = answered.map(|(number, _)| number);
+                    describe(&mut decoded, answer(words, answered.as_ref().map(|(_, words)| words)));
+                }
+                Change::Signal { signal, on } => {
+                    let side = if side == Side::Input { "WI" } else { "WO" };
+                    let place = format!("{side}{} bit {}", signal.word(), signal.bit());
+                    let meaning = signal.dedicated().map(|dedicated| dedicated.text).unwrap_or_default();
+                    decoded.fields.push(FieldRow::of_message(
+                        &place,
+                        &signal.to_string(),
+                        u8::from(*on).to_string(),
+                        meaning,
+                    ));
+                }
+            }
+            self.decoded.messages.push(decoded);
+        }
+    }
+}
+
+/// A message with this text.
+pub fn decoded(
+    message: &Message<'_>,
+    direction: Direction,
+    link: (String, String),
+    text: String,
+) -> DecodedMessage<FieldRow> {
+    let raw = text.split("  # ").next().unwrap_or_default().to_owned();
+    let (number, time) = (message.number, message.time);
+    let problem = message.is_cut.then(cut);
+    DecodedMessage {
+        number,
+        time,
+        direction,
+        link,
+        text,
+        answers: None,
+        section: None,
+        raw,
+        fields: Vec::new(),
+        problem,
+    }
+}
+
+fn describe(decoded: &mut DecodedMessage<FieldRow>, description: Description) {
+    decoded.section = description.section.map(str::to_owned);
+    decoded.fields = description.fields.into_iter().map(FieldRow::from).collect();
+    if !description.problems.is_empty() {
+        decoded.problem = Some(description.problems.join("; "));
+    }
+}
+
+/// A field of words.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct FieldRow {
+    /// Word and bits, as in `WI1 bits 2-1`; `-` outside words.
+    pub(super) place: String,
+    /// Its name for programs; null for the code, the status and what is not used.
+    pub(super) key: Option<&'static str>,
+    /// What it is called.
+    pub(super) name: String,
+    /// As it travels.
+    pub(super) raw: String,
+    /// What it says.
+    pub(super) meaning: String,
+}
+
+impl FieldRow {
+    /// A part of a message that is no field of a command.
+    pub fn of_message(place: &str, name: &str, raw: String, meaning: &str) -> Self {
+        Self { place: place.to_owned(), key: None, name: name.to_owned(), raw, meaning: meaning.to_owned() }
+    }
+}
+
+impl From<FieldNote> for FieldRow {
+    fn from(note: FieldNote) -> Self {
+        let FieldNote { place, key, name, raw, meaning } = note;
+        Self { place, key: key.map(Key::name), name, raw, meaning }
+    }
+}
+
+impl decode::Field for FieldRow {
+    const COLUMNS: &'static [&'static str] = &["word", "field", "raw", "meaning"];
+
+    fn cells(&self) -> Vec<Cell> {
+        let Self { place, name, raw, meaning, .. } = self;
+        [place, name, raw, meaning].map(|text| text.as_str().into()).into()
+    }
+}

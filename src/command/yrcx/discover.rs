@@ -1,0 +1,84 @@
+//! Who answers on the fieldbuses, for `armctl robots discover`.
+
+use std::time::Duration;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::buses::{self, Searches};
+use super::fieldbus::{Found, Scope};
+use super::trace::Recorder;
+use crate::command::Access;
+use crate::failure::Failure;
+use crate::output::Screen;
+
+/// A device that answered. What it says of itself is untrusted.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct FoundDevice {
+    /// Where the answer came from.
+    address: String,
+    /// The URL for `-t`.
+    pub target: String,
+    /// The family that it may be of, by the number of its maker; null for makers of other things.
+    pub family: Option<&'static str>,
+    /// What it says of itself, in the words of its fieldbus.
+    #[serde(flatten)]
+    #[schemars(schema_with = "identities")]
+    identity: Map<String, Value>,
+    /// The same in a line.
+    #[serde(skip)]
+    pub device: String,
+}
+
+impl From<Found> for FoundDevice {
+    fn from(found: Found) -> Self {
+        let Found { address, target, is_yrcx, device, identity } = found;
+        Self { address, target, family: is_yrcx.then_some("yrcx"), identity, device }
+    }
+}
+
+/// What devices of each fieldbus say of themselves.
+fn identities(generator: &mut SchemaGenerator) -> Schema {
+    let mut all = buses::identities(generator);
+    if all.len() == 1
+        && let Some(only) = all.pop()
+    {
+        return only;
+    }
+    let all: Vec<Value> = all.into_iter().map(Value::from).collect();
+    schemars::json_schema!({ "anyOf": all })
+}
+
+/// Searches them, one after the other.
+pub async fn discover(
+    searches: &Searches,
+    wait: Duration,
+    access: &Access,
+    screen: &Screen,
+) -> Result<Vec<FoundDevice>, Failure> {
+    let narrowest = scope(searches);
+    let mut all = Vec::new();
+    for (fieldbus, search) in searches.each() {
+        let scope = search.scope();
+        let is_wanted = scope != Scope::Nothing && (narrowest != Scope::Devices || scope == Scope::Devices);
+        if !is_wanted {
+            continue;
+        }
+        let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type())?.unzip();
+        let found = search.search(wait, tap.unwrap_or_default()).await;
+        recorder.map_or(Ok(()), Recorder::finish)?;
+        match found {
+            Ok(found) => all.extend(found.into_iter().map(FoundDevice::from)),
+            // A machine without a network still has ports.
+            Err(failure) if scope == Scope::Usual => screen.note(&format!("warning: {failure}")),
+            Err(failure) => return Err(failure),
+        }
+    }
+    Ok(all)
+}
+
+/// The narrowest of what is wanted.
+pub fn scope(searches: &Searches) -> Scope {
+    searches.each().into_iter().map(|(_, search)| search.scope()).max().unwrap_or(Scope::Nothing)
+}

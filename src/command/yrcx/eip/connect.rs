@@ -1,0 +1,98 @@
+//! Links and messages over EtherNet/IP, as a URL wants them.
+
+use std::time::Duration;
+
+use crate::command::yrcx::fieldbus::{At, Purpose};
+use crate::controller::yrcx::signal::resting;
+use crate::settings::target::eip::{Eip, EipRole};
+use crate::transport::eip::client::Client;
+use crate::transport::eip::error::EipError;
+use crate::transport::eip::link::{Class1, Reading, resolve};
+use crate::transport::eip::reader::Assembly;
+use crate::transport::eip::settings::{Multiplier, Role, Settings};
+use crate::transport::eip::wire::Key;
+use crate::transport::image::{Cause, ImageLink, LinkError};
+
+/// Opens a link.
+pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
+    let eip = options(&at)?;
+    if purpose == Purpose::Look && eip.role == EipRole::Owner {
+        return look(&at, eip).await;
+    }
+    let settings = settings(&at, eip)?;
+    Ok(ImageLink::over(Class1::open(&eip.host, eip.port, settings, at.tap.into()).await?))
+}
+
+/// A session for messages with the board.
+pub(super) async fn client(at: &At<'_>) -> Result<(Client, Eip), LinkError> {
+    let eip = options(at)?;
+    let target = resolve(&eip.host, eip.port).await?;
+    Ok((Client::new(target, at.robot.timeout.value, at.tap.clone().into()), eip.clone()))
+}
+
+/// What the URL says.
+fn options<'a>(at: &At<'a>) -> Result<&'a Eip, LinkError> {
+    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is no URL of EtherNet/IP", at.bus))))
+}
+
+/// Instances for the heartbeats of a connection that only listens to inputs, as boards of several makers have them. The
+/// first of them is one whose loss a board does not tell its controller; the last one may be.
+const HEARTBEATS: [u32; 5] = [6, 238, 254, 198, 3];
+/// Least pause between two looks: boards answer messages when they have nothing better to do.
+const PAUSE: Duration = Duration::from_millis(20);
+
+/// Sees what the controller shows without owning it: by messages, which leave nothing behind; where the board does not
+/// answer them, by a connection that only listens.
+async fn look(at: &At<'_>, eip: &Eip) -> Result<ImageLink, LinkError> {
+    let (client, _) = client(at).await?;
+    let assembly = Assembly { instance: eip.input, size: eip.input_size };
+    let refused = match Reading::open(client, assembly, eip.rpi.max(at.bus.calm).max(PAUSE)).await {
+        Err(error @ EipError::Refused { .. }) => error,
+        opened => return Ok(ImageLink::over(opened?)),
+    };
+    for output in HEARTBEATS {
+        let listening =
+            Settings { role: Role::InputOnly, output, output_size: 0, resting: Vec::new(), ..settings(at, eip)? };
+        match Class1::open(&eip.host, eip.port, listening, at.tap.clone().into()).await {
+            Err(EipError::Refused { .. }) => {}
+            opened => return Ok(ImageLink::over(opened?)),
+        }
+    }
+    let cause = Cause::new(format!("the board shows its inputs to nobody who only looks: {refused}"));
+    Err(LinkError::Refused(cause.advice(
+        "check in of the URL; or add role=input_only and out= with the instance for heartbeats from the EDS file of the board",
+    )))
+}
+
+fn settings(at: &At<'_>, eip: &Eip) -> Result<Settings, LinkError> {
+    let role = match eip.role {
+        EipRole::Owner => Role::ExclusiveOwner,
+        EipRole::InputOnly => Role::InputOnly,
+        EipRole::ListenOnly => Role::ListenOnly,
+    };
+    let is_owner = role == Role::ExclusiveOwner;
+    let output_size = if is_owner { eip.output_size } else { 0 };
+    let wrong = || Cause::new(format!("there is no multiplier {}", eip.multiplier));
+    Ok(Settings {
+        role,
+        output: eip.output,
+        input: eip.input,
+        configuration: eip.configuration,
+        configuration_data: Vec::new(),
+        output_size,
+        input_size: eip.input_size,
+        rpi: eip.rpi.max(at.bus.calm),
+        multiplier: Multiplier::of(eip.multiplier).ok_or_else(|| LinkError::Settings(wrong()))?,
+        multicast: eip.multicast,
+        key: eip.key.map(|key| Key {
+            vendor: key.vendor,
+            device_type: key.device_type,
+            product: key.product,
+            major: key.major,
+            minor: key.minor,
+            compatible: false,
+        }),
+        resting: if is_owner { resting().to_link(output_size.into()) } else { Vec::new() },
+        timeout: at.robot.timeout.value,
+    })
+}

@@ -1,0 +1,74 @@
+//! A simulated controller as an adapter with TCP and UDP ports, for others.
+
+use std::net::SocketAddrV4;
+
+use clap::Args;
+
+use super::simulated::{self, Controller, faults, mischief};
+use crate::command::serve::{address, cannot_listen};
+use crate::command::yrcx::fieldbus::{Serve, Served};
+use crate::controller::yrcx::simulator::Start;
+use crate::failure::Failure;
+use crate::settings::target::eip::SCHEME;
+use crate::transport::eip::adapter::AdapterFault;
+use crate::transport::eip::adapter::server::{Listen, Server};
+use crate::transport::eip::{IO_PORT, PORT};
+use crate::transport::fault::FaultSpec;
+
+/// Where to listen, and what to do wrong.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub struct ServeArgs {
+    /// Address to listen on, with the TCP port of sessions; port 0 lets the system choose
+    #[arg(long, value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:44818", value_parser = listen)]
+    bind: SocketAddrV4,
+    /// UDP port of images, 2222 unless given; any where the system chooses that of sessions
+    #[arg(long, value_name = "PORT")]
+    io_port: Option<u16>,
+    /// Faults of images on their way, such as drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,seed=7
+    #[arg(long, value_name = "FAULTS", value_parser = faults)]
+    fault: Option<FaultSpec>,
+    /// What the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, frozen, unreadable,
+    /// reset, mute, garbage, trailing, unowned
+    #[arg(long, value_name = "WHAT", value_parser = mischief)]
+    mischief: Option<AdapterFault>,
+}
+
+fn listen(text: &str) -> Result<SocketAddrV4, String> {
+    match address(text, PORT)? {
+        std::net::SocketAddr::V4(address) => Ok(address),
+        std::net::SocketAddr::V6(_) => Err("EtherNet/IP has IPv4 addresses".to_owned()),
+    }
+}
+
+impl Serve for ServeArgs {
+    fn serve(&self, _simulator: Option<&str>, start: Start) -> Result<Served, Failure> {
+        let io_port = self.io_port.unwrap_or(if self.bind.port() == 0 { 0 } else { IO_PORT });
+        let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port };
+        let server = simulated::serve(start, listen, self.fault.clone()).map_err(|error| {
+            let on = format!("TCP and UDP {}, and UDP {}", self.bind, io_port);
+            cannot_listen(&on, &error).hint("another simulator may run; choose ports with --bind 127.0.0.1:0")
+        })?;
+        server.with(|adapter, _| adapter.misbehave(self.mischief));
+        let address = server.address();
+        Ok(Served {
+            target: format!("{}://{address}", SCHEME.name),
+            address: Some(address.into()),
+            console: Box::new(move |line| console(&server, line)),
+        })
+    }
+}
+
+fn console(server: &Server<Controller>, line: &str) -> Result<String, String> {
+    server.with(|adapter, now| match line.trim().strip_prefix("mischief ").map(str::trim) {
+        None => adapter.application().0.0.console(now, line),
+        Some("off") => {
+            adapter.misbehave(None);
+            Ok("the adapter does as it should".to_owned())
+        }
+        Some(name) => {
+            adapter.misbehave(Some(mischief(name)?));
+            Ok(format!("mischief: {name}"))
+        }
+    })
+}

@@ -1,0 +1,106 @@
+//! The simulated controller as an adapter of EtherNet/IP.
+
+use std::io;
+use std::net::{Ipv4Addr, SocketAddrV4};
+use std::time::Duration;
+
+use crate::command::yrcx::simulated::{Simulated, start};
+use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::simulator::{Simulator, Start};
+use crate::failure::Failure;
+use crate::settings::target::Sim;
+use crate::transport::eip::PORT;
+use crate::transport::eip::adapter::server::{Listen, Server};
+use crate::transport::eip::adapter::{AdapterFault, Application, Event, Setup};
+use crate::transport::eip::settings::Role;
+use crate::transport::eip::wire::{Identity, Revision};
+use crate::transport::fault::{FaultSpec, Faults};
+use crate::transport::image::ImagePeer;
+
+/// A simulator as an adapter on the loopback, with what the URL wants to go wrong.
+pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
+    let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
+    let faults = sim.fault.as_deref().map(faults).transpose().map_err(|why| wrong(format!("fault: {why}")))?;
+    let mischief = sim.mischief.as_deref().map(mischief).transpose();
+    let mischief = mischief.map_err(|why| wrong(format!("mischief: {why}")))?;
+    let listen = Listen::anywhere(Ipv4Addr::LOCALHOST);
+    let server = serve(start(sim.state.as_deref())?, listen, faults);
+    let server = server.map_err(|error| Failure::io("the simulator on the loopback", &error))?;
+    server.with(|adapter, _| adapter.misbehave(mischief));
+    Ok(server)
+}
+
+/// What the controller sends and takes, and its configuration: the numbers of an older controller of the maker.
+const INPUT: u32 = 100;
+const OUTPUT: u32 = 150;
+const CONFIGURATION: u32 = 1;
+
+/// Serves a controller as an adapter.
+///
+/// # Errors
+/// When the ports cannot be had.
+pub fn serve(start: Start, listen: Listen, faults: Option<FaultSpec>) -> io::Result<Server<Controller>> {
+    let size = u16::try_from(Image::BYTES).map_err(io::Error::other)?;
+    let setup = Setup::new(identity(), (INPUT, size), (OUTPUT, size), CONFIGURATION);
+    Server::start(setup, Controller(Simulated(Simulator::new(start))), listen, faults.map(Faults::pair))
+}
+
+/// The state of a device that works (volume 2, 2-4.2.2).
+const OPERATIONAL: u8 = 3;
+
+fn identity() -> Identity {
+    Identity {
+        address: SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, PORT),
+        vendor: 636,
+        device_type: 43,
+        product: 5,
+        revision: Revision { major: 1, minor: 1 },
+        status: 0,
+        serial: 1,
+        name: "YRCX simulator of armctl".to_owned(),
+        state: Some(OPERATIONAL),
+    }
+}
+
+/// Faults of images on their way.
+pub fn faults(text: &str) -> Result<FaultSpec, String> {
+    let spec: FaultSpec = text.parse().map_err(|error| format!("{error}"))?;
+    if spec.busy.per_10_000() > 0 { Err("busy is not for yrcx".to_owned()) } else { Ok(spec) }
+}
+
+/// What an adapter does wrong, by its name.
+pub fn mischief(text: &str) -> Result<AdapterFault, String> {
+    let found = AdapterFault::ALL.iter().find(|(name, _)| *name == text);
+    found.map(|(_, mischief)| *mischief).ok_or_else(|| {
+        let names = AdapterFault::ALL.map(|(name, _)| name).join(", ");
+        format!("there are {names}")
+    })
+}
+
+/// A simulated controller behind its adapter.
+#[derive(Debug)]
+pub struct Controller(pub Simulated);
+
+impl Application for Controller {
+    fn image_out(&mut self, now: Duration, _instance: u32, image: &[u8], run: bool) {
+        // What a master shows while it idles is not meant yet, or not any more.
+        if run {
+            self.0.input(now, Some(image));
+        }
+    }
+
+    fn image_in(&mut self, now: Duration, _instance: u32, image: &mut [u8]) {
+        let shown = self.0.output(now).unwrap_or_default();
+        for (byte, shown) in image.iter_mut().zip(shown) {
+            *byte = shown;
+        }
+    }
+
+    fn event(&mut self, now: Duration, event: &Event) {
+        if let Event::Closed(peer) | Event::TimedOut(peer) = event
+            && peer.role == Role::ExclusiveOwner
+        {
+            self.0.input(now, None);
+        }
+    }
+}

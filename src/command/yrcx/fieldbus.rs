@@ -1,0 +1,170 @@
+//! What each fieldbus must do that a controller may be reached over. `buses.rs` lists them.
+
+use std::any::Any;
+use std::fmt;
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use futures_util::future::LocalBoxFuture;
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::decode::images::BusDecoder;
+use crate::command::face::layers::Layers;
+use crate::controller::yrcx::alarm::Alarm;
+use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::simulator::Start;
+use crate::failure::Failure;
+use crate::settings::Robot;
+use crate::settings::target::{Bus, Place, Sim, Target};
+use crate::transport::image::tap::Tap;
+use crate::transport::image::{ImageLink, LinkError};
+use crate::transport::tap::LINKTYPE_RAW;
+
+/// A fieldbus: how controllers on it are reached, asked, looked for and simulated.
+pub trait Fieldbus: fmt::Debug + Sync {
+    /// The name of it: the word of its commands, and what its schemes say that they lead to.
+    fn name(&self) -> &'static str;
+
+    /// The alarm of a controller whose link over it is lost; the next number is the one of a loss that lasts.
+    fn link_alarm(&self) -> Alarm;
+
+    /// The kind of packets that records have, as in a capture file: packets of IP unless it has frames of its own.
+    fn link_type(&self) -> u16 {
+        LINKTYPE_RAW
+    }
+
+    /// Opens a link: one that commands the controller, which then is shown the resting image, or one that only looks and
+    /// changes nothing for whoever commands it.
+    fn open<'a>(&'a self, at: At<'a>, purpose: Purpose) -> LocalBoxFuture<'a, Result<ImageLink, LinkError>>;
+
+    /// Opens what can be asked of the device without a link for images.
+    fn board<'a>(&'a self, at: At<'a>) -> LocalBoxFuture<'a, Result<Box<dyn Board>, LinkError>>;
+
+    /// The layers of `robots check` between the name and the signals, in order; the first is there whatever fails.
+    fn layers(&self) -> &'static [&'static str];
+
+    /// What finds its images in captures.
+    fn decoder(&self) -> Box<dyn BusDecoder>;
+
+    /// Starts a simulated controller on it, as the URL of a simulator says.
+    fn simulate(&self, sim: &Sim) -> Result<Simulation, Failure>;
+}
+
+/// Where a controller is on a fieldbus.
+#[derive(Debug, Clone)]
+pub struct At<'a> {
+    /// The robot, for its time-out and its name.
+    pub robot: &'a Robot,
+    /// What its URL says, or what was made up for a simulator.
+    pub bus: &'a Bus,
+    /// Who records what passes.
+    pub tap: Tap,
+}
+
+/// What a link is opened for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// To do what the URL says: mostly to command.
+    Command,
+    /// To see what the controller shows by itself.
+    Look,
+}
+
+/// What can be asked of a device without a link for images, by the commands of its fieldbus and by `robots check`.
+pub trait Board: fmt::Debug + Any {
+    /// Looks at the layers up to the signals, and at what the controller shows; `None` where something failed before.
+    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>>;
+
+    /// Takes leave of it.
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()>;
+}
+
+/// A simulated controller on a fieldbus in this process.
+#[derive(Debug)]
+pub struct Simulation {
+    /// Where it is.
+    pub bus: Bus,
+    /// The controller.
+    pub controller: Box<dyn fmt::Debug>,
+}
+
+/// How one fieldbus is searched, as the command line wants it.
+pub trait Search {
+    /// What is to be searched.
+    fn scope(&self) -> Scope;
+
+    /// Asks who is there until `wait` is over.
+    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Found>, Failure>>;
+}
+
+/// What is to be searched of a fieldbus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Scope {
+    /// Nothing, as it has to be told where.
+    Nothing,
+    /// What is usual. That it cannot be asked is only a warning.
+    Usual,
+    /// A network or an adapter that was named.
+    Network,
+    /// Certain devices, and nothing else.
+    Devices,
+}
+
+/// A device that answered. What it says of itself is untrusted.
+#[derive(Debug)]
+pub struct Found {
+    /// Where the answer came from.
+    pub address: String,
+    /// The URL for `-t`.
+    pub target: String,
+    /// Whether it may be a yrcx, by the number of its maker.
+    pub is_yrcx: bool,
+    /// What it says of itself, in a line.
+    pub device: String,
+    /// The same as data, in the words of its fieldbus.
+    pub identity: Map<String, Value>,
+}
+
+/// What a device says of itself, as data.
+pub fn fields(identity: &impl Serialize) -> Result<Map<String, Value>, Failure> {
+    match serde_json::to_value(identity) {
+        Ok(Value::Object(fields)) => Ok(fields),
+        Ok(_) => Err(Failure::local("an identity has no fields")),
+        Err(error) => Err(Failure::local(error.to_string())),
+    }
+}
+
+/// How one fieldbus serves a controller, as the command line wants it.
+pub trait Serve {
+    /// Begins to serve, with threads or tasks of its own. Where the fieldbus has several simulators, `simulator` is the
+    /// name of one.
+    fn serve(&self, simulator: Option<&str>, start: Start) -> Result<Served, Failure>;
+}
+
+/// What lines of a console do.
+pub type Console = dyn FnMut(&str) -> Result<String, String>;
+
+/// A controller that is served as long as this lives.
+pub struct Served {
+    /// The URL to reach it by.
+    pub target: String,
+    /// Where others may come from, where it is a network.
+    pub address: Option<SocketAddr>,
+    /// Does what a line of the console says, and tells what was done, or why not.
+    pub console: Box<Console>,
+}
+
+impl fmt::Debug for Served {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.target)
+    }
+}
+
+/// A URL that leads to a fieldbus, taken apart.
+pub fn bus_of(url: &str) -> Result<Bus, Failure> {
+    match url.parse::<Target>()?.place {
+        Place::Bus(bus) => Ok(bus),
+        _ => Err(Failure::local(format!("{url} leads to no fieldbus"))),
+    }
+}

@@ -1,0 +1,64 @@
+//! `armctl sim yrcx`: a controller on a fieldbus, for others.
+
+use std::io;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::buses::Servers;
+use super::fieldbus::Served;
+use super::simulated::start;
+use crate::command::serve::{self, Serving, Started};
+use crate::failure::Failure;
+use crate::settings::target::bus::simulators;
+
+/// A YRCX on a fieldbus
+#[derive(Debug, Args)]
+#[command(
+    after_help = "One connection owns the outputs; others may only listen (role=input_only with out=238, listen_only with \
+    out=237). The console takes `mischief stall` and `mischief off`, too."
+)]
+pub struct ServeArgs {
+    /// The fieldbus that it is on
+    #[arg(long, value_name = "BUS", value_parser = simulators().map(|(name, _)| name).collect::<Vec<_>>())]
+    bus: Option<String>,
+    #[command(flatten)]
+    servers: Servers,
+    /// Start state (TOML): robots, memory, programs, alarms, timed events
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
+    /// Take lines on stdin; `help` lists them
+    #[arg(long)]
+    console: bool,
+}
+
+impl serve::Serve for ServeArgs {
+    const ID: &'static str = "sim.yrcx";
+    type Report = Serving;
+    type Server = Served;
+
+    async fn start(self) -> Result<Started<Self>, Failure> {
+        let wanted = self.bus.as_deref();
+        let bus = simulators().find(|(name, _)| wanted.is_none_or(|wanted| wanted == *name)).map(|(_, bus)| bus);
+        let all = self.servers.each();
+        let serve = all.into_iter().find(|(fieldbus, _)| bus == Some(fieldbus.name())).map(|(_, serve)| serve);
+        let serve = serve.ok_or_else(|| Failure::local("no fieldbus serves that simulator"))?;
+        let server = serve.serve(wanted, start(self.state.as_deref())?)?;
+        Ok(Started {
+            report: Serving { family: "yrcx", target: server.target.clone() },
+            address: server.address,
+            server,
+            with_console: self.console,
+        })
+    }
+}
+
+impl serve::Server for Served {
+    async fn turn(&mut self) -> io::Result<()> {
+        std::future::pending().await
+    }
+
+    fn console(&mut self, line: &str) -> Result<String, String> {
+        (self.console)(line)
+    }
+}

@@ -1,0 +1,232 @@
+//! The seam for fieldbuses over EtherNet/IP: a class 1 connection, or an assembly that is read by messages.
+
+use std::net::{SocketAddr, SocketAddrV4};
+use std::sync::Arc;
+use std::time::Duration;
+
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+
+use super::client::Client;
+use super::error::EipError;
+use super::originator::State;
+use super::reader::{Assembly, Reader};
+use super::scanner::{Connection, Scanner};
+use super::settings::{Role, Settings};
+use super::tap::Tap;
+use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
+
+/// A class 1 connection.
+#[derive(Debug)]
+pub struct Class1 {
+    connection: Connection,
+    sizes: Sizes,
+    /// What the device does with its outputs once it is not heard any more.
+    outputs: Outputs,
+    /// The opening that is known of.
+    generation: u32,
+    /// The change that has not left yet.
+    pending: Option<u64>,
+}
+
+impl Class1 {
+    /// Opens it to the first IPv4 address of the host. All of a process share a UDP socket.
+    pub async fn open(host: &str, port: u16, settings: Settings, tap: Tap) -> Result<Self, EipError> {
+        let target = resolve(host, port).await?;
+        let sizes = Sizes { output: settings.output_size.into(), input: settings.input_size.into() };
+        let outputs = match settings.role {
+            Role::ExclusiveOwner => {
+                Outputs::ReleasedWithin(settings.rpi.saturating_mul(settings.multiplier.intervals()))
+            }
+            Role::InputOnly | Role::ListenOnly => Outputs::Never,
+        };
+        let connection = Scanner::shared()?.open(target, settings, tap).await?;
+        let generation = connection.view().generation;
+        Ok(Self { connection, sizes, outputs, generation, pending: None })
+    }
+
+    async fn wait(&mut self, known: Known<'_>) -> Event {
+        loop {
+            let view = self.connection.view();
+            let is_open = view.state == State::Open;
+            if known.is_up && !(is_open && view.generation == self.generation) {
+                self.pending = None;
+                let text = view.trouble.map_or_else(|| "it was opened anew".to_owned(), |error| error.to_string());
+                return Event::Lost(LinkError::Lost { cause: Cause::new(text), outputs: self.outputs });
+            }
+            if !known.is_up && is_open {
+                self.generation = view.generation;
+                return Event::Reopened;
+            }
+            if known.is_up && self.pending.is_some_and(|change| view.sent >= change) {
+                self.pending = None;
+                return Event::Sent;
+            }
+            let input = view.input.filter(|input| input.generation == self.generation);
+            if let Some(input) = input.filter(|input| known.is_news(&input.image)) {
+                return Event::Image(input.image);
+            }
+            self.connection.changed().await;
+        }
+    }
+}
+
+impl ImageConnection for Class1 {
+    fn sizes(&self) -> Sizes {
+        self.sizes
+    }
+
+    fn show(&mut self, image: &[u8]) -> Result<(), LinkError> {
+        // What was to be seen before is replaced, whatever becomes of this.
+        self.pending = None;
+        let shown = self.connection.set_image(self.generation, image).and_then(|change| {
+            // From the first image after an opening on the device may act upon it.
+            if self.connection.view().run { Ok(change) } else { self.connection.set_run(self.generation, true) }
+        });
+        match shown {
+            Ok(change) => {
+                self.pending = Some(change);
+                Ok(())
+            }
+            // The loss is told by `next`.
+            Err(EipError::Outdated | EipError::Ended) => Ok(()),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
+        self.wait(known).boxed_local()
+    }
+
+    fn traffic(&self) -> Option<Traffic> {
+        let view = self.connection.view();
+        let counted = view.statistics;
+        let odd = vec![
+            (counted.lost, "lost"),
+            (counted.late, "late"),
+            (counted.stale, "stale"),
+            (counted.misfit, "of a wrong size"),
+            (counted.skipped, "not sent in time"),
+        ];
+        Some(Traffic { sent: counted.sent, received: counted.received, intervals: view.intervals, odd })
+    }
+
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
+        async move { self.connection.close().await.map_err(LinkError::from) }.boxed_local()
+    }
+}
+
+/// What the device shows in an assembly, by messages with a pause between them. Nothing can be shown to it.
+#[derive(Debug)]
+pub struct Reading {
+    reader: Reader,
+    size: usize,
+}
+
+impl Reading {
+    /// Reads it for the first time.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub async fn open(client: Client, assembly: Assembly, pause: Duration) -> Result<Self, EipError> {
+        let reader = Reader::open(client, assembly, pause).await?;
+        Ok(Self { reader, size: assembly.size.into() })
+    }
+
+    async fn wait(&mut self, known: Known<'_>) -> Event {
+        loop {
+            match self.reader.reading() {
+                Ok(_) if !known.is_up => return Event::Reopened,
+                Ok(image) if known.is_news(&image) => return Event::Image(Arc::clone(&image)),
+                Err(error) if known.is_up => {
+                    return Event::Lost(LinkError::Lost { cause: Cause::new(error), outputs: Outputs::Never });
+                }
+                Ok(_) | Err(_) => {}
+            }
+            self.reader.changed().await;
+        }
+    }
+}
+
+impl ImageConnection for Reading {
+    fn sizes(&self) -> Sizes {
+        Sizes { output: 0, input: self.size }
+    }
+
+    fn show(&mut self, _image: &[u8]) -> Result<(), LinkError> {
+        Err(LinkError::Settings(Cause::new("a link that only reads shows nothing")))
+    }
+
+    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
+        self.wait(known).boxed_local()
+    }
+
+    fn traffic(&self) -> Option<Traffic> {
+        None
+    }
+
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
+        async move {
+            self.reader.close().await;
+            Ok(())
+        }
+        .boxed_local()
+    }
+}
+
+/// The first IPv4 address of a host.
+///
+/// # Errors
+/// When there is none.
+pub async fn resolve(host: &str, port: u16) -> Result<SocketAddrV4, EipError> {
+    let found = tokio::net::lookup_host((host, port)).await;
+    let mut addresses = found.map_err(|_| EipError::NotFound { host: host.to_owned() })?;
+    let first = addresses.find_map(|address| match address {
+        SocketAddr::V4(address) => Some(address),
+        SocketAddr::V6(_) => None,
+    });
+    first.ok_or_else(|| EipError::NotIpv4 { host: host.to_owned() })
+}
+
+/// Extended status of a refusal: somebody owns the outputs.
+const OWNED: u32 = 0x0106;
+/// What of a URL a device may not like.
+const CONNECTION: &[&str] = &["in", "out", "config", "in_size", "out_size"];
+
+impl From<EipError> for LinkError {
+    fn from(error: EipError) -> Self {
+        let known = error.code();
+        let cause = Cause { code: known.map(|code| format!("{:#06x}", code.code)), ..Cause::new(&error) };
+        match error {
+            EipError::NotFound { .. } => {
+                Self::Silent(cause.advice("check the name, or use the address of the controller"))
+            }
+            EipError::NotIpv4 { .. } => Self::Settings(cause.advice("use the IPv4 address of the controller")),
+            EipError::Unreachable { .. }
+            | EipError::NoAnswer { .. }
+            | EipError::Hangup { .. }
+            | EipError::Silent { .. } => Self::Silent(
+                cause.advice("check the address, that the controller is on, and that its EtherNet/IP board is enabled"),
+            ),
+            EipError::Encapsulation { .. } | EipError::Refused { .. } => match known {
+                Some(code) if code.code == OWNED => Self::Owned(cause),
+                Some(code) => Self::Refused(cause.advice(as_advice(code.remedy))),
+                None => Self::Refused(cause.options(CONNECTION)),
+            },
+            EipError::Malformed { .. } | EipError::Senseless { .. } => {
+                Self::Malformed(cause.advice("check that an EtherNet/IP adapter has this address"))
+            }
+            EipError::WrongSize { .. } => Self::Size(cause.options(&["in", "in_size"])),
+            EipError::Impossible(_) => Self::Settings(cause),
+            EipError::Local { .. } | EipError::Outdated | EipError::Ended => {
+                Self::Local(cause.advice("check the network settings of this machine, and its firewall"))
+            }
+        }
+    }
+}
+
+/// A remedy as advice is written: small, without a full stop.
+pub fn as_advice(remedy: &str) -> String {
+    let mut chars = remedy.trim_end_matches('.').chars();
+    chars.next().map(|first| first.to_lowercase().chain(chars).collect()).unwrap_or_default()
+}

@@ -1,0 +1,102 @@
+//! A connection whose other end is in this process, on tokio's clock, which tests can halt and turn.
+
+use std::fmt;
+use std::time::Duration;
+
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+use tokio::time::{Instant, sleep_until};
+
+use super::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
+
+/// The other end of a connection in this process, such as a simulated controller.
+pub trait ImagePeer: fmt::Debug {
+    /// Takes what it is shown from `now` on; `None`: whoever showed something is gone.
+    fn input(&mut self, now: Duration, image: Option<&[u8]>);
+    /// What it shows at `now`; `None` while the link is down.
+    fn output(&mut self, now: Duration) -> Option<Vec<u8>>;
+    /// When it may show something else by itself.
+    fn wake(&self) -> Option<Duration>;
+}
+
+/// Time between two images to a peer in this process.
+pub const CYCLE: Duration = Duration::from_millis(5);
+
+/// A connection to a peer in this process.
+#[derive(Debug)]
+pub struct InProcess {
+    peer: Box<dyn ImagePeer>,
+    start: Instant,
+    /// Bytes of what the peer showed at first, and takes.
+    size: usize,
+    /// What has not left yet.
+    pending: Option<Vec<u8>>,
+    /// The earliest moment for the next image to leave.
+    due: Duration,
+}
+
+impl InProcess {
+    /// Begins to show nothing yet. The peer takes images of the size that it shows.
+    pub fn new(mut peer: Box<dyn ImagePeer>) -> Self {
+        let size = peer.output(Duration::ZERO).map_or(0, |image| image.len());
+        Self { peer, start: Instant::now(), size, pending: None, due: Duration::ZERO }
+    }
+
+    async fn wait(&mut self, known: Known<'_>) -> Event {
+        loop {
+            let now = self.start.elapsed();
+            let shown = self.peer.output(now);
+            match (&shown, known.is_up) {
+                (None, true) => {
+                    self.pending = None;
+                    let cause = Cause::new("the peer is gone");
+                    return Event::Lost(LinkError::Lost { cause, outputs: Outputs::Released });
+                }
+                (Some(_), false) => return Event::Reopened,
+                _ => {}
+            }
+            if known.is_up
+                && now >= self.due
+                && let Some(image) = self.pending.take()
+            {
+                self.peer.input(now, Some(&image));
+                self.due = now + CYCLE;
+                return Event::Sent;
+            }
+            if let Some(image) = shown.filter(|image| known.is_news(image)) {
+                return Event::Image(image.into());
+            }
+            // Whoever is due all the time is looked at in the rhythm of the link.
+            let wake = self.peer.wake().map(|wake| if wake > now { wake } else { now + CYCLE });
+            let leave = self.pending.as_ref().filter(|_| known.is_up).map(|_| self.due);
+            match wake.into_iter().chain(leave).min() {
+                Some(due) => sleep_until(self.start + due).await,
+                None => std::future::pending().await,
+            }
+        }
+    }
+}
+
+impl ImageConnection for InProcess {
+    fn sizes(&self) -> Sizes {
+        Sizes { output: self.size, input: self.size }
+    }
+
+    fn show(&mut self, image: &[u8]) -> Result<(), LinkError> {
+        self.pending = Some(image.to_vec());
+        Ok(())
+    }
+
+    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
+        self.wait(known).boxed_local()
+    }
+
+    fn traffic(&self) -> Option<Traffic> {
+        None
+    }
+
+    fn close(mut self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
+        self.peer.input(self.start.elapsed(), None);
+        std::future::ready(Ok(())).boxed_local()
+    }
+}

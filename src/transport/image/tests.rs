@@ -1,0 +1,93 @@
+//! What leaves when, what is told, and what becomes of it when the peer is gone.
+
+use std::collections::VecDeque;
+use std::sync::Mutex;
+
+use super::*;
+
+/// What was shown, and when.
+type Heard = Vec<(Duration, Option<Vec<u8>>)>;
+
+/// Shows back what it is shown, a scan of 3 ms later; is gone between two moments.
+#[derive(Debug, Default)]
+struct Echo {
+    coming: VecDeque<(Duration, Vec<u8>)>,
+    shown: Vec<u8>,
+    gone: Option<(Duration, Duration)>,
+    heard: Arc<Mutex<Heard>>,
+}
+
+impl ImagePeer for Echo {
+    fn input(&mut self, now: Duration, image: Option<&[u8]>) {
+        self.heard.lock().unwrap().push((now, image.map(<[u8]>::to_vec)));
+        self.coming.extend(image.map(|image| (now + Duration::from_millis(3), image.to_vec())));
+    }
+
+    fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
+        while let Some((_, image)) = self.coming.pop_front_if(|(at, _)| *at <= now) {
+            self.shown = image;
+        }
+        let is_gone = self.gone.is_some_and(|(from, to)| (from..to).contains(&now));
+        (!is_gone).then(|| self.shown.clone())
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        let gone = self.gone.into_iter().flat_map(|(from, to)| [from, to]);
+        self.coming.iter().map(|(at, _)| *at).chain(gone).min()
+    }
+}
+
+fn at(ms: u64) -> Duration {
+    Duration::from_millis(ms)
+}
+
+async fn later(link: &mut ImageLink, ms: u64) -> Event {
+    link.next(Instant::now() + at(ms)).await
+}
+
+fn image(bytes: &[u8]) -> Event {
+    Event::Image(bytes.into())
+}
+
+#[tokio::test(start_paused = true)]
+async fn images_leave_in_the_rhythm_of_the_link_and_only_news_are_told() {
+    let echo = Echo::default();
+    let heard = Arc::clone(&echo.heard);
+    let mut link = ImageLink::in_process(Box::new(echo));
+    assert_eq!(later(&mut link, 10).await, image(&[]));
+    link.show(b"a").unwrap();
+    assert_eq!(later(&mut link, 10).await, Event::Sent);
+    link.show(b"b").unwrap();
+    link.show(b"c").unwrap();
+    assert_eq!(later(&mut link, 10).await, image(b"a"));
+    assert_eq!(later(&mut link, 10).await, Event::Sent);
+    assert_eq!(later(&mut link, 10).await, image(b"c"));
+    assert_eq!(later(&mut link, 10).await, Event::Timeout);
+    link.close().await.unwrap();
+    let heard: Vec<(u64, Option<Vec<u8>>)> = heard
+        .lock()
+        .unwrap()
+        .iter()
+        .map(|(at, image)| (u64::try_from(at.as_millis()).unwrap(), image.clone()))
+        .collect();
+    assert_eq!(heard, [(0, Some(b"a".to_vec())), (5, Some(b"c".to_vec())), (18, None)], "b never left");
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_was_to_be_sent_before_a_loss_is_not_sent_after_it() {
+    let echo = Echo { gone: Some((at(4), at(20))), ..Echo::default() };
+    let heard = Arc::clone(&echo.heard);
+    let mut link = ImageLink::in_process(Box::new(echo));
+    assert_eq!(later(&mut link, 1).await, image(&[]));
+    link.show(b"a").unwrap();
+    assert_eq!(later(&mut link, 1).await, Event::Sent);
+    link.show(b"b").unwrap();
+    assert_eq!(later(&mut link, 100).await, image(b"a"));
+    let lost = LinkError::Lost { cause: Cause::new("the peer is gone"), outputs: Outputs::Released };
+    assert_eq!(later(&mut link, 100).await, Event::Lost(lost));
+    assert_eq!(later(&mut link, 10).await, Event::Timeout);
+    assert_eq!(later(&mut link, 100).await, Event::Reopened);
+    assert_eq!(later(&mut link, 100).await, image(b"a"), "shown again after every opening");
+    assert_eq!(later(&mut link, 100).await, Event::Timeout);
+    assert_eq!(heard.lock().unwrap().len(), 1);
+}
