@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::trouble::Misfit;
+use super::error::Misfit;
 use super::wire::connect::{DataDescription, ExpectedModule, ExpectedSubmodule, ModuleDiff, Offset};
 
 /// Shortest data of a frame.

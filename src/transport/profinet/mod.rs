@@ -6,11 +6,11 @@ use std::time::Duration;
 
 pub mod controller;
 pub mod device;
+pub mod error;
 pub mod layout;
 pub mod settings;
 #[cfg(test)]
 mod tests;
-pub mod trouble;
 pub mod wire;
 
 /// A moment, as time passed since an origin of the driver's choice. It never runs backwards.

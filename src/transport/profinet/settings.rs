@@ -3,8 +3,8 @@
 use std::fmt;
 use std::time::Duration;
 
+use super::error::ProfinetError;
 use super::layout::{Direction, Layout};
-use super::trouble::Trouble;
 use super::wire::Mac;
 use super::wire::dcp::{self, IpSuite};
 use super::wire::record::Parameter;
@@ -88,8 +88,8 @@ impl Settings {
     }
 
     /// Whether a connection can be so.
-    pub fn check(&self) -> Result<(), Trouble> {
-        let wrong = |text: String| Err(Trouble::Impossible(text));
+    pub fn check(&self) -> Result<(), ProfinetError> {
+        let wrong = |text: String| Err(ProfinetError::Impossible(text));
         if let Station::Name(name) = &self.station
             && let Err(why) = dcp::check_name(name)
         {
@@ -191,7 +191,7 @@ mod tests {
             Settings { swapped: 3, ..settings() },
         ];
         for settings in cases {
-            assert!(matches!(settings.check(), Err(Trouble::Impossible(_))), "{settings:?}");
+            assert!(matches!(settings.check(), Err(ProfinetError::Impossible(_))), "{settings:?}");
         }
     }
 

@@ -3,8 +3,8 @@
 use std::net::SocketAddrV4;
 
 use super::super::Now;
+use super::super::error::{Misfit, ProfinetError};
 use super::super::settings::Startup;
-use super::super::trouble::{Misfit, Trouble};
 use super::super::wire::block::{self, BlockType, Control};
 use super::super::wire::connect::{ModuleDiff, Response};
 use super::super::wire::frame::id;
@@ -29,7 +29,7 @@ impl Controller {
             let trouble = trouble.clone();
             let failed = match refused(RELEASE, outcome) {
                 // It had ended before.
-                Err(Trouble::Refused { status, .. }) if status.is_unknown_ar() => None,
+                Err(ProfinetError::Refused { status, .. }) if status.is_unknown_ar() => None,
                 other => other.err(),
             };
             return self.released(now, trouble.or(failed));
@@ -44,17 +44,20 @@ impl Controller {
         match done {
             Ok(()) => {}
             // The device has no connection that could be released.
-            Err(trouble @ (Trouble::Refused { .. } | Trouble::Rejected { .. })) if step == Step::Connect => {
+            Err(trouble @ (ProfinetError::Refused { .. } | ProfinetError::Rejected { .. }))
+                if step == Step::Connect =>
+            {
                 self.lost(now, trouble);
             }
             Err(trouble) => self.release(now, Some(trouble)),
         }
     }
 
-    fn connected(&mut self, now: Now, outcome: Outcome) -> Result<(), Trouble> {
+    fn connected(&mut self, now: Now, outcome: Outcome) -> Result<(), ProfinetError> {
         let blocks = refused(CONNECT, outcome)?;
-        let responses = Response::parse_all(&blocks).map_err(|error| Trouble::Malformed { what: CONNECT, error })?;
-        let senseless = |why| Trouble::Senseless { what: CONNECT, why };
+        let responses =
+            Response::parse_all(&blocks).map_err(|error| ProfinetError::Malformed { what: CONNECT, error })?;
+        let senseless = |why| ProfinetError::Senseless { what: CONNECT, why };
         let mac = self.device.as_ref().map(|device| device.mac).unwrap_or_default();
         let Some(ar) = &mut self.ar else { return Ok(()) };
         let (mut has_ar, mut input, mut output, mut alarm) = (false, None, None, None);
@@ -75,7 +78,7 @@ impl Controller {
                 Response::ModuleDiff(modules) => {
                     let misfits = self.settings.layout.misfits(modules);
                     if !misfits.is_empty() {
-                        return Err(Trouble::Modules(misfits));
+                        return Err(ProfinetError::Modules(misfits));
                     }
                 }
                 _ => {}
@@ -108,22 +111,22 @@ impl Controller {
         Ok(())
     }
 
-    fn written(&mut self, now: Now, outcome: Outcome) -> Result<(), Trouble> {
+    fn written(&mut self, now: Now, outcome: Outcome) -> Result<(), ProfinetError> {
         let blocks = refused(WRITE, outcome)?;
         let statuses =
-            record::parse_write_answer(&blocks).map_err(|error| Trouble::Malformed { what: WRITE, error })?;
+            record::parse_write_answer(&blocks).map_err(|error| ProfinetError::Malformed { what: WRITE, error })?;
         if let Some((_, status)) = statuses.iter().find(|(_, status)| *status != 0) {
-            return Err(Trouble::Refused { what: WRITE, status: Status(*status) });
+            return Err(ProfinetError::Refused { what: WRITE, status: Status(*status) });
         }
         self.end_parameters(now);
         Ok(())
     }
 
-    fn parameters_ended(&mut self, now: Now, outcome: Outcome) -> Result<(), Trouble> {
+    fn parameters_ended(&mut self, now: Now, outcome: Outcome) -> Result<(), ProfinetError> {
         let blocks = refused(PRM_END, outcome)?;
-        let malformed = |error| Trouble::Malformed { what: PRM_END, error };
+        let malformed = |error| ProfinetError::Malformed { what: PRM_END, error };
         let blocks = block::walk(&blocks).map_err(malformed)?;
-        let senseless = |why| Trouble::Senseless { what: PRM_END, why };
+        let senseless = |why| ProfinetError::Senseless { what: PRM_END, why };
         let found = blocks.iter().find(|block| block.kind == BlockType::PRM_END.answer());
         let control = Control::parse(found.ok_or_else(|| senseless("its block is missing"))?).map_err(malformed)?;
         if control.ar != self.uuid() {
@@ -166,7 +169,7 @@ impl Controller {
         let misfits: Vec<Misfit> =
             modules.flat_map(|modules: Vec<ModuleDiff>| self.settings.layout.misfits(&modules)).collect();
         if !misfits.is_empty() {
-            return self.release(now, Some(Trouble::Modules(misfits)));
+            return self.release(now, Some(ProfinetError::Modules(misfits)));
         }
         // It may come before the answer to PrmEnd, which then is not waited for.
         if self.ar.as_ref().is_some_and(|ar| ar.step == Step::Ready) {

@@ -1,9 +1,9 @@
 //! Cyclic frames: what goes out on time, and what of what comes is an image.
 
 use super::super::Now;
+use super::super::error::Unusable;
 use super::super::layout::{Direction, FrameLayout, Layout};
 use super::super::settings::{SEND_CLOCK, Settings, swap};
-use super::super::trouble::Unusable;
 use super::super::wire::cyclic::{Cyclic, GOOD, RUNNING};
 
 /// Sends.

@@ -16,8 +16,8 @@ use self::cyclic::{Consumer, Producer, Verdict};
 use self::numbers::Numbers;
 use self::view::{Device, Input, State, Statistics, Step, View};
 use super::Now;
+use super::error::{ProfinetError, Unusable};
 use super::settings::Settings;
-use super::trouble::{Trouble, Unusable};
 use super::wire::alarm::{self, Notification, Priority};
 use super::wire::dcp::IpSuite;
 use super::wire::frame::{Frame, TAG_HIGH, id};
@@ -82,7 +82,7 @@ enum Phase {
     WaitingForData(Now),
     Data,
     /// Release is on its way; then all ends, or it is opened again because of the trouble.
-    Releasing(Option<Trouble>),
+    Releasing(Option<ProfinetError>),
     /// Until the next try.
     Waiting(Now),
     Ended,
@@ -139,7 +139,7 @@ impl Controller {
     ///
     /// # Errors
     /// If no connection can be as `settings` say.
-    pub fn new(here: Here, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, Trouble> {
+    pub fn new(here: Here, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, ProfinetError> {
         settings.check()?;
         let view = View {
             state: State::Opening,
@@ -214,15 +214,15 @@ impl Controller {
     ///
     /// # Errors
     /// If the connection is not up in this generation, or the image has another size.
-    pub fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, Trouble> {
+    pub fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, ProfinetError> {
         match self.view.state {
             State::Open if generation == self.view.generation => {}
-            State::Closing | State::Closed => return Err(Trouble::Ended),
-            _ => return Err(Trouble::Outdated),
+            State::Closing | State::Closed => return Err(ProfinetError::Ended),
+            _ => return Err(ProfinetError::Outdated),
         }
         if image.len() != self.image.len() {
             let (len, size) = (image.len(), self.image.len());
-            return Err(Trouble::Impossible(format!("the output image has {size} bytes, not {len}")));
+            return Err(ProfinetError::Impossible(format!("the output image has {size} bytes, not {len}")));
         }
         self.image.copy_from_slice(image);
         self.revision += 1;
@@ -243,7 +243,7 @@ impl Controller {
     }
 
     /// Something that was to be done on a local socket did not work. The connection lives on as long as it can.
-    pub fn failed(&mut self, trouble: Trouble) {
+    pub fn failed(&mut self, trouble: ProfinetError) {
         self.view.trouble = Some(trouble);
         self.has_changed = true;
     }
@@ -296,10 +296,10 @@ impl Controller {
             Phase::Address(address) if address.wake() <= now => self.address_on(now),
             Phase::WaitingForData(until) if *until <= now => {
                 let missing = match self.view.trouble {
-                    Some(Trouble::Unusable(why)) => why,
+                    Some(ProfinetError::Unusable(why)) => why,
                     _ => Unusable::Missing,
                 };
-                self.abort(now, ABORTED, Trouble::NoData { after: START, missing });
+                self.abort(now, ABORTED, ProfinetError::NoData { after: START, missing });
             }
             _ => {}
         }
@@ -307,7 +307,7 @@ impl Controller {
         let io = self.ar.as_ref().and_then(|ar| ar.io.as_ref());
         if io.and_then(|io| self.watchdog(io)).is_some_and(|until| until <= now) {
             let after = self.settings.watchdog_time();
-            self.abort(now, WATCHDOG, Trouble::Silent { after });
+            self.abort(now, WATCHDOG, ProfinetError::Silent { after });
             return;
         }
         self.poll_alarms(now);
@@ -318,7 +318,7 @@ impl Controller {
             None => {
                 let is_late = matches!(self.phase, Phase::Opening) && ar.step == Step::Ready && ar.ready_until <= now;
                 if is_late {
-                    self.release(now, Some(Trouble::NeverReady { after: START }));
+                    self.release(now, Some(ProfinetError::NeverReady { after: START }));
                 }
             }
         }
@@ -342,7 +342,7 @@ impl Controller {
         let is_lost = io.alarms.poll(now, &mut out);
         self.send_alarms(out);
         if is_lost {
-            self.abort(now, ALARM_LOST, Trouble::AlarmUnanswered);
+            self.abort(now, ALARM_LOST, ProfinetError::AlarmUnanswered);
         }
     }
 
@@ -398,7 +398,7 @@ impl Controller {
                 self.has_changed = true;
                 // The device waits for its parameters anew: a new connection brings them.
                 if is_plug && !matches!(self.phase, Phase::Releasing(_)) {
-                    self.release(now, Some(Trouble::Plugged { slot }));
+                    self.release(now, Some(ProfinetError::Plugged { slot }));
                 }
             }
         }
@@ -410,10 +410,10 @@ impl Controller {
         if let Phase::Releasing(trouble) = &self.phase {
             // Some devices say so before they answer.
             let trouble = trouble.clone();
-            let trouble = if is_answer { trouble } else { trouble.or(Some(Trouble::Aborted(status))) };
+            let trouble = if is_answer { trouble } else { trouble.or(Some(ProfinetError::Aborted(status))) };
             self.released(now, trouble);
         } else {
-            self.lost(now, Trouble::Aborted(status));
+            self.lost(now, ProfinetError::Aborted(status));
         }
     }
 
@@ -444,11 +444,11 @@ impl Controller {
                 self.rest();
                 self.before.losses += 1;
                 self.phase = Phase::WaitingForData(now + START);
-                self.view.trouble = Some(Trouble::Unusable(why));
+                self.view.trouble = Some(ProfinetError::Unusable(why));
                 self.show(State::Lost);
             }
             (Phase::WaitingForData(_), Verdict::Unusable(why)) => {
-                self.view.trouble = Some(Trouble::Unusable(why));
+                self.view.trouble = Some(ProfinetError::Unusable(why));
             }
             _ => {}
         }
@@ -477,7 +477,7 @@ impl Controller {
     }
 
     /// Ends the connection without a word of the device: it is told why.
-    fn abort(&mut self, now: Now, reason: u8, trouble: Trouble) {
+    fn abort(&mut self, now: Now, reason: u8, trouble: ProfinetError) {
         if let Some(io) = self.ar.as_ref().and_then(|ar| ar.io.as_ref()) {
             let error = io.alarms.error(Status::abort(reason).0);
             self.send_alarms(vec![error]);
@@ -486,9 +486,9 @@ impl Controller {
     }
 
     /// The connection has ended. It is opened again, unless it is to end or never was up.
-    fn lost(&mut self, now: Now, trouble: Trouble) {
+    fn lost(&mut self, now: Now, trouble: ProfinetError) {
         self.drop_ar();
-        let is_old = matches!(&trouble, Trouble::Refused { status, .. } if status.is_owned());
+        let is_old = matches!(&trouble, ProfinetError::Refused { status, .. } if status.is_owned());
         let wait = match self.view.generation {
             _ if self.is_over => return self.finish(Some(trouble)),
             // The connection of a process of ours that died runs out by itself.
@@ -513,7 +513,7 @@ impl Controller {
         self.rest();
     }
 
-    fn finish(&mut self, trouble: Option<Trouble>) {
+    fn finish(&mut self, trouble: Option<ProfinetError>) {
         if trouble.is_some() {
             self.view.trouble = trouble;
         }
@@ -546,12 +546,12 @@ impl Controller {
 }
 
 /// What came of a call, where it is not the answer that was hoped for.
-fn refused(what: &'static str, outcome: Outcome) -> Result<Vec<u8>, Trouble> {
+fn refused(what: &'static str, outcome: Outcome) -> Result<Vec<u8>, ProfinetError> {
     match outcome {
         Outcome::Answer(0, blocks) => Ok(blocks),
-        Outcome::Answer(status, _) => Err(Trouble::Refused { what, status: Status(status) }),
-        Outcome::Rejected(status) => Err(Trouble::Rejected { what, status }),
-        Outcome::Malformed(error) => Err(Trouble::Malformed { what, error }),
-        Outcome::Silent(after) => Err(Trouble::NoAnswer { what, after }),
+        Outcome::Answer(status, _) => Err(ProfinetError::Refused { what, status: Status(status) }),
+        Outcome::Rejected(status) => Err(ProfinetError::Rejected { what, status }),
+        Outcome::Malformed(error) => Err(ProfinetError::Malformed { what, error }),
+        Outcome::Silent(after) => Err(ProfinetError::NoAnswer { what, after }),
     }
 }

@@ -1,9 +1,9 @@
 //! Connect, and what follows it until data goes both ways; and the release.
 
 use super::super::Now;
+use super::super::error::ProfinetError;
 use super::super::layout::Direction;
 use super::super::settings::{SEND_CLOCK, Startup};
-use super::super::trouble::Trouble;
 use super::super::wire::Uuid;
 use super::super::wire::block::{BlockType, Control};
 use super::super::wire::connect::{ADVANCED, ANY_FRAME_ID, AlarmCr, Ar as ArBlock, Iocr, LEGACY, Offset, Request};
@@ -150,11 +150,11 @@ impl Controller {
     }
 
     /// Releases the connection, because of something or for good.
-    pub(super) fn release(&mut self, now: Now, trouble: Option<Trouble>) {
+    pub(super) fn release(&mut self, now: Now, trouble: Option<ProfinetError>) {
         self.rest();
         let tries = match trouble {
             // It most likely has gone.
-            Some(Trouble::NoAnswer { .. }) => 1,
+            Some(ProfinetError::NoAnswer { .. }) => 1,
             _ => TRIES,
         };
         if self.view.state == State::Open {
@@ -176,7 +176,7 @@ impl Controller {
     }
 
     /// The release is over.
-    pub(super) fn released(&mut self, now: Now, trouble: Option<Trouble>) {
+    pub(super) fn released(&mut self, now: Now, trouble: Option<ProfinetError>) {
         self.drop_ar();
         match trouble {
             _ if self.is_over => self.finish(trouble),

@@ -4,8 +4,8 @@ use std::net::Ipv4Addr;
 use std::time::Duration;
 
 use super::super::Now;
+use super::super::error::ProfinetError;
 use super::super::settings::Station;
-use super::super::trouble::Trouble;
 use super::super::wire::Mac;
 use super::super::wire::dcp::{self, Block, Dcp, IpSuite, Kind, Service, Setting};
 use super::super::wire::frame::{Frame, id};
@@ -93,7 +93,7 @@ impl Controller {
         if let Some(found) = search.found.take() {
             self.found(now, found);
         } else if search.tries == 0 {
-            self.lost(now, Trouble::NotFound { station: self.station(), after: PATIENCE * TRIES });
+            self.lost(now, ProfinetError::NotFound { station: self.station(), after: PATIENCE * TRIES });
         } else {
             search.tries -= 1;
             search.until = now + PATIENCE;
@@ -107,7 +107,7 @@ impl Controller {
         match self.settings.ip {
             Some(suite) if has != Some(suite.address) => self.set_address(now, found, suite),
             _ => match has {
-                None => self.lost(now, Trouble::NoAddress { station: self.station() }),
+                None => self.lost(now, ProfinetError::NoAddress { station: self.station() }),
                 Some(address) => self.located(now, &found, address),
             },
         }
@@ -116,7 +116,7 @@ impl Controller {
     fn set_address(&mut self, now: Now, found: Found, suite: IpSuite) {
         if !self.here.ip.reaches(suite.address) {
             let (station, device, here) = (self.station(), suite.address, self.here.ip.address);
-            return self.lost(now, Trouble::OtherNetwork { station, device, here });
+            return self.lost(now, ProfinetError::OtherNetwork { station, device, here });
         }
         self.set_step(Step::Address);
         let xid = self.numbers.xid();
@@ -138,7 +138,7 @@ impl Controller {
         let (mac, suite) = (address.found.mac, address.suite);
         match address.settle {
             Some(until) if until <= now => {
-                self.lost(now, Trouble::NoAnswer { what: WHAT, after: SETTLE });
+                self.lost(now, ProfinetError::NoAnswer { what: WHAT, after: SETTLE });
             }
             Some(_) => {
                 address.until = now + LOOK;
@@ -149,7 +149,7 @@ impl Controller {
                 self.ask_who(xid);
             }
             None if address.tries == 0 => {
-                self.lost(now, Trouble::NoAnswer { what: WHAT, after: PATIENCE * TRIES });
+                self.lost(now, ProfinetError::NoAnswer { what: WHAT, after: PATIENCE * TRIES });
             }
             None => {
                 address.tries -= 1;
@@ -194,7 +194,7 @@ impl Controller {
                 }
                 Some(first) if first.mac != mac => {
                     let cards = (first.mac, mac);
-                    self.lost(now, Trouble::Duplicate { station: self.station(), cards });
+                    self.lost(now, ProfinetError::Duplicate { station: self.station(), cards });
                 }
                 Some(_) => {}
             },
@@ -222,7 +222,7 @@ impl Controller {
                 address.settle = Some(now + SETTLE);
                 address.until = now + LOOK;
             }
-            Some(error) => self.lost(now, Trouble::Dcp { what: "DCP Set IP", error }),
+            Some(error) => self.lost(now, ProfinetError::Dcp { what: "DCP Set IP", error }),
             None => {}
         }
     }
@@ -231,11 +231,11 @@ impl Controller {
     fn located(&mut self, now: Now, found: &Found, address: Ipv4Addr) {
         let station = self.station();
         if found.station.ip.is_some_and(|(_, origin)| origin.is_in_conflict()) {
-            return self.lost(now, Trouble::AddressConflict { station, address });
+            return self.lost(now, ProfinetError::AddressConflict { station, address });
         }
         let here = self.here.ip.address;
         if !self.here.ip.reaches(address) || address == here {
-            return self.lost(now, Trouble::OtherNetwork { station, device: address, here });
+            return self.lost(now, ProfinetError::OtherNetwork { station, device: address, here });
         }
         let id = found.station.id.unwrap_or_default();
         let instance = found.station.instance.unwrap_or(1);

@@ -4,7 +4,7 @@ use std::net::Ipv4Addr;
 use std::sync::Arc;
 
 use super::super::Now;
-use super::super::trouble::Trouble;
+use super::super::error::ProfinetError;
 use super::super::wire::Mac;
 
 /// How far a connection is.
@@ -94,7 +94,7 @@ pub struct View {
     /// The last change of the output image that has left.
     pub sent: u64,
     /// What went wrong last.
-    pub trouble: Option<Trouble>,
+    pub trouble: Option<ProfinetError>,
     /// The device, once it was found.
     pub device: Option<Device>,
     /// What was counted.

@@ -2,8 +2,8 @@
 
 use super::super::controller::view::State;
 use super::super::device::{Event, Fault};
+use super::super::error::{ProfinetError, Unusable};
 use super::super::settings::Settings;
-use super::super::trouble::{Trouble, Unusable};
 use super::super::wire::alarm::{Notification, Priority};
 use super::super::wire::rpc::operation;
 use super::super::wire::status::Status;
@@ -66,7 +66,7 @@ fn a_plugged_module_brings_a_new_connection() {
     let mut world = World::open(setup(), settings(), "");
     world.device.raise(world.now, &alarm(Priority::Low, 4));
     world.until(1000 * MS, |world| world.view().state == State::Lost);
-    assert_eq!(world.view().trouble, Some(Trouble::Plugged { slot: 1 }));
+    assert_eq!(world.view().trouble, Some(ProfinetError::Plugged { slot: 1 }));
     world.until(10 * MS, |world| noted(world) == 1);
     world.until_open();
     assert_eq!(world.view().generation, 2);
@@ -80,16 +80,16 @@ fn a_device_that_goes_silent_is_lost_and_told() {
     world.device.set_fault(Some(Fault::Silent));
     let from = world.now;
     world.until(1000 * MS, |world| world.view().state == State::Lost);
-    assert_eq!(world.view().trouble, Some(Trouble::Silent { after: 320 * MS }));
+    assert_eq!(world.view().trouble, Some(ProfinetError::Silent { after: 320 * MS }));
     assert!(world.now.saturating_sub(from) <= 321 * MS);
     world.run(10 * MS);
     let ended = world.device.application().events.last().cloned();
     assert_eq!(ended, Some(Event::Ended(Some(Status::abort(5)))), "the device was told");
-    assert!(matches!(world.controller.set_image(1, &image(6)), Err(Trouble::Outdated)));
+    assert!(matches!(world.controller.set_image(1, &image(6)), Err(ProfinetError::Outdated)));
     world.device.set_fault(None);
     world.until_open();
     assert_eq!(world.view().generation, 2);
-    assert!(matches!(world.controller.set_image(1, &image(6)), Err(Trouble::Outdated)));
+    assert!(matches!(world.controller.set_image(1, &image(6)), Err(ProfinetError::Outdated)));
     let history = &world.device.application().history;
     assert_eq!(history.last(), Some(&Some(resting())));
     assert_eq!(history.iter().filter(|shown| **shown == Some(image(5))).count(), 1, "it is not shown again");
@@ -108,7 +108,7 @@ fn data_that_turns_bad_is_a_loss_and_comes_back_at_rest() {
         world.run(100 * MS);
         world.device.set_fault(Some(fault));
         world.until(100 * MS, |world| world.view().state == State::Lost);
-        assert_eq!((world.view().trouble, world.view().input), (Some(Trouble::Unusable(why)), None));
+        assert_eq!((world.view().trouble, world.view().input), (Some(ProfinetError::Unusable(why)), None));
         world.run(100 * MS);
         assert_eq!(world.device.application().image, Some(resting()), "{fault:?}");
         world.device.set_fault(None);
@@ -126,7 +126,7 @@ fn old_and_doubled_frames_are_no_news() {
     assert!(view.statistics.stale >= 60 && view.generation == 1, "{view:?}");
     world.device.set_fault(Some(Fault::Stale));
     world.until(1000 * MS, |world| world.view().state == State::Lost);
-    assert!(matches!(world.view().trouble, Some(Trouble::Silent { .. })), "a count that stands still is silence");
+    assert!(matches!(world.view().trouble, Some(ProfinetError::Silent { .. })), "a count that stands still is silence");
 }
 
 #[test]

@@ -2,9 +2,9 @@
 
 use super::super::controller::view::State;
 use super::super::device::{Device, Event, Fault};
+use super::super::error::{Misfit, ProfinetError, Unusable};
 use super::super::layout::Direction;
 use super::super::settings::{Settings, Startup, Station};
-use super::super::trouble::{Misfit, Trouble, Unusable};
 use super::super::wire::Mac;
 use super::super::wire::connect::Request;
 use super::super::wire::cyclic::{Cyclic, RUNNING};
@@ -80,7 +80,7 @@ fn connect_is_never_sent_twice_and_what_it_began_is_released() {
     let mut world = World::new(setup(), settings(), "");
     world.device.set_fault(Some(Fault::Mute));
     let view = world.run_out();
-    assert!(matches!(view.trouble, Some(Trouble::NoAnswer { what: "Connect", .. })), "{view:?}");
+    assert!(matches!(view.trouble, Some(ProfinetError::NoAnswer { what: "Connect", .. })), "{view:?}");
     assert_eq!((world.calls(operation::CONNECT).len(), world.calls(operation::RELEASE).len()), (1, 1));
 }
 
@@ -90,7 +90,7 @@ fn every_connection_has_numbers_of_its_own() {
     for reason in [0x1A, 0x05, 0x20] {
         world.device.abort(world.now, reason);
         world.until(1000 * MS, |world| world.view().state != State::Open);
-        assert_eq!(world.view().trouble, Some(Trouble::Aborted(Status::abort(reason))));
+        assert_eq!(world.view().trouble, Some(ProfinetError::Aborted(Status::abort(reason))));
         world.until_open();
     }
     let connects = world.calls(operation::CONNECT);
@@ -135,7 +135,7 @@ fn parameters_are_written_before_the_start() {
     }
     let wrong = Parameter { slot: 9, ..parameter(1) };
     let view = World::new(setup(), Settings { parameters: vec![wrong], ..settings() }, "").run_out();
-    assert_eq!(view.trouble, Some(Trouble::Refused { what: "Write", status: Status(0xDF80_B200) }));
+    assert_eq!(view.trouble, Some(ProfinetError::Refused { what: "Write", status: Status(0xDF80_B200) }));
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn a_station_is_found_by_its_card() {
     World::open(setup(), by_card.clone(), "");
     let other = Settings { station: Station::Mac(Mac([2, 0, 0, 0, 0, 9])), ..by_card };
     let view = World::new(setup(), other, "").run_out();
-    assert!(matches!(view.trouble, Some(Trouble::NotFound { .. })), "{view:?}");
+    assert!(matches!(view.trouble, Some(ProfinetError::NotFound { .. })), "{view:?}");
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn a_name_that_two_have_or_none_is_told() {
     let mac = Mac([2, 0, 0, 0, 0, 3]);
     world.twin = Some(Device::new(super::super::device::Setup { mac, ..setup() }, Mirror::default()));
     let view = world.run_out();
-    let Some(Trouble::Duplicate { cards, .. }) = view.trouble else { panic!("{view:?}") };
+    let Some(ProfinetError::Duplicate { cards, .. }) = view.trouble else { panic!("{view:?}") };
     let mut cards = [cards.0, cards.1];
     cards.sort();
     assert_eq!(cards, [THERE, mac]);
@@ -173,7 +173,7 @@ fn a_name_that_two_have_or_none_is_told() {
     let nobody = super::super::device::Setup { name: "other".to_owned(), ..setup() };
     let mut world = World::new(nobody, settings(), "");
     let view = world.run_out();
-    assert!(matches!(view.trouble, Some(Trouble::NotFound { .. })), "{view:?}");
+    assert!(matches!(view.trouble, Some(ProfinetError::NotFound { .. })), "{view:?}");
     assert_eq!(world.frames.len(), 3, "it was looked for three times");
 }
 
@@ -181,7 +181,7 @@ fn a_name_that_two_have_or_none_is_told() {
 fn an_address_is_given_only_where_that_is_asked_for() {
     let bare = super::super::device::Setup { ip: None, ..setup() };
     let mut world = World::new(bare.clone(), settings(), "");
-    assert!(matches!(world.run_out().trouble, Some(Trouble::NoAddress { .. })));
+    assert!(matches!(world.run_out().trouble, Some(ProfinetError::NoAddress { .. })));
     assert!(world.device.application().events.is_empty());
 
     let given = Settings { ip: Some(suite([192, 168, 78, 2])), ..settings() };
@@ -194,16 +194,16 @@ fn an_address_is_given_only_where_that_is_asked_for() {
 
     let mut world = World::new(bare.clone(), given.clone(), "");
     world.device.set_fault(Some(Fault::KeepsAddress));
-    assert_eq!(world.run_out().trouble, Some(Trouble::Dcp { what: "DCP Set IP", error: 5 }));
+    assert_eq!(world.run_out().trouble, Some(ProfinetError::Dcp { what: "DCP Set IP", error: 5 }));
 
     let elsewhere = Settings { ip: Some(suite([10, 0, 0, 2])), ..settings() };
     let mut world = World::new(bare, elsewhere, "");
-    assert!(matches!(world.run_out().trouble, Some(Trouble::OtherNetwork { .. })));
+    assert!(matches!(world.run_out().trouble, Some(ProfinetError::OtherNetwork { .. })));
     assert!(world.device.application().events.is_empty());
 
     let far = super::super::device::Setup { ip: Some(suite([10, 0, 0, 2])), ..setup() };
     let view = World::new(far, settings(), "").run_out();
-    let Some(Trouble::OtherNetwork { device, here, .. }) = view.trouble else { panic!("{view:?}") };
+    let Some(ProfinetError::OtherNetwork { device, here, .. }) = view.trouble else { panic!("{view:?}") };
     assert_eq!((device.octets(), here), ([10, 0, 0, 2], HERE.ip.address));
 }
 
@@ -222,7 +222,7 @@ fn closing_releases_while_frames_go_on() {
     world.run(1000 * MS);
     let after = outputs(&world);
     assert!(after.len() <= before + 2, "silence after the answer");
-    assert!(matches!(world.controller.set_image(generation, &image(1)), Err(Trouble::Ended)));
+    assert!(matches!(world.controller.set_image(generation, &image(1)), Err(ProfinetError::Ended)));
 }
 
 #[test]
@@ -231,27 +231,29 @@ fn a_release_that_nobody_answers_is_told() {
     world.device.set_fault(Some(Fault::Mute));
     world.controller.close(world.now);
     let view = world.run_out();
-    assert!(matches!(view.trouble, Some(Trouble::NoAnswer { what: "Release", .. })), "{view:?}");
+    assert!(matches!(view.trouble, Some(ProfinetError::NoAnswer { what: "Release", .. })), "{view:?}");
     assert_eq!(world.calls(operation::RELEASE).len(), 3);
 }
 
 #[test]
 fn what_a_device_does_wrong_has_a_name() {
-    type Check = fn(&Trouble) -> bool;
+    type Check = fn(&ProfinetError) -> bool;
     let cases: [(Fault, Check); 10] = [
-        (Fault::NeverReady, |why| matches!(why, Trouble::NeverReady { .. })),
+        (Fault::NeverReady, |why| matches!(why, ProfinetError::NeverReady { .. })),
         (Fault::WrongModule, |why| {
             let misfit = Misfit { slot: 1, subslot: None, found: Some(0x40), expected: Some(0x101) };
-            *why == Trouble::Modules(vec![misfit])
+            *why == ProfinetError::Modules(vec![misfit])
         }),
-        (Fault::Silent, |why| matches!(why, Trouble::NoData { missing: Unusable::Missing, .. })),
-        (Fault::BadProvider, |why| matches!(why, Trouble::NoData { missing: Unusable::Provider(1, 1), .. })),
-        (Fault::BadConsumer, |why| matches!(why, Trouble::NoData { missing: Unusable::Consumer(2, 1), .. })),
-        (Fault::Stop, |why| matches!(why, Trouble::NoData { missing: Unusable::Status(0x25, 0), .. })),
-        (Fault::Invalid, |why| matches!(why, Trouble::NoData { missing: Unusable::Status(0x31, 0), .. })),
-        (Fault::Garbage, |why| matches!(why, Trouble::Refused { what: "Connect", .. } | Trouble::Malformed { .. })),
-        (Fault::Foreign, |why| matches!(why, Trouble::NoAnswer { what: "Connect", .. })),
-        (Fault::Owned, |why| matches!(why, Trouble::Refused { what: "Connect", status } if status.is_owned())),
+        (Fault::Silent, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Missing, .. })),
+        (Fault::BadProvider, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Provider(1, 1), .. })),
+        (Fault::BadConsumer, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Consumer(2, 1), .. })),
+        (Fault::Stop, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Status(0x25, 0), .. })),
+        (Fault::Invalid, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Status(0x31, 0), .. })),
+        (Fault::Garbage, |why| {
+            matches!(why, ProfinetError::Refused { what: "Connect", .. } | ProfinetError::Malformed { .. })
+        }),
+        (Fault::Foreign, |why| matches!(why, ProfinetError::NoAnswer { what: "Connect", .. })),
+        (Fault::Owned, |why| matches!(why, ProfinetError::Refused { what: "Connect", status } if status.is_owned())),
     ];
     for (fault, check) in cases {
         let mut world = World::new(setup(), settings(), "");

@@ -13,7 +13,7 @@ use super::wire::{Mac, WireError};
 
 /// Why something did not come about.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum Trouble {
+pub enum ProfinetError {
     /// Nobody has the name or the card that was looked for.
     #[error("{station} was not found: no answer to DCP Identify within {} s", after.as_secs())]
     NotFound {
@@ -198,7 +198,7 @@ pub enum Trouble {
     ),
 }
 
-impl Trouble {
+impl ProfinetError {
     pub(super) fn local(what: &'static str, error: &io::Error) -> Self {
         let text = error.to_string();
         let text = text.split(" (os error").next().unwrap_or_default().to_lowercase();
