@@ -7,7 +7,13 @@ use std::time::Duration;
 pub mod controller;
 pub mod device;
 pub mod error;
+#[cfg(target_os = "linux")]
+pub mod interface;
 pub mod layout;
+#[cfg(target_os = "linux")]
+pub mod link;
+#[cfg(target_os = "linux")]
+pub mod network;
 pub mod settings;
 #[cfg(test)]
 mod tests;

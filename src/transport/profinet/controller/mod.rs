@@ -379,6 +379,15 @@ impl Controller {
         }
     }
 
+    /// Whether a frame that came is one of this connection's.
+    pub fn concerns(&self, bytes: &[u8]) -> bool {
+        let Ok(frame) = Frame::parse(bytes) else { return false };
+        match &self.device {
+            Some(device) => frame.source == device.mac,
+            None => frame.destination == self.here.mac,
+        }
+    }
+
     fn heard_alarm(&mut self, now: Now, priority: Priority, payload: &[u8]) {
         let Some(io) = self.ar.as_mut().and_then(|ar| ar.io.as_mut()) else { return };
         let mut out = Vec::new();
