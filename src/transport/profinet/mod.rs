@@ -4,6 +4,8 @@
 
 use std::time::Duration;
 
+#[cfg(target_os = "linux")]
+pub mod commission;
 pub mod controller;
 pub mod device;
 pub mod error;

@@ -1,5 +1,6 @@
-//! Our controller and a device that others wrote (the crate `pnio`), each in a network namespace of its own with a pair
-//! of virtual cards between them. Needs no rights, but user namespaces; where there are none it says so and passes.
+//! Our controller and a device that others wrote (the crate `pnio`), and our controller and our simulated device: each
+//! in a network namespace of its own with a pair of virtual cards between them. Needs no rights, but user namespaces;
+//! where there are none it says so and passes.
 
 #![cfg(target_os = "linux")]
 
@@ -7,11 +8,20 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use armctl_transport::image::tap::Tap;
+use armctl_transport::image::{Event as LinkEvent, ImageLink, LinkError};
+use armctl_transport::profinet::commission;
 use armctl_transport::profinet::controller::view::State;
+use armctl_transport::profinet::device::server::Server;
+use armctl_transport::profinet::device::{Application, Event, Fault, Setup};
 use armctl_transport::profinet::error::ProfinetError;
+use armctl_transport::profinet::interface::Interface;
 use armctl_transport::profinet::layout::Layout;
+use armctl_transport::profinet::link::Link;
 use armctl_transport::profinet::network::Network;
 use armctl_transport::profinet::settings::{Settings, Station};
+use armctl_transport::profinet::wire::Mac;
+use armctl_transport::profinet::wire::dcp::Block;
+use armctl_transport::profinet::wire::record::Im0;
 use pnio::api::{IoDevice, StartOptions};
 use pnio::config::{DeviceConfig, Slot};
 use pnio::data::FieldType;
@@ -30,21 +40,33 @@ ip link set pd0 netns $P
 ip addr add 192.168.79.1/24 dev pc0
 ip link set pc0 up
 nsenter -t $P -n -m sh -c 'ip link set lo up; ip addr add 192.168.79.2/24 dev pd0; ip link set pd0 up'
-ROLE=end nsenter -t $P -n -m "$PROGRAM" --ignored --exact the_device --nocapture & D=$!
-ROLE=end "$PROGRAM" --ignored --exact the_controller --nocapture; R=$?
+ROLE=end nsenter -t $P -n -m "$PROGRAM" --ignored --exact "${NAME}_device" --nocapture & D=$!
+ROLE=end "$PROGRAM" --ignored --exact "${NAME}_controller" --nocapture; R=$?
 kill $D $P
 exit $R
 "#;
 
 #[test]
 fn our_controller_runs_a_device_that_others_wrote() {
+    run("others");
+}
+
+#[test]
+fn our_controller_finds_asks_and_runs_our_device() {
+    run("our");
+}
+
+/// Runs the two ends of this name, and wants the controller's to come to its end.
+fn run(name: &str) {
     let can = Command::new("unshare").args(["-Urnm", "true"]).stderr(Stdio::null()).status();
     if !can.is_ok_and(|status| status.success()) {
         println!("skipped: there are no user namespaces here");
         return;
     }
     let program = std::env::current_exe().unwrap();
-    let output = Command::new("unshare").args(["-Urnm", "sh", "-c", SCRIPT]).env("PROGRAM", program).output().unwrap();
+    let mut command = Command::new("unshare");
+    command.args(["-Urnm", "sh", "-c", SCRIPT]).env("PROGRAM", program).env("NAME", name);
+    let output = command.output().unwrap();
     let text = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(text.contains("the controller has seen all"), "{text}");
 }
@@ -55,8 +77,8 @@ fn is_an_end() -> bool {
 
 /// Shows back what it is shown, and raises a diagnosis while the first word says so.
 #[test]
-#[ignore = "one end of the test above"]
-fn the_device() {
+#[ignore = "one end of a test above"]
+fn others_device() {
     const RAISE: u16 = 0x4141;
     if !is_an_end() {
         return;
@@ -109,8 +131,8 @@ fn settings() -> Settings {
 }
 
 #[test]
-#[ignore = "one end of the test above"]
-fn the_controller() {
+#[ignore = "one end of a test above"]
+fn others_controller() {
     if !is_an_end() {
         return;
     }
@@ -161,6 +183,122 @@ fn the_controller() {
         let nobody = Settings { station: Station::Name("nobody".to_owned()), ..settings() };
         let refused = network.open(nobody, Tap::default()).await.unwrap_err();
         assert!(matches!(refused, ProfinetError::NotFound { .. }));
+    });
+    println!("the controller has seen all");
+}
+
+/// Shows back what it is shown, and says on its output what happens to it.
+#[derive(Debug, Default)]
+struct Echo(Vec<u8>);
+
+impl Application for Echo {
+    fn image_out(&mut self, _: Duration, image: Option<&[u8]>) {
+        self.0 = image.unwrap_or_default().to_vec();
+    }
+
+    fn image_in(&mut self, _: Duration, image: &mut [u8]) {
+        image.fill(0);
+        let length = image.len().min(self.0.len());
+        image[..length].copy_from_slice(&self.0[..length]);
+    }
+
+    fn event(&mut self, _: Duration, event: &Event) {
+        println!("device: {event:?}");
+    }
+}
+
+#[test]
+#[ignore = "one end of a test above"]
+fn our_device() {
+    if !is_an_end() {
+        return;
+    }
+    let interface = Interface::find("pd0").unwrap();
+    let setup = Setup {
+        mac: Mac::default(),
+        name: "yrcx-sim".to_owned(),
+        kind: "YRCX like".to_owned(),
+        id: (0xFFFF, 1),
+        instance: 1,
+        ip: None,
+        takes_ip: false,
+        layout: Layout::two_modules(0x101, 0x102),
+        shortest: 32,
+        im0: Im0 { order_id: "RCX340".to_owned(), software: ('V', 1, 2, 3), ..Im0::default() },
+    };
+    let server = Server::start(&interface, setup, Echo::default()).unwrap();
+    assert!(matches!(Network::shared("pd0"), Err(ProfinetError::PortTaken { .. })));
+    loop {
+        // Whoever shows 0x55 first wants the device to stop.
+        let wants_stop = server.with(|device, _| device.application().0.first() == Some(&0x55));
+        if wants_stop {
+            server.with(|device, _| device.set_fault(Some(Fault::Stop)));
+            std::thread::park_timeout(Duration::from_millis(200));
+            server.with(|device, _| device.set_fault(None));
+        }
+        std::thread::park_timeout(Duration::from_millis(5));
+    }
+}
+
+#[test]
+#[ignore = "one end of a test above"]
+fn our_controller() {
+    if !is_an_end() {
+        return;
+    }
+    let Err(ProfinetError::NoInterface { present, .. }) = Interface::find("eth9") else { panic!("there is eth9") };
+    assert!(present.contains(&"pc0".to_owned()), "{present:?}");
+    let interface = Interface::find("pc0").unwrap();
+    let begin = Instant::now();
+    let found = loop {
+        match commission::by_name(&interface, "yrcx-sim") {
+            Err(ProfinetError::NotFound { .. }) if begin.elapsed() < Duration::from_secs(30) => {}
+            found => break found.unwrap(),
+        }
+    };
+    let all = commission::stations(&interface, Duration::from_secs(2)).unwrap();
+    assert_eq!(all.iter().map(|found| found.mac).collect::<Vec<_>>(), [found.mac]);
+    let identity = commission::identity(interface.ip.unwrap().address, &found).unwrap();
+    assert_eq!(identity.im0.unwrap().order_id, "RCX340");
+    assert_eq!(identity.modules.unwrap()[1].ident, 0x101);
+    commission::change(&interface, found.mac, "DCP signal", &Block::signal()).unwrap();
+    let bad = commission::change(&interface, found.mac, "DCP Set name", &Block::set_name("Robot", true)).unwrap_err();
+    assert!(matches!(bad, ProfinetError::Dcp { error: 3, .. }), "{bad}");
+    let nobody =
+        commission::change(&interface, Mac([2, 0, 0, 0, 0, 0x77]), "DCP signal", &Block::signal()).unwrap_err();
+    assert!(matches!(nobody, ProfinetError::NoAnswer { .. }), "{nobody}");
+
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    runtime.block_on(async {
+        let soon = || tokio::time::Instant::now() + Duration::from_secs(30);
+        let mut link = ImageLink::over(Link::open("pc0", settings(), Tap::default()).await.unwrap());
+        let mut image = settings().resting;
+        image[0] = 0x55;
+        link.show(&image).unwrap();
+        let mut events = Vec::new();
+        while !events.iter().any(|event| matches!(event, LinkEvent::Reopened)) {
+            let event = link.next(soon()).await;
+            assert_ne!(event, LinkEvent::Timeout, "{events:?}");
+            events.push(event);
+        }
+        assert!(events.contains(&LinkEvent::Sent), "{events:?}");
+        let lost = events.iter().find_map(|event| match event {
+            LinkEvent::Lost(error) => Some(error.to_string()),
+            _ => None,
+        });
+        assert!(lost.unwrap().contains("in stop"));
+        // What was shown before is not shown again.
+        let rest = settings().resting;
+        loop {
+            match link.next(soon()).await {
+                LinkEvent::Image(image) if *image == *rest => break,
+                LinkEvent::Image(image) => assert_ne!(image[0], 0x55),
+                event => assert_ne!(event, LinkEvent::Timeout),
+            }
+        }
+        let second = Link::open("pc0", settings(), Tap::default()).await.unwrap_err();
+        assert!(matches!(LinkError::from(second), LinkError::Owned(_)));
+        link.close().await.unwrap();
     });
     println!("the controller has seen all");
 }

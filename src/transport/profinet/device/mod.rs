@@ -20,6 +20,8 @@ mod ar;
 mod calls;
 mod checks;
 mod fault;
+#[cfg(target_os = "linux")]
+pub mod server;
 mod station;
 
 use ar::Ar;

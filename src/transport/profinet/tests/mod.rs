@@ -2,4 +2,5 @@
 
 mod faults;
 mod opening;
+mod tshark;
 mod world;

@@ -113,6 +113,8 @@ pub struct World {
     pub calls: Vec<Vec<u8>>,
     /// Images that were shown, one after the other.
     pub shown: Vec<Arc<[u8]>>,
+    /// All that was sent, as Ethernet frames, where it is wanted.
+    pub record: Option<Vec<(Now, Vec<u8>)>>,
     faults: (Faults, Faults),
     wire: BinaryHeap<Reverse<(Now, u64, Packet)>>,
     order: u64,
@@ -131,6 +133,7 @@ impl World {
             frames: Vec::new(),
             calls: Vec::new(),
             shown: Vec::new(),
+            record: None,
             faults: Faults::pair(faults),
             wire: BinaryHeap::new(),
             order: 0,
@@ -243,6 +246,14 @@ impl World {
         if !self.cable {
             return;
         }
+        if let Some(record) = &mut self.record {
+            let bytes = match packet(bytes.clone()) {
+                Packet::FrameOut(bytes) | Packet::FrameIn(bytes) => bytes,
+                Packet::CallOut(to, bytes) => ethernet(HERE.ip.address, *to.ip(), &bytes),
+                Packet::CallIn(from, bytes) => ethernet(*from.ip(), HERE.ip.address, &bytes),
+            };
+            record.push((self.now, bytes));
+        }
         let faults = if outward { &mut self.faults.0 } else { &mut self.faults.1 };
         for (at, bytes) in faults.pass(self.now, &bytes) {
             let packet = packet(bytes);
@@ -274,4 +285,23 @@ impl World {
             Packet::CallIn(from, bytes) => self.controller.datagram(now, from, &bytes),
         }
     }
+}
+
+/// A datagram in the frame that carries it, without checksums.
+fn ethernet(from: Ipv4Addr, to: Ipv4Addr, bytes: &[u8]) -> Vec<u8> {
+    let (here, there) = if from == HERE.ip.address { (HERE.mac, THERE) } else { (THERE, HERE.mac) };
+    let length = |header: usize| u16::try_from(header + bytes.len()).unwrap().to_be_bytes();
+    let mut out = [there.0, here.0].concat();
+    out.extend([8, 0, 0x45, 0]);
+    out.extend(length(28));
+    out.extend([0, 0, 0, 0, 64, 17, 0, 0]);
+    out.extend(from.octets());
+    out.extend(to.octets());
+    for port in [PORT, PORT] {
+        out.extend(port.to_be_bytes());
+    }
+    out.extend(length(8));
+    out.extend([0, 0]);
+    out.extend(bytes);
+    out
 }
