@@ -9,6 +9,7 @@ pub mod commission;
 pub mod controller;
 pub mod device;
 pub mod error;
+pub mod gsdml;
 #[cfg(target_os = "linux")]
 pub mod interface;
 pub mod layout;
