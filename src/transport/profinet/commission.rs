@@ -154,12 +154,12 @@ pub fn identity(here: Ipv4Addr, found: &Found) -> Result<Identity, ProfinetError
     let object = rpc::object(found.station.instance.unwrap_or(1), device, vendor);
     let mut client = Client::new(object, Uuid::random());
     let target = SocketAddrV4::new(address, rpc::PORT);
-    let mut read = |what, index| read(&socket, target, &mut client, what, index);
+    let mut ask = |what, index| read(&socket, target, &mut client, what, index);
     let malformed = |what| move |error| ProfinetError::Malformed { what, error };
     let (im0, real) = ("Read of I&M0", "Read of the modules");
     Ok(Identity {
-        im0: read(im0, index::IM0).and_then(|bytes| Im0::parse(&bytes).map_err(malformed(im0))),
-        modules: read(real, index::REAL_IDENTIFICATION)
+        im0: ask(im0, index::IM0).and_then(|bytes| Im0::parse(&bytes).map_err(malformed(im0))),
+        modules: ask(real, index::REAL_IDENTIFICATION)
             .and_then(|bytes| record::parse_identification(&bytes).map_err(malformed(real))),
     })
 }
@@ -199,21 +199,18 @@ fn exchange(
     socket.send_to(&first, target).map_err(|error| failed(&error))?;
     let mut buffer = vec![0; BUFFER];
     loop {
-        let step = match client.poll(start.elapsed()) {
-            Some(step) => Some(step),
-            None => {
-                let wake = client.wake().unwrap_or_default().saturating_sub(start.elapsed());
-                socket.set_read_timeout(Some(wake.max(Duration::from_millis(1)))).map_err(|error| failed(&error))?;
-                match socket.recv_from(&mut buffer) {
-                    Ok((length, SocketAddr::V4(from))) if from.ip() == target.ip() => {
-                        let datagram = Datagram::parse(&buffer[..length]).ok();
-                        datagram.and_then(|datagram| client.handle(start.elapsed(), &datagram))
-                    }
-                    // Nothing, or somebody else, or an interruption: the clock goes on.
-                    _ => None,
-                }
+        let mut step = client.poll(start.elapsed());
+        if step.is_none() {
+            let wake = client.wake().unwrap_or_default().saturating_sub(start.elapsed());
+            socket.set_read_timeout(Some(wake.max(Duration::from_millis(1)))).map_err(|error| failed(&error))?;
+            // Nothing, or somebody else, or an interruption: the clock goes on.
+            if let Ok((length, SocketAddr::V4(from))) = socket.recv_from(&mut buffer)
+                && from.ip() == target.ip()
+            {
+                let datagram = Datagram::parse(&buffer[..length]).ok();
+                step = datagram.and_then(|datagram| client.handle(start.elapsed(), &datagram));
             }
-        };
+        }
         match step {
             Some(Step::Done(outcome)) => return Ok(outcome),
             Some(Step::Send(bytes)) => {

@@ -349,9 +349,8 @@ impl<'a, 'input> Reader<'a, 'input> {
         let kind = self.text(node, "DataType")?;
         Ok(match kind {
             "Boolean" | "Unsigned8" | "Integer8" => 1,
-            "Unsigned16" | "Integer16" | "N2" | "V2" => 2,
+            "Unsigned16" | "Integer16" | "N2" | "V2" | "Unsigned8+Unsigned8" => 2,
             "Unsigned32" | "Integer32" | "Float32" | "N4" | "TimeOfDay" => 4,
-            "Unsigned8+Unsigned8" => 2,
             "Float32+Unsigned8" | "Float32+Status8" => 5,
             "Unsigned64" | "Integer64" | "Float64" => 8,
             "OctetString" | "VisibleString" | "UnicodeString8" => self.number(node, "Length")?,

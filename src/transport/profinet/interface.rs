@@ -5,7 +5,7 @@ use std::net::Ipv4Addr;
 use std::os::fd::AsRawFd as _;
 
 use nix::net::if_::InterfaceFlags;
-use nix::sys::socket::{LinkAddr, SockaddrLike as _};
+use nix::sys::socket::{LinkAddr, SockaddrIn};
 use socket2::{Domain, Protocol, Socket, Type};
 
 use super::error::ProfinetError;
@@ -50,7 +50,7 @@ pub fn all() -> io::Result<Vec<Interface>> {
     }
     for entry in &entries {
         let ipv4 = |address: Option<nix::sys::socket::SockaddrStorage>| {
-            address.and_then(|address| address.as_sockaddr_in().map(|address| address.ip()))
+            address.and_then(|address| address.as_sockaddr_in().map(SockaddrIn::ip))
         };
         let (Some(address), Some(mask)) = (ipv4(entry.address), ipv4(entry.netmask)) else { continue };
         let interface = found.iter_mut().find(|interface| interface.name == entry.interface_name);
@@ -106,7 +106,6 @@ impl Interface {
         };
         let protocol = Protocol::from(i32::from(ETHER_TYPE.to_be()));
         let socket = Socket::new(Domain::PACKET, Type::RAW, Some(protocol)).map_err(|error| failed(&error))?;
-        debug_assert!(self.link.len() > 0);
         nix::sys::socket::bind(socket.as_raw_fd(), &self.link).map_err(|error| failed(&error.into()))?;
         socket.set_nonblocking(true).map_err(|error| failed(&error))?;
         Ok(socket)

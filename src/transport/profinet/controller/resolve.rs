@@ -198,12 +198,15 @@ impl Controller {
                 }
                 Some(_) => {}
             },
-            Phase::Address(address) if address.settle.is_some() && dcp.xid == address.xid => {
-                if mac == address.found.mac && station.address() == Some(address.suite.address) {
-                    let found = Found { mac, station };
-                    let address = address.suite.address;
-                    self.located(now, &found, address);
-                }
+            Phase::Address(address)
+                if address.settle.is_some()
+                    && dcp.xid == address.xid
+                    && mac == address.found.mac
+                    && station.address() == Some(address.suite.address) =>
+            {
+                let found = Found { mac, station };
+                let address = address.suite.address;
+                self.located(now, &found, address);
             }
             _ => {}
         }

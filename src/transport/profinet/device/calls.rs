@@ -73,7 +73,9 @@ impl<A: Application> Device<A> {
         // In its own order, whatever the caller's is.
         let mut body = Reply { status, room: call.room, blocks }.emit(Order::Big);
         if self.fault == Some(Fault::Garbage) {
-            body.iter_mut().for_each(|byte| *byte = !*byte);
+            for byte in &mut body {
+                *byte = !*byte;
+            }
         }
         let header = Header { order: Order::Big, ..header.answer() };
         let bytes = Datagram { header, body: &body }.emit();

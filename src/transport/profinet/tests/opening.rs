@@ -59,7 +59,7 @@ fn frames_keep_their_time_and_counters_go_round() {
     let (first, counter) = (sent[0].0, Cyclic::parse(&sent[0].1, 53).unwrap().counter);
     for (index, (at, payload)) in (0u32..).zip(&sent) {
         assert_eq!(*at, first + 16 * MS * index);
-        let step = u16::try_from(index * 512 & 0xFFFF).unwrap();
+        let step = u16::try_from((index * 512) & 0xFFFF).unwrap();
         assert_eq!(Cyclic::parse(payload, 53).unwrap().counter, counter.wrapping_add(step));
     }
     assert!(sent.len() > 3700, "the counter goes round every 2 s");

@@ -219,19 +219,19 @@ impl World {
             match ours {
                 Some(Action::Frame(bytes)) => {
                     self.frames.push((self.now, bytes.clone()));
-                    self.launch(true, bytes, Packet::FrameOut);
+                    self.launch(true, &bytes, Packet::FrameOut);
                 }
                 Some(Action::Datagram(to, bytes)) => {
                     self.calls.push(bytes.clone());
-                    self.launch(true, bytes, |bytes| Packet::CallOut(to, bytes));
+                    self.launch(true, &bytes, |bytes| Packet::CallOut(to, bytes));
                 }
                 None => {}
             }
             let from = SocketAddrV4::new(self.device.answers_from().unwrap_or(ADDRESS), PORT);
             for action in [theirs, twins].into_iter().flatten() {
                 match action {
-                    Action::Frame(bytes) => self.launch(false, bytes, Packet::FrameIn),
-                    Action::Datagram(_, bytes) => self.launch(false, bytes, |bytes| Packet::CallIn(from, bytes)),
+                    Action::Frame(bytes) => self.launch(false, &bytes, Packet::FrameIn),
+                    Action::Datagram(_, bytes) => self.launch(false, &bytes, |bytes| Packet::CallIn(from, bytes)),
                 }
             }
         }
@@ -242,12 +242,12 @@ impl World {
         }
     }
 
-    fn launch(&mut self, outward: bool, bytes: Vec<u8>, packet: impl Fn(Vec<u8>) -> Packet) {
+    fn launch(&mut self, outward: bool, bytes: &[u8], packet: impl Fn(Vec<u8>) -> Packet) {
         if !self.cable {
             return;
         }
         if let Some(record) = &mut self.record {
-            let bytes = match packet(bytes.clone()) {
+            let bytes = match packet(bytes.to_vec()) {
                 Packet::FrameOut(bytes) | Packet::FrameIn(bytes) => bytes,
                 Packet::CallOut(to, bytes) => ethernet(HERE.ip.address, *to.ip(), &bytes),
                 Packet::CallIn(from, bytes) => ethernet(*from.ip(), HERE.ip.address, &bytes),
@@ -255,7 +255,7 @@ impl World {
             record.push((self.now, bytes));
         }
         let faults = if outward { &mut self.faults.0 } else { &mut self.faults.1 };
-        for (at, bytes) in faults.pass(self.now, &bytes) {
+        for (at, bytes) in faults.pass(self.now, bytes) {
             let packet = packet(bytes);
             let is_frame = matches!(packet, Packet::FrameOut(_) | Packet::FrameIn(_));
             // The cycle counter tells old frames up to 128 ms; no switch holds one back for longer.

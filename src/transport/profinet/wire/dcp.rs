@@ -161,6 +161,7 @@ impl Dcp {
     }
 
     /// An answer to it.
+    #[must_use]
     pub fn answer(&self, blocks: Vec<Block>) -> Self {
         Self { service: self.service, kind: Kind::Response, xid: self.xid, delay: 0, blocks }
     }
