@@ -141,8 +141,10 @@ fn frames(target: &str, line: &str) -> Vec<Vec<u8>> {
     frames.iter().map(|frame| bytes(frame["hex"].as_str().expect("hexadecimal"))).collect()
 }
 
+/// The bytes of a frame; those that an answer decides (`??`) are 0, and none of its head is one of them.
 fn bytes(hex: &str) -> Vec<u8> {
-    (0..hex.len()).step_by(2).map(|at| u8::from_str_radix(&hex[at..at + 2], 16).expect("hexadecimal")).collect()
+    let byte = |digits| if digits == "??" { 0 } else { u8::from_str_radix(digits, 16).expect("hexadecimal") };
+    (0..hex.len()).step_by(2).map(|at| byte(&hex[at..at + 2])).collect()
 }
 
 /// Division and head of a frame; the division is 1 for robot commands, 2 for files.

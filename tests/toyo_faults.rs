@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use armctl::controller::toyo::field::Value;
 use armctl::controller::toyo::request::{Answer, Request};
-use armctl::controller::toyo::session::{Ended, Framed, Framer, Line, Policy};
+use armctl::controller::toyo::session::{Ended, Framed, Framer, LineSession, Policy};
 use armctl::controller::toyo::table::Command;
 use armctl::controller::{Session as _, Step};
 use armctl::transport::line::{InProcessLine, Pace};
@@ -101,7 +101,7 @@ struct Tally {
     executions: u32,
 }
 
-async fn exchange(line: &mut Line, wire: &mut InProcessLine<Counters>, began: Instant) -> Ended {
+async fn exchange(line: &mut LineSession, wire: &mut InProcessLine<Counters>, began: Instant) -> Ended {
     let mut buffer = [0; 256];
     loop {
         let now = began.elapsed();
@@ -123,7 +123,7 @@ async fn talk(faults: &str, seed: u64) -> Tally {
     let pace = Pace::new(BAUD, BITS);
     let spec = format!("{faults},seed={seed}").parse().expect("faults");
     let mut wire = InProcessLine::new(Counters::default(), Some(pace), Some(spec));
-    let mut line = Line::new(Policy { timeout: TIMEOUT, retries: 3, character: pace.time(1) });
+    let mut line = LineSession::new(Policy { timeout: TIMEOUT, retries: 3, character: pace.time(1) });
     let began = Instant::now();
     let mut tally = Tally::default();
     for order in 1..=EXCHANGES {

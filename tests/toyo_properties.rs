@@ -212,7 +212,7 @@ proptest! {
 
     #[test]
     fn any_line_is_judged(text in line(), other in line()) {
-        let _ = (instruction(&text), Parameter::of(&text));
+        let _ = (instruction(&text), Parameter::from_text(&text));
         if let Ok(request) = Request::parse(&text) {
             let _ = (request.check(), request.content(), request.risk(), request.parameter());
             let again = Request::parse(&request.text());

@@ -246,7 +246,7 @@ fn every_field_stands_where_the_manual_has_it() {
     assert_eq!(layouts.len(), ROWS.len());
     for layout in &layouts {
         let code = u16::from_str_radix(&layout["code"].as_str().unwrap()[2..], 16).unwrap();
-        let row = Row::of(code).unwrap();
+        let row = Row::from_word(code).unwrap();
         let name = row.id;
         assert_eq!(row.section, layout["section"], "{name}");
         assert_eq!(Json::from(row.has_robot()), layout["robot"], "{name}");
@@ -313,7 +313,7 @@ impl Example {
 
     fn strings(&self, part: &str) -> BTreeMap<Key, String> {
         let pairs = self.0[part].as_object().unwrap().iter();
-        pairs.map(|(key, text)| (Key::of(key).unwrap(), text.as_str().unwrap().to_owned())).collect()
+        pairs.map(|(key, text)| (Key::from_name(key).unwrap(), text.as_str().unwrap().to_owned())).collect()
     }
 
     /// What the example means, built by the codec.

@@ -52,7 +52,7 @@ fn repaired(row: &Row, random: Words, dice: &[u32; 8]) -> Words {
     }
     let parameter = row.request().find(|field| field.key == Key::Parameter).map(|field| field.read(&words));
     if let Some(Value::Int(number)) = parameter {
-        let parameter = Parameter::of(number).unwrap();
+        let parameter = Parameter::from_number(number).unwrap();
         for field in row.request() {
             match field.key {
                 Key::Axes => field.write(&mut words, &Value::Int(parameter.per_axis.into())).unwrap(),

@@ -86,7 +86,7 @@ impl PreparedCommand {
             Task::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
             Task::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.family(),
             Task::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.family(),
-            _ => {}
+            Task::Common(_) => {}
         }
         Ok(Self { run, task })
     }
@@ -109,7 +109,7 @@ impl PreparedCommand {
     pub fn why_not_in_batch(&self) -> Option<&'static str> {
         match &self.task {
             Task::Common(common) => common.why_not_in_batch(),
-            _ => None,
+            Task::Family(..) => None,
         }
     }
 }
@@ -126,12 +126,11 @@ impl Task {
     fn need(&self) -> Need {
         match self {
             Self::Family(_, command) if !command.takes_robot() => Need::Nothing,
-            Self::Family(..) => Need::Inventory,
             Self::Common(Common::Robots(Robots::Discover(_))) => Need::Nothing,
             Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
             Self::Common(Common::Session(session)) if !session.opens() => Need::Names,
             Self::Common(common) if !common.is_about_robots() => Need::Nothing,
-            Self::Common(_) => Need::Inventory,
+            Self::Family(..) | Self::Common(_) => Need::Inventory,
         }
     }
 }

@@ -6,10 +6,13 @@
 
 use std::time::Duration;
 
-mod entries;
 pub mod nearest;
+mod simulator;
+#[cfg(test)]
+mod testing;
 pub mod text;
 pub mod toyo;
+pub mod typed;
 pub mod units;
 pub mod yerc;
 pub mod yrcx;

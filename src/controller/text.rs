@@ -272,24 +272,6 @@ fn escaped(text: &str) -> Option<u8> {
     (lower_hex && byte >= 0x80).then_some(byte)
 }
 
-/// A whole number: decimal digits, or hexadecimal ones after `0x`, with a sign before them or without.
-pub fn integer(text: &str) -> Option<i64> {
-    let (is_negative, digits) = match text.as_bytes() {
-        [b'-', ..] => (true, &text[1..]),
-        [b'+', ..] => (false, &text[1..]),
-        _ => (false, text),
-    };
-    let (digits, radix) = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
-        Some(digits) => (digits, 16),
-        None => (digits, 10),
-    };
-    if digits.is_empty() || !digits.chars().all(|digit| digit.is_digit(radix)) {
-        return None;
-    }
-    let magnitude = i64::from_str_radix(digits, radix).ok()?;
-    Some(if is_negative { -magnitude } else { magnitude })
-}
-
 /// Bytes as lower-case hexadecimal digits.
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().fold(String::with_capacity(bytes.len() * 2), |mut text, byte| {
@@ -318,17 +300,6 @@ mod tests {
 
     fn every() -> impl Iterator<Item = Encoding> {
         NAMES.into_iter().map(|(encoding, ..)| encoding)
-    }
-
-    #[test]
-    fn whole_numbers_in_decimal_and_hexadecimal() {
-        for (text, number) in [("0", 0), ("-5", -5), ("+5", 5), ("007", 7), ("0xFf", 255), ("0X10", 16), ("-0x10", -16)]
-        {
-            assert_eq!(integer(text), Some(number), "{text}");
-        }
-        for junk in ["", "-", "0x", "x10", "1_0", "0x1g", "--1", "0x-1", " 1", "1.0", "99999999999999999999"] {
-            assert_eq!(integer(junk), None, "{junk}");
-        }
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-use super::text::integer;
+use super::typed::integer;
 
 /// A decimal unit: the symbol, and how many digits after the point one step of the wire is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -35,7 +35,7 @@ pub const PULSE: Unit = Unit { symbol: "pulses", decimals: 0 };
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum UnitError {
     /// Not an optional sign, digits, and optionally a point with digits.
-    #[error("'{text}' is not a number{}", of(symbol))]
+    #[error("'{text}' is not a number{}", of_unit(symbol))]
     Malformed {
         /// What was given.
         text: String,
@@ -43,7 +43,7 @@ pub enum UnitError {
         symbol: &'static str,
     },
     /// More digits than the controller can take.
-    #[error("'{text}' has more than {decimals} digits after the point, the resolution{} here", of(symbol))]
+    #[error("'{text}' has more than {decimals} digits after the point, the resolution{} here", of_unit(symbol))]
     TooFine {
         /// What was given.
         text: String,
@@ -67,7 +67,7 @@ pub enum UnitError {
 }
 
 /// What is counted, where it has a name.
-fn of(symbol: &str) -> String {
+fn of_unit(symbol: &str) -> String {
     if symbol.is_empty() { String::new() } else { format!(" of {symbol}") }
 }
 

@@ -2,6 +2,7 @@
 
 mod address;
 pub mod bus;
+pub mod devicenet;
 pub mod eip;
 
 use std::fmt;

@@ -3,6 +3,7 @@
 //! Nothing in here knows a controller's protocol, and no controller knows what is in here.
 
 pub mod capture;
+pub mod devicenet;
 pub mod eip;
 pub mod fault;
 pub mod image;

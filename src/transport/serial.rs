@@ -80,19 +80,7 @@ impl Serial {
     /// # Errors
     /// [`OpenError`] tells why not.
     pub fn open(line: &Line) -> Result<Self, OpenError> {
-        let port = serialport::new(&line.path, nominal_baud(line))
-            .data_bits(line.data_bits)
-            .parity(line.parity)
-            .stop_bits(line.stop_bits)
-            .flow_control(FlowControl::None)
-            // Converters without a supply of their own draw it from DTR; Unix raises it anyway.
-            .dtr_on_open(true)
-            .timeout(SLICE)
-            .open()
-            .map_err(|error| open_error(&error, &line.path))?;
-        check(port.as_ref(), line)?;
-        port.clear(ClearBuffer::Input).map_err(io::Error::from)?;
-        Ok(Self { port: Threaded::new(port), pace: line.pace() })
+        Ok(Self { port: Threaded::new(open_port(line)?), pace: line.pace() })
     }
 
     /// Hands bytes to the port, whose driver goes on sending after this has returned.
@@ -116,6 +104,23 @@ impl Serial {
     pub fn discard(&mut self) {
         self.port.discard();
     }
+}
+
+/// Opens a port for whoever moves its bytes, and drops what arrived on it before.
+pub(super) fn open_port(line: &Line) -> Result<Box<dyn SerialPort>, OpenError> {
+    let port = serialport::new(&line.path, nominal_baud(line))
+        .data_bits(line.data_bits)
+        .parity(line.parity)
+        .stop_bits(line.stop_bits)
+        .flow_control(FlowControl::None)
+        // Converters without a supply of their own draw it from DTR; Unix raises it anyway.
+        .dtr_on_open(true)
+        .timeout(SLICE)
+        .open()
+        .map_err(|error| open_error(&error, &line.path))?;
+    check(port.as_ref(), line)?;
+    port.clear(ClearBuffer::Input).map_err(io::Error::from)?;
+    Ok(port)
 }
 
 /// macOS cannot set the speed of a pseudo-terminal, and refuses to try.

@@ -15,6 +15,8 @@ use std::net::{IpAddr, SocketAddr};
 use std::path::Path;
 use std::time::Duration;
 
+use etherparse::{IpHeaders, PacketBuilder, PacketBuilderStep};
+
 /// Which way bytes went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
@@ -41,11 +43,6 @@ const LINKTYPE_USER0: u16 = 147;
 /// Numbers of the interfaces, in the order of their blocks.
 const NETWORK: u32 = 0;
 const LINE: u32 = 1;
-/// IP protocol numbers.
-const UDP: u8 = 17;
-const TCP: u8 = 6;
-/// Flags of a TCP segment: PSH and ACK, and a header of five words before them.
-const TCP_FLAGS: [u8; 2] = [0x50, 0x18];
 /// Most bytes of a stream in a segment.
 const MOST_IN_SEGMENT: usize = 32 * 1024;
 const SECTION_HEADER: u32 = 0x0A0D_0D0A;
@@ -116,7 +113,10 @@ impl<W: Write> CaptureWriter<W> {
 
     /// Records a datagram. `time` counts from 1970.
     pub fn datagram(&mut self, time: Duration, from: SocketAddr, to: SocketAddr, payload: &[u8]) -> io::Result<()> {
-        self.packet(NETWORK, time, &packet(from, to, UDP, udp(from, to, payload)))
+        let mut packet = Vec::with_capacity(payload.len() + 48);
+        let headers = ip(from, to).udp(from.port(), to.port());
+        headers.write(&mut packet, payload).map_err(io::Error::other)?;
+        self.packet(NETWORK, time, &packet)
     }
 
     /// Records bytes of a TCP stream, of a capture of [`streams`](Self::streams) or datagrams. `time` counts from 1970.
@@ -124,9 +124,11 @@ impl<W: Write> CaptureWriter<W> {
         for piece in bytes.chunks(MOST_IN_SEGMENT) {
             let expected = self.sequence.get(&(to, from)).copied().unwrap_or(FIRST);
             let sent = self.sequence.entry((from, to)).or_insert(FIRST);
-            let segment = tcp(from, to, (*sent, expected), piece);
+            let mut packet = Vec::with_capacity(piece.len() + 60);
+            let headers = ip(from, to).tcp(from.port(), to.port(), *sent, u16::MAX).psh().ack(expected);
+            headers.write(&mut packet, piece).map_err(io::Error::other)?;
             *sent = sent.wrapping_add(length(piece.len()));
-            self.packet(NETWORK, time, &packet(from, to, TCP, segment))?;
+            self.packet(NETWORK, time, &packet)?;
         }
         Ok(())
     }
@@ -174,95 +176,18 @@ fn block(kind: u32, mut body: Vec<u8>) -> Vec<u8> {
     block
 }
 
-/// A datagram with its UDP header. The checksum is left out where the protocol allows it (IPv4).
-fn udp(from: SocketAddr, to: SocketAddr, payload: &[u8]) -> Vec<u8> {
-    let mut udp = Vec::with_capacity(payload.len() + 8);
-    udp.extend(from.port().to_be_bytes());
-    udp.extend(to.port().to_be_bytes());
-    udp.extend(short(payload.len() + 8).to_be_bytes());
-    udp.extend([0, 0]);
-    udp.extend(payload);
-    if !(from.is_ipv4() && to.is_ipv4()) {
-        let sum = transport_checksum(from, to, UDP, &udp);
-        udp[6..8].copy_from_slice(&sum.to_be_bytes());
-    }
-    udp
-}
+/// The IP header of a packet; of different versions, IPv6.
+fn ip(from: SocketAddr, to: SocketAddr) -> PacketBuilderStep<IpHeaders> {
+    const HOPS: u8 = 64;
 
-/// Bytes of a stream with their TCP header; `numbers` are those of the first byte, and of the first that is expected.
-fn tcp(from: SocketAddr, to: SocketAddr, numbers: (u32, u32), payload: &[u8]) -> Vec<u8> {
-    let mut tcp = Vec::with_capacity(payload.len() + 20);
-    tcp.extend(from.port().to_be_bytes());
-    tcp.extend(to.port().to_be_bytes());
-    tcp.extend(numbers.0.to_be_bytes());
-    tcp.extend(numbers.1.to_be_bytes());
-    tcp.extend(TCP_FLAGS);
-    // The largest window, the checksum, and no urgent data.
-    tcp.extend([0xFF, 0xFF, 0, 0, 0, 0]);
-    tcp.extend(payload);
-    let sum = transport_checksum(from, to, TCP, &tcp);
-    tcp[16..18].copy_from_slice(&sum.to_be_bytes());
-    tcp
-}
-
-/// The packet with its IP header.
-fn packet(from: SocketAddr, to: SocketAddr, protocol: u8, content: Vec<u8>) -> Vec<u8> {
-    let mut packet = Vec::with_capacity(content.len() + 40);
-    match (from.ip(), to.ip()) {
-        (IpAddr::V4(from), IpAddr::V4(to)) => {
-            packet.extend([0x45, 0]);
-            packet.extend(short(content.len() + 20).to_be_bytes());
-            packet.extend([0, 0, 0x40, 0, 64, protocol, 0, 0]);
-            packet.extend(from.octets());
-            packet.extend(to.octets());
-            let sum = checksum(&packet);
-            packet[10..12].copy_from_slice(&sum.to_be_bytes());
-        }
-        (from, to) => {
-            packet.extend([0x60, 0, 0, 0]);
-            packet.extend(short(content.len()).to_be_bytes());
-            packet.extend([protocol, 64]);
-            packet.extend(v6(from));
-            packet.extend(v6(to));
-        }
-    }
-    packet.extend(content);
-    packet
-}
-
-/// The checksum of a UDP or TCP header with its payload, and with the addresses of the IP header.
-fn transport_checksum(from: SocketAddr, to: SocketAddr, protocol: u8, content: &[u8]) -> u16 {
-    let mut pseudo = match (from.ip(), to.ip()) {
-        (IpAddr::V4(from), IpAddr::V4(to)) => [from.octets(), to.octets()].concat(),
-        (from, to) => [v6(from), v6(to)].concat(),
-    };
-    // That the length has two bytes in IPv4 and four in IPv6 makes no difference to the sum.
-    pseudo.extend(length(content.len()).to_be_bytes());
-    pseudo.extend([0, 0, 0, protocol]);
-    pseudo.extend(content);
-    checksum(&pseudo)
-}
-
-fn v6(address: IpAddr) -> [u8; 16] {
-    match address {
+    let v6 = |address: IpAddr| match address {
         IpAddr::V4(address) => address.to_ipv6_mapped().octets(),
         IpAddr::V6(address) => address.octets(),
+    };
+    match (from.ip(), to.ip()) {
+        (IpAddr::V4(from), IpAddr::V4(to)) => PacketBuilder::ipv4(from.octets(), to.octets(), HOPS),
+        (from, to) => PacketBuilder::ipv6(v6(from), v6(to), HOPS),
     }
-}
-
-/// The Internet checksum (RFC 1071).
-fn checksum(bytes: &[u8]) -> u16 {
-    let words = bytes.chunks(2).map(|pair| u32::from(pair[0]) << 8 | pair.get(1).map_or(0, |low| u32::from(*low)));
-    let mut sum: u32 = words.sum();
-    while sum > 0xFFFF {
-        sum = (sum & 0xFFFF) + (sum >> 16);
-    }
-    !u16::try_from(sum).unwrap_or_default()
-}
-
-/// Datagrams have at most 64 KiB; longer ones are recorded with the length cut.
-fn short(len: usize) -> u16 {
-    u16::try_from(len).unwrap_or(u16::MAX)
 }
 
 fn length(len: usize) -> u32 {
@@ -320,12 +245,23 @@ mod tests {
         assert_eq!(kinds, [SECTION_HEADER, INTERFACE, ENHANCED_PACKET]);
     }
 
+    /// The Internet checksum (RFC 1071) of what has one in it is 0.
+    fn checks_out(bytes: &[u8]) -> bool {
+        let words = bytes.chunks(2).map(|pair| u32::from(pair[0]) << 8 | pair.get(1).map_or(0, |low| u32::from(*low)));
+        let sum: u32 = words.sum();
+        sum > 0 && sum.is_multiple_of(0xFFFF)
+    }
+
     #[test]
-    fn the_ip_header_checks_out() {
+    fn headers_check_out() {
+        let mut out = Vec::new();
         let (from, to) = addresses();
-        let packet = packet(from, to, UDP, udp(from, to, b"YERC"));
-        assert_eq!(checksum(&packet[..20]), 0);
-        assert_eq!(packet[20..28], [0x9C, 0x40, 0x27, 0x38, 0, 12, 0, 0]);
+        CaptureWriter::new(&mut out).unwrap().datagram(Duration::ZERO, from, to, b"YERC").unwrap();
+        let (_, packet) = content(blocks(&out)[2]);
+        assert_eq!(packet[..10], [0x45, 0, 0, 32, 0, 0, 0x40, 0, 64, 17]);
+        assert!(checks_out(&packet[..20]));
+        assert_eq!(packet[12..26], [10, 0, 0, 1, 10, 0, 0, 2, 0x9C, 0x40, 0x27, 0x38, 0, 12]);
+        assert!(checks_out(&[&packet[12..], &[0, 17, 0, 12]].concat()), "with the pseudo header");
     }
 
     #[test]
@@ -361,7 +297,9 @@ mod tests {
                 let (interface, packet) = content(*block);
                 assert_eq!(interface, NETWORK);
                 let tcp = &packet[header..];
-                assert_eq!(transport_checksum(from, to, TCP, tcp), 0);
+                let len = u32::try_from(tcp.len()).unwrap().to_be_bytes();
+                let addresses = if header == 20 { 12..20 } else { 8..40 };
+                assert!(checks_out(&[&packet[addresses], &len, &[0, 0, 0, 6], tcp].concat()));
                 assert_eq!(tcp[..4], [from.port().to_be_bytes(), to.port().to_be_bytes()].concat());
                 assert_eq!(tcp[12..14], [0x50, 0x18]);
                 let word = |at: usize| u32::from_be_bytes(tcp[at..at + 4].try_into().unwrap());

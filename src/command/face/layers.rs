@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn what_comes_after_a_failure_is_skipped() {
-        let mut layers = Layers::new("cell1 (udp://h)".to_owned(), &["name", "answer", "mode"]);
+        let mut layers = Layers::new("cell1 (udp://h)".to_owned(), ["name", "answer", "mode"]);
         layers.ok("name", "h is 10.0.0.2");
         layers.fail("answer", &Failure::new(Kind::NoAnswer, "cell1 (udp://h): no answer").hint("check the cable"));
         let layers = layers.finish();

@@ -6,7 +6,10 @@ pub mod sample;
 pub mod tool;
 pub mod words;
 
+use std::future::ready;
+
 use clap::ArgMatches;
+use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use self::layers::Layer;
@@ -49,8 +52,10 @@ pub trait Face: Sync {
     /// The schemas of all its reports.
     fn schemas(&self) -> Vec<SchemaEntry>;
 
-    /// What it does behind a common word.
-    fn tool(&self, kind: ToolKind) -> Tool;
+    /// What it does behind a common word, if it does.
+    fn tool(&self, _kind: ToolKind) -> Option<Tool> {
+        None
+    }
 
     /// Connects to a robot.
     fn connect<'a>(
@@ -101,14 +106,25 @@ pub trait Face: Sync {
         Risk::Read
     }
     /// Makes a backup.
-    fn back_up<'a>(&self, context: AnyContext<'a>, making: &'a Making)
-    -> LocalBoxFuture<'a, Result<BackedUp, Failure>>;
+    fn back_up<'a>(
+        &self,
+        _context: AnyContext<'a>,
+        _making: &'a Making,
+    ) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
+        ready(Err(no_backups(self.family()))).boxed_local()
+    }
     /// Writes a backup back.
     fn restore<'a>(
         &self,
-        context: AnyContext<'a>,
-        restoring: &'a Restoring,
-    ) -> LocalBoxFuture<'a, Result<Restored, Failure>>;
+        _context: AnyContext<'a>,
+        _restoring: &'a Restoring,
+    ) -> LocalBoxFuture<'a, Result<Restored, Failure>> {
+        ready(Err(no_backups(self.family()))).boxed_local()
+    }
+}
+
+fn no_backups(family: Family) -> Failure {
+    Failure::usage(format!("{family} has no backups")).hint(format!("`armctl {family} -h` lists its commands"))
 }
 
 /// Looks at a robot again and again, for `top`.

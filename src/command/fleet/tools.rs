@@ -3,6 +3,7 @@
 use std::fmt;
 use std::marker::PhantomData;
 
+use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
 
 use crate::command::SchemaEntry;
@@ -29,7 +30,9 @@ impl Sim {
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         let simulator = match self.family {
             Some(simulator) => simulator,
-            None => OfFamily::first().map_err(|error| Failure::local(format!("internal error: {error}")))?,
+            None => OfFamily::first().map_err(|error| {
+                Failure::usage(error.to_string()).hint("name a family: `armctl sim -h` lists them")
+            })?,
         };
         simulator.run(run).await
     }
@@ -38,7 +41,7 @@ impl Sim {
 /// The schemas of all that they report.
 pub fn schemas() -> Vec<SchemaEntry> {
     let tools = ToolKind::ALL.into_iter().flat_map(|kind| FAMILIES.map(|face| face.tool(kind)));
-    tools.flat_map(|tool| (tool.schemas)()).collect()
+    tools.flatten().flat_map(|tool| (tool.schemas)()).collect()
 }
 
 /// A word behind which families stand.
@@ -77,14 +80,15 @@ pub struct OfFamily<W> {
 }
 
 impl<W: Word> OfFamily<W> {
-    fn tool(family: Family) -> Tool {
-        families::of(family).tool(W::KIND)
+    fn tool(family: Family) -> Result<Tool, clap::Error> {
+        let tool = families::of(family).tool(W::KIND);
+        tool.ok_or_else(|| clap::Error::new(ErrorKind::InvalidSubcommand))
     }
 
     /// The first family, without arguments.
     fn first() -> Result<Self, clap::Error> {
         let family = FAMILIES[0].family();
-        let tool = Self::tool(family);
+        let tool = Self::tool(family)?;
         let mut matches = (tool.augment)(Command::new(family.name())).try_get_matches_from([family.name()])?;
         Ok(Self { family, task: (tool.read)(&mut matches)?, word: PhantomData })
     }
@@ -103,7 +107,11 @@ impl<W> fmt::Debug for OfFamily<W> {
 
 impl<W: Word> Subcommand for OfFamily<W> {
     fn augment_subcommands(command: Command) -> Command {
-        command.subcommands(FAMILIES.map(|face| (face.tool(W::KIND).augment)(Command::new(face.family().name()))))
+        let words = FAMILIES.iter().filter_map(|face| {
+            let tool = face.tool(W::KIND)?;
+            Some((tool.augment)(Command::new(face.family().name())))
+        });
+        command.subcommands(words)
     }
 
     fn augment_subcommands_for_update(command: Command) -> Command {
@@ -111,7 +119,7 @@ impl<W: Word> Subcommand for OfFamily<W> {
     }
 
     fn has_subcommand(name: &str) -> bool {
-        name.parse::<Family>().is_ok()
+        name.parse().is_ok_and(|family| Self::tool(family).is_ok())
     }
 }
 
@@ -122,7 +130,7 @@ impl<W: Word> FromArgMatches for OfFamily<W> {
 
     fn from_arg_matches_mut(matches: &mut ArgMatches) -> Result<Self, clap::Error> {
         let (family, mut matches) = families::named(matches)?;
-        Ok(Self { family, task: (Self::tool(family).read)(&mut matches)?, word: PhantomData })
+        Ok(Self { family, task: (Self::tool(family)?.read)(&mut matches)?, word: PhantomData })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::controller::typed;
 use clap::Args;
 
 /// Arguments of `batch`.
@@ -20,7 +21,7 @@ pub struct Batch {
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {
-    let (name, value) = text.split_once('=').ok_or("NAME=VALUE is wanted")?;
+    let (name, value) = typed::setting(text, "a name", "a value", "SPEED=50")?;
     if is_name(name) { Ok((name.to_owned(), value.to_owned())) } else { Err(format!("'{name}' is no name")) }
 }
 

@@ -23,7 +23,7 @@ pub mod run;
 pub mod script_line;
 pub mod session_manager;
 #[cfg(test)]
-pub mod testing;
+pub(crate) mod testing;
 pub mod trace;
 
 pub use command::{AnyCommand, AnyContext, Command, Context};

@@ -17,7 +17,7 @@ use super::authority::{self, Authority};
 use super::background;
 use super::command::{AnyCommand, AnyContext};
 use super::connection::{Access, Connection, Entry};
-use super::dry_run::{Plan, is_end};
+use super::dry_run::{DryRun, Plan, is_end};
 use super::interrupt::{catch_interrupts, interruptible};
 use super::report::Outcome;
 use super::script_line::Line;
@@ -82,6 +82,9 @@ const EVERY: Duration = Duration::from_secs(1);
 /// Robots talked to at the same time: enough that a plant of which half is switched off takes one wait for an answer, and
 /// no more than the files that a process may have open where that is least, 256.
 const PARALLEL: usize = 128;
+
+/// A connection, and what may pass.
+type Granted = (Box<dyn Connection>, Grant);
 
 impl Run {
     /// Runs `command` on the robots it is for, and reports.
@@ -289,7 +292,7 @@ impl Run {
         &self,
         command: &dyn AnyCommand,
         robots: &[Robot],
-        links: &mut [Result<(Box<dyn Connection>, Grant), Failure>],
+        links: &mut [Result<Granted, Failure>],
     ) -> Result<(), RunError> {
         let mut rounds = Rounds::new(&self.repeat, EVERY);
         loop {
@@ -330,7 +333,7 @@ impl Run {
     /// One connection, one run.
     async fn once(&self, command: &dyn AnyCommand, robot: &Robot) -> Outcome {
         if self.gate.dry_run {
-            return Ok(Box::new(self.plan(command, robot, &self.screen).await?.into_report()));
+            return Ok(Box::new(DryRun::from(self.plan(command, robot, &self.screen).await?)));
         }
         let (mut link, grant) = self.connect(command, robot).await?;
         let outcome = self.attempt(command, robot, &mut *link, &grant).await;
@@ -341,7 +344,7 @@ impl Run {
         Ok(report)
     }
 
-    async fn connect(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(Box<dyn Connection>, Grant), Failure> {
+    async fn connect(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Granted, Failure> {
         let access = self.access(command, robot);
         let grant = access.granted.clone();
         let access = match &self.line {

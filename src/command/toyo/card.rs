@@ -130,7 +130,7 @@ impl Report for Transferred {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks};
+    use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks};
     use crate::failure::Kind;
 
     #[test]
@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn a_transfer_is_waited_for() {
-        let (mut bench, _) = Bench::spoilt("card = \"empty\"\n", |_, _| Fate::Pass);
+        let (mut bench, _) = Bench::with_faults("card = \"empty\"\n", |_, _| Fault::None);
         let failure = bench.run(&["card", "read"]).unwrap_err();
         assert!(failure.hint.unwrap().contains("nothing on the card"));
         let data = bench.data(&["card", "write"]);
@@ -166,10 +166,10 @@ mod tests {
 
     #[test]
     fn a_card_that_is_absent_or_taken_out_is_told() {
-        let failure = Bench::spoilt("", |_, _| Fate::Pass).0.run(&["card", "write"]).unwrap_err();
+        let failure = Bench::with_faults("", |_, _| Fault::None).0.run(&["card", "write"]).unwrap_err();
         assert_eq!(failure.message, "the controller refused WMCA (@NG): there is no memory card");
         let state = "card = \"written\"\n[[event]]\nat_ms = 1000\ndo = \"card out\"\n";
-        let failure = Bench::spoilt(state, |_, _| Fate::Pass).0.run(&["card", "read"]).unwrap_err();
+        let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["card", "read"]).unwrap_err();
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("E0")));
         assert!(
             failure.message.starts_with("reading the card was accepted, but an error came up (E0"),

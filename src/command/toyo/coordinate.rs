@@ -91,7 +91,7 @@ impl Command for Set {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, Fate, blocks, intent, objection};
+    use crate::command::toyo::testing::{Bench, Fault, blocks, intent, objection};
 
     #[test]
     fn the_order_is_in_form_and_in_range() {
@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn a_waiting_move_goes_there() {
         let state = "origin = true\nsteps = { 1 = [\"RSMV a X=+0000.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 PASS\", \"END\"] }\n";
-        let (mut bench, _) = Bench::spoilt(state, |_, _| Fate::Pass);
+        let (mut bench, _) = Bench::with_faults(state, |_, _| Fault::None);
         bench.data(&["run", "sequential", "1", "--no-wait"]);
         bench.data(&["coordinate", "set", "50", "20", "0", "0"]);
         bench.wait(std::time::Duration::from_secs(5));

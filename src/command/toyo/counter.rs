@@ -126,7 +126,7 @@ impl Report for Count {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, objection};
+    use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, objection};
     use crate::failure::Kind;
 
     #[test]
@@ -144,12 +144,12 @@ mod tests {
         let mut bench = Bench::new("sim:");
         assert_eq!(bench.data(&["counter", "set", "5", "7"])["count"], 7);
         let other =
-            |block: &str, _| if block == "@MCNT CN=05" { Fate::Answered("@MCNT CN05=0008") } else { Fate::Pass };
-        let failure = Bench::spoilt("", other).0.run(&["counter", "set", "5", "7"]).unwrap_err();
+            |block: &str, _| if block == "@MCNT CN=05" { Fault::Answered("@MCNT CN05=0008") } else { Fault::None };
+        let failure = Bench::with_faults("", other).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
         assert_eq!(failure.message, "the controller accepted @MCST CN05=0007, but it stands at 8");
-        let silent = |block: &str, _| if block == "@MCNT CN=05" { Fate::Lost } else { Fate::Pass };
-        let failure = Bench::spoilt("", silent).0.run(&["counter", "set", "5", "7"]).unwrap_err();
+        let silent = |block: &str, _| if block == "@MCNT CN=05" { Fault::Lost } else { Fault::None };
+        let failure = Bench::with_faults("", silent).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
     }
 
@@ -157,11 +157,11 @@ mod tests {
     fn a_stale_ok_is_not_taken_for_that_of_an_order() {
         // The order before was given up, and its @OK comes when nobody waits for it any more.
         let late = |block: &str, _| match block {
-            "@MCST CN05=0007" => Fate::Late(std::time::Duration::from_millis(3010)),
-            "@MCST CN06=0001" => Fate::Lost,
-            _ => Fate::Pass,
+            "@MCST CN05=0007" => Fault::Late(std::time::Duration::from_millis(3010)),
+            "@MCST CN06=0001" => Fault::Lost,
+            _ => Fault::None,
         };
-        let (mut bench, heard) = Bench::spoilt("host = true\n", late);
+        let (mut bench, heard) = Bench::with_faults("host = true\n", late);
         assert_eq!(bench.run(&["counter", "set", "5", "7"]).unwrap_err().kind, Kind::OutcomeUnknown);
         heard.borrow_mut().clear();
         // No `@OK` of its own came: whether it was done is open, not done.

@@ -279,7 +279,7 @@ impl Report for PointReport {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::toyo::testing::{Bench, Fate, blocks, objection};
+    use crate::command::toyo::testing::{Bench, Fault, blocks, objection};
 
     #[test]
     fn what_is_asked() {
@@ -293,7 +293,7 @@ mod tests {
 
     #[test]
     fn an_error_is_shown_and_cancelled() {
-        let (mut bench, _) = Bench::spoilt("error = \"28\"\n", |_, _| Fate::Pass);
+        let (mut bench, _) = Bench::with_faults("error = \"28\"\n", |_, _| Fault::None);
         let error = &bench.data(&["error", "show"])["error"];
         assert_eq!((&error["code"], &error["axis"]), (&"28".into(), &1.into()));
         assert!(error["remedy"].as_str().unwrap().contains("toyo param get"));
@@ -304,8 +304,8 @@ mod tests {
 
     #[test]
     fn an_error_that_stays_is_a_failure() {
-        let stays = |block: &str, _| if block == "@CERR" { Fate::Answered("@OK") } else { Fate::Pass };
-        let (data, failure) = Bench::spoilt("error = \"24\"\n", stays).0.run(&["error", "cancel"]).unwrap();
+        let stays = |block: &str, _| if block == "@CERR" { Fault::Answered("@OK") } else { Fault::None };
+        let (data, failure) = Bench::with_faults("error = \"24\"\n", stays).0.run(&["error", "cancel"]).unwrap();
         assert_eq!(data["error"]["code"], "24");
         let failure = failure.unwrap();
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("24")));
@@ -314,7 +314,7 @@ mod tests {
     #[test]
     fn the_history_ends_where_it_is_empty() {
         let state = "history = [{ code = \"13\", after_seconds = 3723 }, { power_cut = true }, { code = \"A1\" }]\n";
-        let (mut bench, heard) = Bench::spoilt(state, |_, _| Fate::Pass);
+        let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
         let data = bench.data(&["error", "history"]);
         let entries = data["entries"].as_array().unwrap();
         assert_eq!(entries.len(), 3, "{data}");
@@ -329,7 +329,8 @@ mod tests {
 
     #[test]
     fn a_controller_without_history_says_so() {
-        let failure = Bench::spoilt("model = \"other\"\n", |_, _| Fate::Pass).0.run(&["error", "history"]).unwrap_err();
+        let failure =
+            Bench::with_faults("model = \"other\"\n", |_, _| Fault::None).0.run(&["error", "history"]).unwrap_err();
         assert_eq!(failure.kind, Kind::Refused);
         assert!(failure.hint.unwrap().contains("KCA-25"));
     }

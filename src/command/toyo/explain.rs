@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::command::{OfflineCommand, Report, ValueKind};
 use crate::controller::toyo::errors;
+use crate::controller::typed;
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::view::View;
@@ -21,10 +22,7 @@ pub struct Explain {
 
 /// Two hexadecimal digits.
 fn code(text: &str) -> Result<u8, String> {
-    let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
-    let is_hex = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
-    let code = if is_hex { u8::from_str_radix(digits, 16).ok() } else { None };
-    code.ok_or_else(|| "a code is two hexadecimal digits, as in 28; `toyo status` shows it".to_owned())
+    typed::code(text).ok_or_else(|| "a code is two hexadecimal digits, as in 28; `toyo status` shows it".to_owned())
 }
 
 impl OfflineCommand for Explain {

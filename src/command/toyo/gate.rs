@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-use super::testing::{Bench, Fate, Heard, gated, plan, text};
+use super::testing::{Bench, Fault, ReceivedBlocks, gated, plan, text};
 use crate::command::CommandSet as _;
 use crate::command::frame::testing::{QUIET, frames};
 use crate::controller::Risk::{self, Destroy, Motion, Read, Write};
@@ -65,13 +65,13 @@ const BEFORE: [&str; 5] = [
 ];
 
 /// A controller with somebody's work, files for it in a folder, and what it hears from now on.
-fn prepared(line: &str) -> (Bench, Heard, tempfile::TempDir) {
+fn prepared(line: &str) -> (Bench, ReceivedBlocks, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("parameters.toml", "[parameters]\nM09 = 'J'\nE06 = { ax1 = 900, ax2 = 900, ax3 = 900, ax4 = 900 }\n");
     write("points.csv", "point,x_mm,y_mm,z_mm,r_mm\n1,5,5,5,5\n2,6,6,6,6\n");
     write("program.txt", "TAG TAG=005\nSPD V=05\nEND\n");
-    let (mut bench, heard) = Bench::spoilt(STATE, |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults(STATE, |_, _| Fault::None);
     if line.starts_with("restore") {
         let backup = folder.path().join("backup");
         bench.data(&["backup", backup.to_str().unwrap()]);

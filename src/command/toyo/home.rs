@@ -96,7 +96,7 @@ impl Report for Homed {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, intent, objection};
+    use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, intent, objection};
     use crate::failure::Kind;
 
     #[test]
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn the_axes_are_at_their_origin_when_it_is_told() {
-        let (mut bench, heard) = Bench::spoilt("position = [50.0, 20.0, 0.0, 0.0]\n", |_, _| Fate::Pass);
+        let (mut bench, heard) = Bench::with_faults("position = [50.0, 20.0, 0.0, 0.0]\n", |_, _| Fault::None);
         let data = bench.data(&["home"]);
         assert!(data["elapsed_ms"].as_u64().unwrap() > 1000, "{data}");
         assert_eq!(data["position"]["x_mm"], 0.0);
@@ -125,14 +125,14 @@ mod tests {
     #[test]
     fn a_return_that_is_stopped_is_a_failure() {
         let state = "position = [300.0, 0.0, 0.0, 0.0]\n[[event]]\nat_ms = 1000\ndo = \"stop\"\n";
-        let failure = Bench::spoilt(state, |_, _| Fate::Pass).0.run(&["home"]).unwrap_err();
+        let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["home"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
         assert!(failure.message.contains("but it ended without the origin; it stands at X "), "{}", failure.message);
     }
 
     #[test]
     fn nobody_waits_who_does_not_want_to() {
-        let (mut bench, _) = Bench::spoilt("position = [300.0, 0.0, 0.0, 0.0]\n", |_, _| Fate::Pass);
+        let (mut bench, _) = Bench::with_faults("position = [300.0, 0.0, 0.0, 0.0]\n", |_, _| Fault::None);
         assert_eq!(bench.data(&["home", "--no-wait"])["position"], serde_json::Value::Null);
         assert_eq!(bench.data(&["status"])["homing"], true);
         let failure = bench.run(&["home"]).unwrap_err();

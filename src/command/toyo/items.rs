@@ -244,11 +244,11 @@ fn not_asked(request: &Request, silence: &Failure) -> Failure {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, Fate};
+    use crate::command::toyo::testing::{Bench, Fault};
     use crate::failure::Kind;
 
-    fn spoilt(spoil: &'static str, fate: Fate) -> Bench {
-        Bench::spoilt("", move |block, _| if block == spoil { fate } else { Fate::Pass }).0
+    fn with_faults(spoil: &'static str, fate: Fault) -> Bench {
+        Bench::with_faults("", move |block, _| if block == spoil { fate } else { Fault::None }).0
     }
 
     #[test]
@@ -264,7 +264,7 @@ mod tests {
             (["point", "get", "1-3"], "points", "point", "RPAR T1 PT=002"),
         ] {
             let asked = Box::leak(format!("@{block}").into_boxed_str());
-            let (data, failure) = spoilt(asked, Fate::Answered("@NG")).run(&words).unwrap();
+            let (data, failure) = with_faults(asked, Fault::Answered("@NG")).run(&words).unwrap();
             let items = data[list].as_array().unwrap();
             assert_eq!(items.len(), 3, "{data}");
             assert_eq!(
@@ -283,15 +283,15 @@ mod tests {
 
     #[test]
     fn what_falls_silent_is_not_asked_for_ever() {
-        let (data, failure) = spoilt("@MCNT CN=02", Fate::Lost).run(&["counter", "get", "1-9"]).unwrap();
+        let (data, failure) = with_faults("@MCNT CN=02", Fault::Lost).run(&["counter", "get", "1-9"]).unwrap();
         let kinds: Vec<_> =
             data["counters"].as_array().unwrap().iter().map(|item| item["error"]["kind"].clone()).collect();
         assert!(kinds[0].is_null() && kinds[1..].iter().all(|kind| kind == "no_answer"), "{data}");
         assert!(data["counters"][2]["error"]["message"].as_str().unwrap().starts_with("@MCNT CN=03 was not asked"));
         assert_eq!(failure.unwrap().kind, Kind::Mixed);
-        let failure = spoilt("@MCNT CN=01", Fate::Lost).run(&["counter", "get", "1-9"]).unwrap_err();
+        let failure = with_faults("@MCNT CN=01", Fault::Lost).run(&["counter", "get", "1-9"]).unwrap_err();
         assert_eq!(failure.kind, Kind::NoAnswer);
-        let failure = spoilt("@MCNT CN=01", Fate::Answered("@NG")).run(&["counter", "get", "1"]).unwrap_err();
+        let failure = with_faults("@MCNT CN=01", Fault::Answered("@NG")).run(&["counter", "get", "1"]).unwrap_err();
         assert_eq!(failure.kind, Kind::Refused);
     }
 
@@ -303,7 +303,7 @@ mod tests {
             ("@RPAR E17", "@RPAR E17 E=I", "I"),
             ("@RPAR E19", "@RPAR E19 1130", "1130"),
         ] {
-            let mut bench = spoilt(block, Fate::Answered(answer));
+            let mut bench = with_faults(block, Fault::Answered(answer));
             let data = bench.data(&["param", "list"]);
             let id = &block[6..];
             let entry = data["parameters"].as_array().unwrap().iter().find(|entry| entry["id"] == id).unwrap();
@@ -322,14 +322,14 @@ mod tests {
             let dumped = bench.data(&["param", "dump"]);
             assert_eq!((&dumped["unfit"][0]["key"], &dumped["unfit"][0]["in_manual"]), (&id.into(), &false.into()));
         }
-        let mut bench = spoilt("@RPAR T2 V02", Fate::Answered("@RPAR T2 V02=250"));
+        let mut bench = with_faults("@RPAR T2 V02", Fault::Answered("@RPAR T2 V02=250"));
         let rows = bench.data(&["speed-table", "get", "1-2"]);
         assert_eq!(
             rows["rows"][1],
             serde_json::json!({ "ok": true, "row": 2, "in_manual": false, "raw": "T2 V02=250" })
         );
-        let mut bench = Bench::spoilt("steps = { 1 = [\"SPD V=05\", \"NOP\", \"END\"] }", |block, _| {
-            if block == "@RSTX 0002" { Fate::Answered("@RSTX 0002 FOO X=1") } else { Fate::Pass }
+        let mut bench = Bench::with_faults("steps = { 1 = [\"SPD V=05\", \"NOP\", \"END\"] }", |block, _| {
+            if block == "@RSTX 0002" { Fault::Answered("@RSTX 0002 FOO X=1") } else { Fault::None }
         })
         .0;
         let got = bench.data(&["program", "get", "--to", "4"]);

@@ -28,7 +28,7 @@ use crate::command::{Access, Family};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::{Answer, Request};
-use crate::controller::toyo::session::{Counters, Ended, Line, Policy};
+use crate::controller::toyo::session::{Counters, Ended, LineSession, Policy};
 use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table::commands::{Command, Row};
 use crate::controller::{Risk, Session as _, Step};
@@ -54,7 +54,7 @@ pub struct Toyo;
 #[derive(Debug)]
 pub struct Link {
     transport: Transport,
-    line: Line,
+    line: LineSession,
     /// As flags and settings want it, and as it is now.
     usual: Policy,
     policy: Policy,
@@ -218,7 +218,7 @@ impl Link {
         let left = debts.left();
         Ok(Self {
             transport,
-            line: Line::new(policy),
+            line: LineSession::new(policy),
             usual: policy,
             policy,
             screen: *screen,

@@ -1,12 +1,11 @@
 //! Numbers on a command line, in the ranges of the protocol's fields; several questions in a row.
 
-use std::collections::HashSet;
-
 use super::link::Link;
 use super::refusal;
 use crate::controller::toyo::field::{Field, Form, Value};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
+use crate::controller::typed;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
@@ -17,13 +16,7 @@ pub struct Numbers(Vec<i32>);
 impl Numbers {
     /// Reads a number or a range; each must be in the range of the field.
     pub fn parse(field: &Field, text: &str) -> Result<Self, String> {
-        let ends = text.split_once("..").or_else(|| text.split_once('-'));
-        let Some((first, last)) = ends else { return Ok(Self(vec![number(field, text)?])) };
-        let (first, last) = (number(field, first)?, number(field, last)?);
-        if first > last {
-            return Err(format!("the range ends before it begins; did you mean {last}-{first}?"));
-        }
-        Ok(Self((first..=last).collect()))
+        Ok(Self(typed::range(text, |end| number(field, end))?.collect()))
     }
 
     /// All numbers that were given, each once and in that order; without any, all that the field takes.
@@ -34,22 +27,13 @@ impl Numbers {
                 _ => Vec::new(),
             };
         }
-        let mut seen = HashSet::new();
-        given.iter().flat_map(|numbers| &numbers.0).copied().filter(|number| seen.insert(*number)).collect()
+        typed::once(given.iter().flat_map(|numbers| &numbers.0).copied())
     }
 }
 
 /// Numbers in the order given, those that follow each other as `5-9`.
 pub fn runs(numbers: &[i32]) -> String {
-    let mut runs: Vec<(i32, i32)> = Vec::new();
-    for &number in numbers {
-        match runs.last_mut() {
-            Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
-            _ => runs.push((number, number)),
-        }
-    }
-    let run = |&(first, last): &(i32, i32)| if first == last { first.to_string() } else { format!("{first}-{last}") };
-    runs.iter().map(run).collect::<Vec<_>>().join(", ")
+    typed::runs(numbers, "-")
 }
 
 /// Reads a number, which must be in the range of the field; of one with decimals, in units of the last.

@@ -205,7 +205,7 @@ impl Report for Stopped {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, intent, objection};
+    use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, intent, objection};
     use crate::failure::Kind;
 
     #[test]
@@ -247,7 +247,7 @@ mod tests {
 
     #[test]
     fn what_was_ordered_is_so_when_it_is_told() {
-        let (mut bench, _) = Bench::spoilt("", |_, _| Fate::Pass);
+        let (mut bench, _) = Bench::with_faults("", |_, _| Fault::None);
         for (words, field, value) in [
             (["servo", "off"], "servo_on", false.into()),
             (["servo", "on"], "servo_on", true.into()),
@@ -264,7 +264,7 @@ mod tests {
     #[test]
     fn what_was_accepted_and_is_not_so_is_told() {
         let (mut bench, _) =
-            Bench::spoilt("", |block, _| if block == "@MPLE" { Fate::Answered("@OK") } else { Fate::Pass });
+            Bench::with_faults("", |block, _| if block == "@MPLE" { Fault::Answered("@OK") } else { Fault::None });
         let failure = bench.run(&["mode", "palletizing"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
         assert_eq!(failure.message, "the order was accepted, but the mode has not changed within 1s");
@@ -273,19 +273,19 @@ mod tests {
 
     #[test]
     fn what_was_accepted_and_is_not_seen_is_open() {
-        let blind = |block: &str, _| if block == "@STAS SNO=3" { Fate::Lost } else { Fate::Pass };
-        let failure = Bench::spoilt("", blind).0.run(&["servo", "off"]).unwrap_err();
+        let blind = |block: &str, _| if block == "@STAS SNO=3" { Fault::Lost } else { Fault::None };
+        let failure = Bench::with_faults("", blind).0.run(&["servo", "off"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
         assert!(failure.message.starts_with("the order was accepted, but what came of it was not seen: "));
         let busy = |block: &str, count| {
-            if block == "@STAS SNO=3" && count < 4 { Fate::Answered("@NG") } else { Fate::Pass }
+            if block == "@STAS SNO=3" && count < 4 { Fault::Answered("@NG") } else { Fault::None }
         };
-        Bench::spoilt("", busy).0.data(&["servo", "off"]);
+        Bench::with_faults("", busy).0.data(&["servo", "off"]);
     }
 
     #[test]
     fn a_stop_finds_what_moves() {
-        let (mut bench, heard) = Bench::spoilt("position = [300.0, 0.0, 0.0, 0.0]\n", |_, _| Fate::Pass);
+        let (mut bench, heard) = Bench::with_faults("position = [300.0, 0.0, 0.0, 0.0]\n", |_, _| Fault::None);
         bench.data(&["home", "--no-wait"]);
         bench.wait(std::time::Duration::from_secs(2));
         assert!(bench.data(&["stop"])["position"]["x_mm"].as_f64().unwrap() < -10.0);
@@ -298,15 +298,15 @@ mod tests {
 
     #[test]
     fn a_stop_of_a_jog_that_was_left_takes_the_host_if_it_must() {
-        let (mut bench, heard) = Bench::spoilt("host = true\n", |_, _| Fate::Pass);
+        let (mut bench, heard) = Bench::with_faults("host = true\n", |_, _| Fault::None);
         bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
         bench.data(&["stop", "--jog"]);
         assert_eq!(bench.data(&["status"])["executing"], false);
         assert!(!heard.borrow().iter().any(|block| block == "@HSON"));
 
         // Somebody else's jog, on a controller whose JOG wants the host and does not stop without it.
-        let (mut bench, heard) = Bench::spoilt("", |block, count| {
-            if block.starts_with("@JGST") && count == 1 { Fate::Answered("@NG") } else { Fate::Pass }
+        let (mut bench, heard) = Bench::with_faults("", |block, count| {
+            if block.starts_with("@JGST") && count == 1 { Fault::Answered("@NG") } else { Fault::None }
         });
         bench.data(&["stop", "--jog"]);
         assert_eq!(heard.borrow().iter().filter(|block| *block == "@HSON").count(), 1);
@@ -314,8 +314,8 @@ mod tests {
 
     #[test]
     fn a_stop_that_stops_no_jog_is_followed_by_one_that_does() {
-        let deaf = |block: &str, _| if block == "@STOP" { Fate::Answered("@OK") } else { Fate::Pass };
-        let (mut bench, _) = Bench::spoilt("host = true\n", deaf);
+        let deaf = |block: &str, _| if block == "@STOP" { Fault::Answered("@OK") } else { Fault::None };
+        let (mut bench, _) = Bench::with_faults("host = true\n", deaf);
         bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
         bench.data(&["stop"]);
         assert_eq!(bench.data(&["status"])["executing"], false);
@@ -326,11 +326,11 @@ mod tests {
         let jog = "@JGST X=SP Y=SP Z=SP R=SP";
         for refuses in [false, true] {
             // STOP does not stop it; with the host OFF, the first stop of the JOG is refused.
-            let (mut bench, heard) = Bench::spoilt("host = true\n", move |block, count| match block {
-                "@STOP" => Fate::Answered("@OK"),
-                "@STAS SNO=2" if refuses && count == 1 => Fate::Answered("@STAS SNO=2 ST1=00 ST2=00"),
-                _ if block == jog && refuses && count == 1 => Fate::Answered("@NG"),
-                _ => Fate::Pass,
+            let (mut bench, heard) = Bench::with_faults("host = true\n", move |block, count| match block {
+                "@STOP" => Fault::Answered("@OK"),
+                "@STAS SNO=2" if refuses && count == 1 => Fault::Answered("@STAS SNO=2 ST1=00 ST2=00"),
+                _ if block == jog && refuses && count == 1 => Fault::Answered("@NG"),
+                _ => Fault::None,
             });
             bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
             heard.borrow_mut().clear();

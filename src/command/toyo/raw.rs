@@ -166,7 +166,7 @@ impl Report for Exchange {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, Fate, all_blocks, intent, objection};
+    use crate::command::toyo::testing::{Bench, Fault, all_blocks, intent, objection};
     use crate::controller::Risk;
     use crate::failure::Kind;
 
@@ -189,11 +189,11 @@ mod tests {
     fn a_stale_ok_is_not_taken_for_that_of_a_raw_order() {
         for order in ["@MCST CN06=0001", "@MCST CN06=1"] {
             let late = move |block: &str, _| match block {
-                "@MCST CN05=0007" => Fate::Late(std::time::Duration::from_millis(3010)),
-                _ if block == order => Fate::Lost,
-                _ => Fate::Pass,
+                "@MCST CN05=0007" => Fault::Late(std::time::Duration::from_millis(3010)),
+                _ if block == order => Fault::Lost,
+                _ => Fault::None,
             };
-            let (mut bench, heard) = Bench::spoilt("host = true\n", late);
+            let (mut bench, heard) = Bench::with_faults("host = true\n", late);
             assert_eq!(bench.run(&["counter", "set", "5", "7"]).unwrap_err().kind, Kind::OutcomeUnknown);
             heard.borrow_mut().clear();
             assert_eq!(bench.run(&["raw", order]).unwrap_err().kind, Kind::OutcomeUnknown);
@@ -203,7 +203,7 @@ mod tests {
 
     #[test]
     fn what_follows_an_unknown_order_is_fenced_again() {
-        let (mut bench, heard) = Bench::spoilt("host = true\n", |_, _| Fate::Pass);
+        let (mut bench, heard) = Bench::with_faults("host = true\n", |_, _| Fault::None);
         bench.run(&["raw", "@XXXX"]).unwrap();
         bench.run(&["raw", "@MCST CN06=0001"]).unwrap();
         assert_eq!(heard.borrow()[..], ["@STAS SNO=0", "@XXXX", "@STAS SNO=0", "@MCST CN06=0001"]);

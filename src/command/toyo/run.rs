@@ -287,7 +287,7 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
-    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, intent, objection};
+    use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, intent, objection};
 
     /// Half a second, then 100 mm at 100 mm/s.
     const PROGRAM: &str = "origin = true\nspeeds = { 1 = 100.0 }\npoints = { 1 = { 1 = [100.0, 0.0, 0.0, 0.0] } }\n\
@@ -325,7 +325,7 @@ mod tests {
 
     #[test]
     fn a_program_is_waited_for() {
-        let (mut bench, heard) = Bench::spoilt(PROGRAM, |_, _| Fate::Pass);
+        let (mut bench, heard) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
         let data = bench.data(&["run", "sequential", "1"]);
         assert_eq!((&data["stopped"], &data["position"]["x_mm"]), (&false.into(), &100.0.into()));
         let elapsed = data["elapsed_ms"].as_u64().unwrap();
@@ -336,7 +336,7 @@ mod tests {
     #[test]
     fn a_program_that_is_over_at_once_has_ended() {
         let state = "origin = true\nsteps = { 1 = [\"OUT STN=0 PN01=.......1\", \"END\"] }\n";
-        let data = Bench::spoilt(state, |_, _| Fate::Pass).0.data(&["run", "sequential"]);
+        let data = Bench::with_faults(state, |_, _| Fault::None).0.data(&["run", "sequential"]);
         assert_eq!(data["stopped"], false);
     }
 
@@ -344,7 +344,7 @@ mod tests {
     fn a_stop_of_the_program_is_an_end_and_one_of_somebody_is_not() {
         let state = "origin = true\nsteps = { 1 = [\"NOP\", \"STOP\", \"NOP\", \"TIM TM=010.0\", \"END\"] }\n\
             [[event]]\nat_ms = 3000\ndo = \"stop\"\n";
-        let (mut bench, _) = Bench::spoilt(state, |_, _| Fate::Pass);
+        let (mut bench, _) = Bench::with_faults(state, |_, _| Fault::None);
         let data = bench.data(&["run", "sequential", "1"]);
         assert_eq!((&data["stopped"], &data["step"]), (&true.into(), &3.into()));
         let failure = bench.run(&["run", "sequential"]).unwrap_err();
@@ -354,7 +354,7 @@ mod tests {
 
     #[test]
     fn in_step_mode_every_step_is_an_end() {
-        let (mut bench, _) = Bench::spoilt(PROGRAM, |_, _| Fate::Pass);
+        let (mut bench, _) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
         bench.data(&["mode", "step"]);
         assert_eq!(bench.data(&["run", "sequential", "1"])["stopped"], true);
     }
@@ -362,7 +362,7 @@ mod tests {
     #[test]
     fn an_error_that_comes_up_is_a_failure() {
         let state = format!("{PROGRAM}[[event]]\nat_ms = 1000\ndo = \"estop\"\n");
-        let failure = Bench::spoilt(&state, |_, _| Fate::Pass).0.run(&["run", "sequential", "1"]).unwrap_err();
+        let failure = Bench::with_faults(&state, |_, _| Fault::None).0.run(&["run", "sequential", "1"]).unwrap_err();
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("13")));
         assert!(
             failure
@@ -377,7 +377,7 @@ mod tests {
     #[test]
     fn what_a_run_needs_is_told_and_not_changed() {
         let refused = |state: &str| {
-            let (mut bench, heard) = Bench::spoilt(state, |_, _| Fate::Pass);
+            let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
             let failure = bench.run(&["run", "sequential", "1"]).unwrap_err();
             assert_eq!(failure.kind, Kind::Refused);
             let changes = ["@MAUT", "@SVON", "@HOME", "@CERR", "@MSEQ"];
@@ -392,9 +392,12 @@ mod tests {
 
     #[test]
     fn a_start_whose_answer_is_lost_is_sent_once() {
-        for fate in [Fate::Lost, Fate::Unanswered, Fate::Answered("@O")] {
+        for fate in [Fault::Lost, Fault::Unanswered, Fault::Answered("@O")] {
             let (mut bench, heard) =
-                Bench::spoilt(PROGRAM, move |block, _| if block.starts_with("@SPST") { fate } else { Fate::Pass });
+                Bench::with_faults(
+                    PROGRAM,
+                    move |block, _| if block.starts_with("@SPST") { fate } else { Fault::None },
+                );
             let failure = bench.run(&["run", "sequential", "1"]).unwrap_err();
             assert_eq!(failure.kind, Kind::OutcomeUnknown, "{fate:?}");
             assert!(failure.hint.unwrap().contains("`toyo status`"));
@@ -404,8 +407,8 @@ mod tests {
 
     #[test]
     fn a_lost_contact_leaves_the_outcome_open() {
-        let lost = |block: &str, count| if block == "@STAS SNO=0" && count > 2 { Fate::Lost } else { Fate::Pass };
-        let failure = Bench::spoilt(PROGRAM, lost).0.run(&["run", "sequential", "1"]).unwrap_err();
+        let lost = |block: &str, count| if block == "@STAS SNO=0" && count > 2 { Fault::Lost } else { Fault::None };
+        let failure = Bench::with_faults(PROGRAM, lost).0.run(&["run", "sequential", "1"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
         assert!(
             failure.message.starts_with("the start was accepted, but its end was not seen: "),
@@ -418,9 +421,9 @@ mod tests {
     #[test]
     fn a_busy_controller_is_asked_again() {
         let busy = |block: &str, count| {
-            if block == "@STAS SNO=0" && count % 2 == 0 { Fate::Answered("@NG") } else { Fate::Pass }
+            if block == "@STAS SNO=0" && count % 2 == 0 { Fault::Answered("@NG") } else { Fault::None }
         };
-        assert_eq!(Bench::spoilt(PROGRAM, busy).0.data(&["run", "sequential", "1"])["position"]["x_mm"], 100.0);
+        assert_eq!(Bench::with_faults(PROGRAM, busy).0.data(&["run", "sequential", "1"])["position"]["x_mm"], 100.0);
     }
 
     #[test]
@@ -429,7 +432,7 @@ mod tests {
             [(&["run", "sequential", "1"][..], PROGRAM), (&["home"], "position = [300.0, 0.0, 0.0, 0.0]\n")]
         {
             for ms in (200..1400).step_by(170) {
-                let (mut bench, heard) = Bench::spoilt(state, |_, _| Fate::Pass);
+                let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
                 let said = bench.interrupted(words, Duration::from_millis(ms)).unwrap();
                 assert!(said.starts_with("the robot was stopped (@STOP); it stands at X "), "{words:?} {ms}: {said}");
                 assert!(heard.borrow().iter().any(|block| block == "@STOP"));
@@ -444,10 +447,10 @@ mod tests {
     #[test]
     fn a_late_ok_to_the_start_is_not_that_to_the_stop() {
         // The start is answered after 400 ms; Ctrl-C comes before that, and the first stop is lost.
-        let (mut bench, heard) = Bench::spoilt(PROGRAM, |block, count| match block {
-            "@SPST 0001" => Fate::Late(Duration::from_millis(400)),
-            "@STOP" if count == 1 => Fate::Lost,
-            _ => Fate::Pass,
+        let (mut bench, heard) = Bench::with_faults(PROGRAM, |block, count| match block {
+            "@SPST 0001" => Fault::Late(Duration::from_millis(400)),
+            "@STOP" if count == 1 => Fault::Lost,
+            _ => Fault::None,
         });
         bench.interrupted(&["run", "sequential", "1"], Duration::from_millis(250)).unwrap();
         assert!(heard.borrow().iter().filter(|block| *block == "@STOP").count() >= 2);
@@ -457,7 +460,7 @@ mod tests {
     #[test]
     fn only_a_jog_is_stopped_although_it_was_to_be_left() {
         let must_halt = |words: &[&str]| {
-            let (mut bench, _) = Bench::spoilt(PROGRAM, |_, _| Fate::Pass);
+            let (mut bench, _) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
             bench.left(words, Duration::from_millis(450))
         };
         assert!(!must_halt(&["run", "sequential", "1"]));
@@ -466,7 +469,7 @@ mod tests {
 
     #[test]
     fn the_host_is_given_back_while_a_program_runs() {
-        let (mut bench, heard) = Bench::spoilt(PROGRAM, |_, _| Fate::Pass);
+        let (mut bench, heard) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
         assert_eq!(bench.data(&["run", "sequential", "1", "--no-wait"])["stopped"], serde_json::Value::Null);
         bench.close().unwrap();
         assert_eq!(heard.borrow().last().unwrap(), "@HSOF");

@@ -2,11 +2,12 @@
 
 use std::io;
 use std::net::SocketAddr;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
 use crate::command::frame::interrupt::catch_interrupts;
+use crate::command::serve::link::Link;
 use crate::command::serve::{self, Serving, Started, address, cannot_listen};
 use crate::command::toyo::simulated::{self, Simulated};
 use crate::failure::{Failure, plain};
@@ -70,7 +71,7 @@ impl serve::Serve for Serve {
             let made = StreamServer::pseudo_terminal(speed, self.fault);
             let (server, path) = made.map_err(|error| no_terminal(&error))?;
             let link = self.link.map(|link| Link::make(&link, &path)).transpose()?;
-            let name = link.as_ref().map_or_else(|| path.clone(), |link| link.name.display().to_string());
+            let name = link.as_ref().map_or_else(|| path.clone(), |link| link.name().display().to_string());
             (server, format!("serial://{name}"), None, link)
         } else {
             let made = StreamServer::tcp(self.bind, speed, self.fault).await;
@@ -108,81 +109,4 @@ impl serve::Server for Toyo {
 fn no_terminal(error: &io::Error) -> Failure {
     let failure = Failure::local(format!("cannot make a pseudo-terminal: {}", plain(error)));
     failure.hint("leave --pty away, and reach the simulator over TCP")
-}
-
-/// A symbolic link to the pseudo-terminal, as long as it is served.
-#[derive(Debug)]
-struct Link {
-    name: PathBuf,
-    leads_to: PathBuf,
-}
-
-impl Link {
-    /// Makes it. One that leads nowhere, of a simulator that was killed, is replaced; anything else is left alone.
-    fn make(name: &Path, leads_to: &str) -> Result<Self, Failure> {
-        let failed = |error: io::Error| {
-            let failure = Failure::io(name.display(), &error);
-            match error.kind() {
-                io::ErrorKind::AlreadyExists => failure.hint("remove it, or choose another name for --link"),
-                _ => failure,
-            }
-        };
-        let name = std::path::absolute(name).map_err(failed)?;
-        if name.is_symlink() && !name.exists() {
-            std::fs::remove_file(&name).map_err(failed)?;
-        }
-        let leads_to = PathBuf::from(leads_to);
-        symlink(&leads_to, &name).map_err(failed)?;
-        Ok(Self { name, leads_to })
-    }
-}
-
-impl Drop for Link {
-    fn drop(&mut self) {
-        // Somebody else's is left alone; what cannot be removed is replaced the next time.
-        if std::fs::read_link(&self.name).is_ok_and(|leads_to| leads_to == self.leads_to) {
-            std::fs::remove_file(&self.name).unwrap_or_default();
-        }
-    }
-}
-
-#[cfg(unix)]
-use std::os::unix::fs::symlink;
-
-#[cfg(not(unix))]
-fn symlink(_: &Path, _: &Path) -> io::Result<()> {
-    Err(io::ErrorKind::Unsupported.into())
-}
-
-#[cfg(all(test, unix))]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_link_is_there_as_long_as_it_is_served() {
-        let folder = tempfile::tempdir().unwrap();
-        let (name, port) = (folder.path().join("toyo"), folder.path().join("pts"));
-        std::fs::write(&port, "").unwrap();
-        let leads_to = port.to_str().unwrap();
-        let link = Link::make(&name, leads_to).unwrap();
-        assert_eq!(std::fs::read_link(&name).unwrap(), port);
-        let second = Link::make(&name, leads_to).unwrap_err();
-        assert!(second.hint.unwrap().contains("--link"), "one that leads somewhere is somebody's");
-        drop(link);
-        assert!(!name.is_symlink());
-    }
-
-    #[test]
-    fn what_a_killed_simulator_left_is_replaced_and_what_is_not_ours_stays() {
-        let folder = tempfile::tempdir().unwrap();
-        let (name, port) = (folder.path().join("toyo"), folder.path().join("pts"));
-        symlink(folder.path().join("gone"), &name).unwrap();
-        let link = Link::make(&name, port.to_str().unwrap()).unwrap();
-        assert_eq!(std::fs::read_link(&name).unwrap(), port);
-        std::fs::remove_file(&name).unwrap();
-        std::fs::write(&name, "mine").unwrap();
-        drop(link);
-        assert_eq!(std::fs::read_to_string(&name).unwrap(), "mine");
-        assert!(Link::make(&name, port.to_str().unwrap()).is_err());
-    }
 }

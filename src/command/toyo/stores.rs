@@ -6,7 +6,7 @@ use super::link::Link;
 use super::values::{self, Shown};
 use crate::command::frame::interrupt::interruptible;
 use crate::controller::toyo::field::Value;
-use crate::controller::toyo::layout::{Misfit, Record};
+use crate::controller::toyo::layout::{LayoutProblem, Record};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::{self, Parameter};
 use crate::failure::{Failure, Kind};
@@ -182,7 +182,7 @@ pub enum Fate {
 }
 
 /// The cell of a parameter, or of a row of a table, with all fields of its layout.
-pub fn parameter_cell(parameter: &'static Parameter, values: Vec<Value>) -> Result<Cell, Misfit> {
+pub fn parameter_cell(parameter: &'static Parameter, values: Vec<Value>) -> Result<Cell, LayoutProblem> {
     let row = parameter
         .row()
         .and(values.first())

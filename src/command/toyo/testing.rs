@@ -76,11 +76,11 @@ pub(super) struct Bench {
     link: Link,
 }
 
-/// What becomes of a block and its answer.
+/// What happens to a block and its answer on the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Fate {
+pub(super) enum Fault {
     /// Both arrive.
-    Pass,
+    None,
     /// The block never arrives.
     Lost,
     /// The block arrives, its answer does not.
@@ -92,26 +92,26 @@ pub(super) enum Fate {
 }
 
 /// Blocks that arrived at the end of the line, or were lost before it, in their order.
-pub(super) type Heard = Rc<RefCell<Vec<String>>>;
+pub(super) type ReceivedBlocks = Rc<RefCell<Vec<String>>>;
 
 /// A simulated controller behind a line that loses what a test wants to be lost.
-struct Spoilt<F> {
+struct FaultyLine<F> {
     controller: Simulated,
     coming: Vec<u8>,
     answers: VecDeque<(Duration, Vec<u8>)>,
-    heard: Heard,
+    heard: ReceivedBlocks,
     counts: HashMap<String, usize>,
-    /// The fate of a block, and of how many of its kind it is, from 1.
-    fate: F,
+    /// The fault for a block, by its text and how often it came, from 1.
+    fault: F,
 }
 
-impl<F> fmt::Debug for Spoilt<F> {
+impl<F> fmt::Debug for FaultyLine<F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Spoilt").finish_non_exhaustive()
+        f.debug_struct("FaultyLine").finish_non_exhaustive()
     }
 }
 
-impl<F: FnMut(&str, usize) -> Fate> Peer for Spoilt<F> {
+impl<F: FnMut(&str, usize) -> Fault> Peer for FaultyLine<F> {
     fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
         for byte in bytes {
             self.coming.push(*byte);
@@ -123,16 +123,16 @@ impl<F: FnMut(&str, usize) -> Fate> Peer for Spoilt<F> {
             self.heard.borrow_mut().push(block.clone());
             let count = self.counts.entry(block.clone()).or_default();
             *count += 1;
-            let fate = (self.fate)(&block, *count);
-            match fate {
-                Fate::Lost => continue,
-                Fate::Answered(answer) => self.answers.push_back((now, format!("{answer}\r\n").into_bytes())),
+            let fault = (self.fault)(&block, *count);
+            match fault {
+                Fault::Lost => continue,
+                Fault::Answered(answer) => self.answers.push_back((now, format!("{answer}\r\n").into_bytes())),
                 _ => self.controller.receive(now, channel, &coming),
             }
             while let Some((_, answer)) = self.controller.transmit(now) {
-                match fate {
-                    Fate::Unanswered => {}
-                    Fate::Late(by) => self.answers.push_back((now + by, answer)),
+                match fault {
+                    Fault::Unanswered => {}
+                    Fault::Late(by) => self.answers.push_back((now + by, answer)),
                     _ => self.answers.push_back((now, answer)),
                 }
             }
@@ -150,12 +150,16 @@ impl<F: FnMut(&str, usize) -> Fate> Peer for Spoilt<F> {
 }
 
 impl Bench {
-    /// A simulator in a start state (TOML), whose blocks have a fate; and what it hears.
-    pub(super) fn spoilt(state: &str, fate: impl FnMut(&str, usize) -> Fate + 'static) -> (Self, Heard) {
+    /// A simulator in a start state (TOML), behind a line with faults; and the blocks that it receives.
+    pub(super) fn with_faults(
+        state: &str,
+        fault: impl FnMut(&str, usize) -> Fault + 'static,
+    ) -> (Self, ReceivedBlocks) {
         let controller = Simulated::new(Start::parse(state).expect("a start state"));
-        let heard = Heard::default();
+        let heard = ReceivedBlocks::default();
         let (coming, answers) = (Vec::new(), VecDeque::new());
-        let peer = Box::new(Spoilt { controller, coming, answers, heard: heard.clone(), counts: HashMap::new(), fate });
+        let peer =
+            Box::new(FaultyLine { controller, coming, answers, heard: heard.clone(), counts: HashMap::new(), fault });
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
         let runtime = runtime();
         let link = runtime

@@ -12,6 +12,7 @@ pub use self::capture::FrameDecoder;
 use crate::command::Report;
 use crate::command::decode::capture::{Selection, file_among};
 use crate::command::decode::{self, damage, field_table, in_parentheses, problem_lines, stdin};
+use crate::controller::typed;
 use crate::controller::yerc::describe::{Description, FieldNote, Sender, describe};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::table::service;
@@ -46,12 +47,7 @@ pub struct Decode {
 }
 
 fn number(text: &str) -> Result<u16, String> {
-    let parsed = match text.strip_prefix("0x") {
-        Some(digits) if digits.bytes().all(|byte| byte.is_ascii_hexdigit()) => u16::from_str_radix(digits, 16).ok(),
-        None if text.bytes().all(|byte| byte.is_ascii_digit()) => text.parse().ok(),
-        _ => None,
-    };
-    parsed.ok_or_else(|| "a number from 0 to 65535 (0x0000 to 0xFFFF) is expected".to_owned())
+    typed::unsigned(text).ok_or_else(|| "a number from 0 to 65535 (0x0000 to 0xFFFF) is expected".to_owned())
 }
 
 impl decode::Decode for Decode {

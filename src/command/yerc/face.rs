@@ -81,12 +81,12 @@ impl Face for Yerc {
         Commands::schemas()
     }
 
-    fn tool(&self, kind: ToolKind) -> Tool {
-        match kind {
+    fn tool(&self, kind: ToolKind) -> Option<Tool> {
+        Some(match kind {
             ToolKind::Decode => Tool::decode::<Decode>(),
             ToolKind::Explain => Tool::explain::<Explain>(),
             ToolKind::Simulate => Tool::simulate::<Serve>(),
-        }
+        })
     }
 
     fn connect<'a>(

@@ -21,7 +21,8 @@ use crate::command::frame::items;
 use crate::command::frame::items::ItemError;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
-use crate::controller::text::{Encoding, Name, integer};
+use crate::controller::text::{Encoding, Name};
+use crate::controller::typed;
 use crate::controller::units;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::payload::{ControllerStatus, JobInfo};
@@ -66,7 +67,7 @@ impl FromStr for Tasks {
         if text.eq_ignore_ascii_case("all") {
             return Ok(Self::All);
         }
-        let task = integer(text).and_then(|task| u8::try_from(task).ok());
+        let task = typed::unsigned(text);
         task.map(Self::One).ok_or_else(|| "a task is a number from 0 (master) on, or all".to_owned())
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use crate::controller::text::integer;
+use crate::controller::typed::integer;
 
 /// Reads whole numbers from `first` to `last`.
 pub fn within<T>(first: T, last: T) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static

@@ -10,12 +10,12 @@ use tokio::time::Instant;
 use super::decode::{FieldRow, parse_hex};
 use super::file::download_failed;
 use super::link::{self, Link, Refusal};
-use super::register::unsigned;
 use crate::command::decode::field_table;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::hex;
+use crate::controller::typed;
 use crate::controller::yerc::describe::{Sender, describe};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::session::{DownloadEnd, Reply};
@@ -71,12 +71,12 @@ impl Bytes {
 }
 
 fn word(text: &str) -> Result<u16, String> {
-    let number = unsigned(text).and_then(|number| u16::try_from(number).ok());
+    let number = typed::unsigned(text);
     number.ok_or_else(|| "a number from 0 to 65535 (0x0000 to 0xFFFF) is expected".to_owned())
 }
 
 fn byte(text: &str) -> Result<u8, String> {
-    let number = unsigned(text).and_then(|number| u8::try_from(number).ok());
+    let number = typed::unsigned(text);
     number.ok_or_else(|| "a number from 0 to 255 (0x00 to 0xFF) is expected".to_owned())
 }
 
@@ -134,7 +134,7 @@ impl Command for Raw {
         let reply = if self.file && matches!(request.service, service::SAVE | service::LIST) {
             transfer(link, &request).await?
         } else {
-            link.reply(&request).await?
+            link.raw(&request).await?
         };
         Ok(Answer::new(&request, doubt, reply))
     }

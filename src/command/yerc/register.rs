@@ -10,11 +10,12 @@ use serde::Serialize;
 use super::link::Yerc;
 use super::orders::usage;
 use super::parts::{Parts, read_in_parts};
-use super::writes::{Order, runs, write_all};
+use super::writes::{Order, write_all};
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
+use crate::controller::typed;
 use crate::controller::yerc::variables::{WriteRegisterStep, parse_numbers, plan_register_reads, plan_register_writes};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, View};
@@ -68,23 +69,13 @@ impl FromStr for Assignment {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (number, value) = text.split_once('=').ok_or("a number, '=' and a value are expected, as in 5=1000")?;
+        let (number, value) = typed::setting(text, "a number", "a value", "5=1000")?;
         let numbers = parse_numbers(number).map_err(|error| error.to_string())?;
         let [number] = numbers[..] else { return Err(format!("'{number}' are several; give each its value")) };
-        let parsed = unsigned(value).and_then(|value| u16::try_from(value).ok());
-        let value = parsed.ok_or_else(|| format!("'{value}' is not a number from 0 to 65535 (0x0000 to 0xFFFF)"))?;
+        let value = typed::unsigned(value)
+            .ok_or_else(|| format!("'{value}' is not a number from 0 to 65535 (0x0000 to 0xFFFF)"))?;
         Ok(Self { number, value })
     }
-}
-
-/// Reads decimal digits, or hexadecimal ones after `0x`.
-pub fn unsigned(text: &str) -> Option<u32> {
-    let (digits, radix) = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        Some(digits) => (digits, 16),
-        None => (text, 10),
-    };
-    let plain = digits.chars().all(|c| c.is_digit(radix));
-    if plain { u32::from_str_radix(digits, radix).ok() } else { None }
 }
 
 impl Command for Get {
@@ -93,9 +84,7 @@ impl Command for Get {
     const ID: &'static str = "yerc.register.get";
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Registers, Failure> {
-        let mut seen = HashSet::new();
-        let numbers = self.registers.iter().flat_map(|numbers| numbers.0.iter().copied());
-        let numbers: Vec<u16> = numbers.filter(|number| seen.insert(*number)).collect();
+        let numbers = typed::once(self.registers.iter().flat_map(|numbers| numbers.0.iter().copied()));
         let link = context.link;
         let model = link.model;
         let plan = |numbers: &[u16]| plan_register_reads(model, numbers).map_err(usage);
@@ -142,7 +131,7 @@ impl Order for WriteRegisterStep {
     }
 
     fn listed(items: Vec<u16>) -> String {
-        format!("register {}", runs(&items))
+        format!("register {}", typed::runs(&items, ".."))
     }
 }
 

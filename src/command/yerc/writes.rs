@@ -21,9 +21,7 @@ pub trait Order: Query<Answer = ()> {
 /// Sends the orders one after the other. The first that fails ends it, and the failure says what was written, what may
 /// have been, and what was not. So does Ctrl-C.
 pub async fn write_all<O: Order>(link: &mut Link, screen: &Screen, orders: &[O]) -> Result<(), Failure> {
-    if link.is_dry() {
-        link.ask_all(orders).await?;
-    }
+    link.plan_all(orders)?;
     let mut done = 0;
     let progress = (orders.len() > 1).then(|| screen.spinner("writing"));
     // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
@@ -69,19 +67,6 @@ fn account<O: Order>(failure: Failure, orders: &[O], done: usize) -> Failure {
     let hint = failure.hint.clone().unwrap_or_else(|| "read them back before you repeat the command".to_owned());
     let kind = if failure.kind == Kind::Refused && !written.is_empty() { Kind::Mixed } else { failure.kind };
     Failure { kind, message, ..failure }.hint(hint)
-}
-
-/// Numbers in the order given, runs as `5..9`.
-pub fn runs(numbers: &[u16]) -> String {
-    let mut runs: Vec<(u16, u16)> = Vec::new();
-    for &number in numbers {
-        match runs.last_mut() {
-            Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
-            _ => runs.push((number, number)),
-        }
-    }
-    let run = |&(first, last): &(u16, u16)| if first == last { first.to_string() } else { format!("{first}..{last}") };
-    runs.iter().map(run).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

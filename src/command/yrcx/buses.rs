@@ -5,11 +5,12 @@ use clap::Args;
 use schemars::{JsonSchema as _, Schema, SchemaGenerator};
 
 // Not its folder as a whole, whose commands know the link, which knows this list.
+use super::devicenet::bus as devicenet;
 use super::eip::bus as eip;
 use super::fieldbus::{Fieldbus, Search, Serve};
 
 /// All of them. The first is the one that a simulator is on unless its URL says otherwise.
-pub const BUSES: [&dyn Fieldbus; 1] = [&eip::EtherNetIp];
+pub const BUSES: [&dyn Fieldbus; 2] = [&eip::EtherNetIp, &devicenet::DeviceNet];
 
 /// How each is searched by `robots discover`: arguments of the command line.
 #[derive(Debug, Args)]
@@ -17,12 +18,14 @@ pub const BUSES: [&dyn Fieldbus; 1] = [&eip::EtherNetIp];
 pub struct Searches {
     #[command(flatten)]
     eip: eip::Search,
+    #[command(flatten)]
+    devicenet: devicenet::Search,
 }
 
 impl Searches {
     /// Each with its fieldbus.
-    pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Search); 1] {
-        [(&eip::EtherNetIp, &self.eip)]
+    pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Search); 2] {
+        [(&eip::EtherNetIp, &self.eip), (&devicenet::DeviceNet, &self.devicenet)]
     }
 }
 
@@ -32,18 +35,20 @@ impl Searches {
 pub struct Servers {
     #[command(flatten)]
     eip: eip::ServeArgs,
+    #[command(flatten)]
+    devicenet: devicenet::ServeArgs,
 }
 
 impl Servers {
     /// Each with its fieldbus.
-    pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Serve); 1] {
-        [(&eip::EtherNetIp, &self.eip)]
+    pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Serve); 2] {
+        [(&eip::EtherNetIp, &self.eip), (&devicenet::DeviceNet, &self.devicenet)]
     }
 }
 
 /// What devices of each say of themselves.
 pub fn identities(generator: &mut SchemaGenerator) -> Vec<Schema> {
-    vec![eip::Identity::json_schema(generator)]
+    vec![eip::Identity::json_schema(generator), devicenet::Node::json_schema(generator)]
 }
 
 /// The fieldbus of this name.

@@ -48,7 +48,7 @@ fn signals(image: &Image, layers: &mut Layers) {
         ("none", "SO(03) is on"),
         "`yrcx info alarm` names it, `yrcx alarm reset` resets it",
     );
-    let status = Status::of(image.0[0]);
+    let status = Status::from_word(image.0[0]);
     layers.judge(
         "remote command",
         status == Status::Ready,

@@ -2,8 +2,8 @@
 
 use super::motion::Moving;
 use super::{
-    alarm, backup, clock, data, eip, info, io, motion, param, point_calc, port, procedures, program, raw, select,
-    servo, speed, status, status_reset, teach, torque_limit, var,
+    alarm, backup, clock, data, devicenet, eip, info, io, motion, param, point_calc, port, procedures, program, raw,
+    select, servo, speed, status, status_reset, teach, torque_limit, var,
 };
 use crate::command::{Subcommands, commands};
 
@@ -104,5 +104,7 @@ commands! {
         Raw(raw::Raw),
         /// The network board itself: who it is, which assemblies it has (diagnosis)
         Eip(Subcommands<eip::Eip>),
+        /// The bus of a controller on DeviceNet: who is there, sizes, owner (diagnosis)
+        Devicenet(Subcommands<devicenet::DeviceNet>),
     }
 }

@@ -124,7 +124,7 @@ fn every_line_sends_the_row_it_is_for() {
     let mut reached = BTreeSet::new();
     for line in LINES {
         let sent = words(&line.split(' ').collect::<Vec<_>>()).unwrap();
-        let row = |words: &Vec<String>| Row::of(u16::from_str_radix(&words[0][2..], 16).unwrap()).unwrap();
+        let row = |words: &Vec<String>| Row::from_word(u16::from_str_radix(&words[0][2..], 16).unwrap()).unwrap();
         let written = written(&line.split(' ').collect::<Vec<_>>()).unwrap();
         let own = row(written.first().unwrap_or(&sent[0])).command;
         assert!(!reached.contains(&own) || own.row().risk == Risk::Read, "{line}: {own:?} has a line already");

@@ -84,12 +84,12 @@ impl Face for Yrcx {
         Commands::schemas()
     }
 
-    fn tool(&self, kind: ToolKind) -> Tool {
-        match kind {
+    fn tool(&self, kind: ToolKind) -> Option<Tool> {
+        Some(match kind {
             ToolKind::Decode => Tool::decode::<Decode>(),
             ToolKind::Explain => Tool::explain::<Explain>(),
             ToolKind::Simulate => Tool::simulate::<ServeArgs>(),
-        }
+        })
     }
 
     fn connect<'a>(

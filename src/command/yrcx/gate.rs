@@ -59,6 +59,9 @@ const READS: &[&str] = &[
     "eip identity",
     "eip probe",
     "eip get 1 1 7",
+    "devicenet scan",
+    "devicenet identity",
+    "devicenet probe",
 ];
 
 const WRITES: &[&str] = &[
@@ -300,7 +303,7 @@ impl Frame {
     /// The riskiest of what it can mean; of signals, the risk of what the first word differs in from rest.
     fn risk(&self) -> Risk {
         match self {
-            Self::Words(words) => Row::of(number(&words[0])).unwrap().risk,
+            Self::Words(words) => Row::from_word(number(&words[0])).unwrap().risk,
             Self::Bits(bits) => risk_of(bits),
         }
     }

@@ -27,7 +27,7 @@ pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<(Im
         rest: |before| after_loss(&image(before)).to_link(before.len()),
         under_way: |_, seen| {
             let seen = image(seen);
-            Status::of(seen.0[0]) == Status::Running || output::PROGRAM_RUNNING.is_on(&seen)
+            Status::from_word(seen.0[0]) == Status::Running || output::PROGRAM_RUNNING.is_on(&seen)
         },
     };
     let mut images = Images::new(link, rules).map_err(Failure::local)?;

@@ -25,6 +25,7 @@ mod connect;
 mod coverage;
 mod data;
 pub mod decode;
+pub mod devicenet;
 pub mod discover;
 pub mod eip;
 mod explain;

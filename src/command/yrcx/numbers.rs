@@ -1,7 +1,6 @@
 //! Numbers of points, variables, tasks on a command line, in the ranges of the protocol's fields.
 
-use std::collections::HashSet;
-
+use crate::controller::typed;
 use crate::controller::yrcx::table::{Command, Field};
 use crate::controller::yrcx::value::{Key, Value};
 
@@ -13,22 +12,14 @@ impl Numbers {
     /// Reads a number or a range for a field of a command; each must be one that may be sent.
     pub fn parse(command: Command, key: Key, text: &str) -> Result<Self, String> {
         let field = field(command, key)?;
-        let Some((first, last)) = text.split_once("..").or_else(|| text.split_once('-')) else {
-            return Ok(Self(vec![number(field, text)?]));
-        };
-        let (first, last) = (number(field, first)?, number(field, last)?);
-        if first > last {
-            return Err("the range ends before it begins".to_owned());
-        }
-        let numbers: Vec<i32> = (first..=last).collect();
+        let numbers: Vec<i32> = typed::range(text, |end| number(field, end))?.collect();
         numbers.iter().try_for_each(|number| field.accept(&Value::Int(*number)))?;
         Ok(Self(numbers))
     }
 
     /// All numbers that were given, each once and in that order.
     pub fn of(given: &[Self]) -> Vec<i32> {
-        let mut seen = HashSet::new();
-        given.iter().flat_map(|numbers| &numbers.0).copied().filter(|number| seen.insert(*number)).collect()
+        typed::once(given.iter().flat_map(|numbers| &numbers.0).copied())
     }
 }
 
@@ -44,15 +35,7 @@ pub fn named(command: Command, key: Key, number: i32) -> String {
 
 /// Numbers in the order given, those that follow each other as `5..9`.
 pub fn runs(numbers: &[i32]) -> String {
-    let mut runs: Vec<(i32, i32)> = Vec::new();
-    for &number in numbers {
-        match runs.last_mut() {
-            Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
-            _ => runs.push((number, number)),
-        }
-    }
-    let run = |&(first, last): &(i32, i32)| if first == last { first.to_string() } else { format!("{first}..{last}") };
-    runs.iter().map(run).collect::<Vec<_>>().join(", ")
+    typed::runs(numbers, "..")
 }
 
 fn field(command: Command, key: Key) -> Result<&'static Field, String> {
@@ -79,7 +62,7 @@ mod tests {
         assert_eq!(runs(&Numbers::of(&given)), "7, 2..5");
         assert_eq!(Numbers::of(&[points("0..29999").unwrap()]).len(), 30_000);
         assert_eq!(points("0..30000").unwrap_err(), "30000 is out of range; allowed: 0 to 29999");
-        assert_eq!(points("5..2").unwrap_err(), "the range ends before it begins");
+        assert_eq!(points("5..2").unwrap_err(), "the range ends before it begins; did you mean 2..5?");
         assert!(points("").is_err() && points("-3").is_err() && points("x").is_err() && points("1..").is_err());
     }
 

@@ -31,7 +31,7 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
 
 /// Why no remote command may be given only to look. Somebody else's is not waited for: it may be a motion.
 pub(super) fn not_asked(link: &Link, image: &Image) -> Option<&'static str> {
-    if link.is_shared() && Status::of(image.0[0]) == Status::Running {
+    if link.is_shared() && Status::from_word(image.0[0]) == Status::Running {
         return Some(BUSY);
     }
     if !link.has_commands() {

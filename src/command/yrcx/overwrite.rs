@@ -115,7 +115,7 @@ fn target(order: &Order) -> Option<(&'static str, String, Draft)> {
         }
         Command::HandSet => ("a hand", format!("hand {}", number(Key::Hand)), of(Command::HandGet, Key::Hand)),
         Command::ParamSet => {
-            let name = Parameter::of(number(Key::Parameter)).map_or("a parameter", |parameter| parameter.name);
+            let name = Parameter::from_number(number(Key::Parameter)).map_or("a parameter", |parameter| parameter.name);
             let axis = number(Key::Axes);
             let axis = if axis == 0 { String::new() } else { format!(" of axis {}", axis.trailing_zeros() + 1) };
             let what = format!("{name}{axis}, robot {}", number(Key::Robot).max(1));
@@ -268,7 +268,7 @@ fn told(command: Command, values: &Values) -> String {
             format!("{first}, {second} mm, {third} mm{place}, robot {}", owner(values))
         }
         Command::ParamSet => {
-            let unit = Parameter::of(number(Key::Parameter)).map_or("", |parameter| parameter.unit);
+            let unit = Parameter::from_number(number(Key::Parameter)).map_or("", |parameter| parameter.unit);
             format!("{} {unit}", number(Key::Value)).trim_end().to_owned()
         }
         _ => {

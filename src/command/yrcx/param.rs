@@ -50,7 +50,7 @@ fn parameter(text: &str) -> Result<&'static Parameter, String> {
             None => why,
         }
     })?;
-    Parameter::of(number).ok_or_else(|| format!("there is no parameter {number}"))
+    Parameter::from_number(number).ok_or_else(|| format!("there is no parameter {number}"))
 }
 
 /// Reads parameters, one after the other.

@@ -11,6 +11,7 @@ use crate::command::decode::{field_table, problem_lines};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
+use crate::controller::typed;
 use crate::controller::yrcx::answer::Answer;
 use crate::controller::yrcx::describe;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Words};
@@ -46,13 +47,7 @@ pub fn words(text: &str) -> Result<Words, String> {
         return Err(format!("1 to {COMMAND_WORDS} words are wanted, not {}", pieces.len()));
     }
     for (word, piece) in words.iter_mut().zip(pieces) {
-        let hex = piece.strip_prefix("0x").or_else(|| piece.strip_prefix("0X"));
-        let number = match hex {
-            Some(digits) if !digits.starts_with('+') => u16::from_str_radix(digits, 16).ok(),
-            None if !piece.starts_with('+') => piece.parse().ok(),
-            _ => None,
-        };
-        *word = number.ok_or_else(|| format!("'{piece}' is no word such as 0x0032 or 50"))?;
+        *word = typed::unsigned(piece).ok_or_else(|| format!("'{piece}' is no word such as 0x0032 or 50"))?;
     }
     Ok(words)
 }

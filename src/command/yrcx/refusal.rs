@@ -7,7 +7,7 @@ use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use crate::controller::yrcx::codec::WordError;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::sequence;
-use crate::controller::yrcx::session::{Ended, Hindrance, Outcome, Silence};
+use crate::controller::yrcx::session::{Ended, NotSentReason, Outcome, Silence};
 use crate::controller::yrcx::table::{Command, Pace, Row};
 use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::{Failure, Kind};
@@ -146,28 +146,30 @@ pub fn unanswered(label: &str, row: &Row, outcome: &Outcome, stop: Option<bool>)
 
 /// A remote command where the fieldbus carries signals alone.
 pub fn no_commands(label: &str, row: &Row) -> Failure {
-    let message =
-        format!("{label}: the fieldbus unit carries signals alone (I/O size \"Compact\"), and {} is words", row.id);
+    let message = format!(
+        "{label}: the fieldbus unit carries signals alone (I/O size \"Compact\"), and {} is a remote command",
+        row.id
+    );
     Failure::new(Kind::RefusedHere, message).hint(
         "set the unit's I/O size to Normal for remote commands; signals work: `yrcx status`, `yrcx io`, `yrcx run`, \
          `yrcx stop`, `yrcx recover`",
     )
 }
 
-fn not_sent(label: &str, row: &Row, hindrance: Hindrance) -> Failure {
+fn not_sent(label: &str, row: &Row, hindrance: NotSentReason) -> Failure {
     let (why, hint) = match hindrance {
-        Hindrance::NoImage => (
+        NotSentReason::NoImage => (
             "the controller shows nothing".to_owned(),
             "check the link: `-v` counts what came; the sizes in the URL may be wrong (`armctl robots check`)",
         ),
-        Hindrance::LinkLost => {
+        NotSentReason::LinkLost => {
             ("the link is down".to_owned(), "look at the controller; the link opens again by itself")
         }
-        Hindrance::NotReady(status) => (
+        NotSentReason::NotReady(status) => (
             format!("the controller is not ready for a command, its status is: {status}"),
             "another command may still run; `yrcx io set stop=off` stops what moves",
         ),
-        Hindrance::Interrupted => ("interrupted".to_owned(), "nothing was done"),
+        NotSentReason::Interrupted => ("interrupted".to_owned(), "nothing was done"),
     };
     Failure::new(Kind::NoAnswer, format!("{label}: {} was not sent: {why}", row.id)).hint(hint)
 }

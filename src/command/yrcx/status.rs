@@ -126,7 +126,7 @@ impl StatusReport {
     /// What the signals say.
     fn of(image: &Image) -> Self {
         Self {
-            command_status: CommandStatus::of(image.0[0]).to_string(),
+            command_status: CommandStatus::from_word(image.0[0]).to_string(),
             emergency_stop: output::EMERGENCY_STOP.is_on(image),
             cpu_ok: output::CPU_OK.is_on(image),
             servo_on: output::SERVO_ON.is_on(image),

@@ -125,7 +125,7 @@ pub(super) fn words(words: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
 /// Those of them that do not only read.
 pub(super) fn written(line: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
     let code = |words: &Vec<String>| u16::from_str_radix(words[0].trim_start_matches("0x"), 16).unwrap();
-    let is_written = |words: &Vec<String>| Row::of(code(words)).unwrap().risk > Risk::Read;
+    let is_written = |words: &Vec<String>| Row::from_word(code(words)).unwrap().risk > Risk::Read;
     Ok(words(line)?.into_iter().filter(is_written).collect())
 }
 

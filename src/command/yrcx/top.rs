@@ -197,7 +197,7 @@ fn lamps(image: &Image) -> Vec<Lamp> {
         Lamp::should("CPU OK", is_on(output::CPU_OK), Tone::Bad),
         Lamp::should("MP ready", is_on(output::MP_READY), Tone::Warning),
         Lamp::new("at start", is_on(output::PROGRAM_RESET), Tone::Plain),
-        Lamp::new("command", Status::of(image.0[0]) == Status::Running, Tone::Good),
+        Lamp::new("command", Status::from_word(image.0[0]) == Status::Running, Tone::Good),
     ]
 }
 

@@ -181,7 +181,7 @@ struct Notes<'t> {
 
 /// What a value is a part of.
 #[derive(Clone, Copy)]
-struct Of {
+struct MessageContext {
     command: Command,
     /// The page of STAS.
     page: Option<i32>,
@@ -227,7 +227,7 @@ impl<'t> Notes<'t> {
             })
         };
         let record = number("record");
-        let of = Of { command: row.command, page: number("page"), sender };
+        let of = MessageContext { command: row.command, page: number("page"), sender };
         for (field, value, bytes) in found {
             let bytes = bytes.start + start..bytes.end + start;
             if field.form == Form::Text && matches!(field.name, "body" | "key" | "text") {
@@ -240,14 +240,14 @@ impl<'t> Notes<'t> {
     }
 
     /// The parameter, instruction or palletizing record in a block.
-    fn content(&mut self, of: Of, record: Option<i32>, bytes: Range<usize>) -> Result<(), Damage> {
+    fn content(&mut self, of: MessageContext, record: Option<i32>, bytes: Range<usize>) -> Result<(), Damage> {
         let start = bytes.start;
         let body = self.text.get(bytes).unwrap_or_default();
         let word = body.split(' ').next().unwrap_or_default();
         let unknown = |what: &str, name: &str| (start, format!("there is no {what} '{}'", name.escape_debug()));
         let layout = match of.command {
             Command::Wpar | Command::Rpar => {
-                let parameter = Parameter::of(body).ok_or_else(|| unknown("parameter", word))?;
+                let parameter = Parameter::from_text(body).ok_or_else(|| unknown("parameter", word))?;
                 let id = parameter.id.len().min(body.len());
                 self.add(start..start + id, "parameter", parameter.name.to_owned(), parameter.about);
                 if of.command == Command::Rpar && of.sender == Sender::Host { parameter.key } else { parameter.layout }
@@ -271,7 +271,7 @@ impl<'t> Notes<'t> {
     }
 
     /// Notes a value. What the host sends must be in range; what a controller has may be anything.
-    fn value(&mut self, of: Of, field: &'static Field, value: &Value, bytes: Range<usize>) {
+    fn value(&mut self, of: MessageContext, field: &'static Field, value: &Value, bytes: Range<usize>) {
         let wrong = field.check(value).err().filter(|error| matches!(error, FieldError::Range { .. }));
         let mut meaning = meaning_of(of, field, value);
         if let Some(error) = wrong {
@@ -290,7 +290,7 @@ impl<'t> Notes<'t> {
 }
 
 /// What a value says; status bits and error codes by name.
-fn meaning_of(of: Of, field: &Field, value: &Value) -> String {
+fn meaning_of(of: MessageContext, field: &Field, value: &Value) -> String {
     match (of.command, field.name, value) {
         (Command::Stas, "st1", Value::Byte(byte)) => page_words(of.page.and_then(|page| page.try_into().ok()), *byte),
         (Command::Ehtr, "error", Value::Byte(code)) => errors::explain(*code).in_a_line(),

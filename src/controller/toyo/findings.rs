@@ -52,7 +52,7 @@ impl fmt::Display for Finding {
 
 /// A place in a text: line and column, both from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct SourceLocation {
     pub line: usize,
     pub column: usize,
 }
@@ -65,7 +65,7 @@ pub(super) struct Findings {
 }
 
 impl Findings {
-    pub fn error(&mut self, at: Place, message: impl Into<String>, hint: Option<String>) {
+    pub fn error(&mut self, at: SourceLocation, message: impl Into<String>, hint: Option<String>) {
         self.errors += 1;
         if self.errors == MOST {
             self.add(Severity::Error, at, "there are more errors; they are not shown".to_owned(), None);
@@ -74,11 +74,11 @@ impl Findings {
         }
     }
 
-    pub fn warning(&mut self, at: Place, message: impl Into<String>, hint: Option<String>) {
+    pub fn warning(&mut self, at: SourceLocation, message: impl Into<String>, hint: Option<String>) {
         self.add(Severity::Warning, at, message.into(), hint);
     }
 
-    pub fn note(&mut self, at: Place, message: impl Into<String>) {
+    pub fn note(&mut self, at: SourceLocation, message: impl Into<String>) {
         self.add(Severity::Note, at, message.into(), None);
     }
 
@@ -105,7 +105,7 @@ impl Findings {
         self.list
     }
 
-    fn add(&mut self, severity: Severity, at: Place, message: String, hint: Option<String>) {
+    fn add(&mut self, severity: Severity, at: SourceLocation, message: String, hint: Option<String>) {
         self.list.push(Finding { severity, line: at.line, column: at.column, message, hint });
     }
 }

@@ -29,12 +29,12 @@ pub struct LayoutError {
     /// Bytes before the place.
     pub at: usize,
     /// What is wrong there.
-    pub what: Misfit,
+    pub what: LayoutProblem,
 }
 
 /// What is wrong in one place of a text.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum Misfit {
+pub enum LayoutProblem {
     /// Other words than expected.
     #[error("'{expected}' is expected")]
     Words {
@@ -82,20 +82,20 @@ impl Layout {
     }
 
     /// The text with values in it, each in its form and range.
-    pub fn emit(&self, values: &[Value]) -> Result<String, Misfit> {
+    pub fn emit(&self, values: &[Value]) -> Result<String, LayoutProblem> {
         if values.len() != self.fields.len() {
-            return Err(Misfit::Count { expected: self.fields.len(), found: values.len() });
+            return Err(LayoutProblem::Count { expected: self.fields.len(), found: values.len() });
         }
         if let (true, [Value::Text(found)]) = (*self == UNLISTED, values) {
-            return Err(Misfit::Unlisted { found: found.clone() });
+            return Err(LayoutProblem::Unlisted { found: found.clone() });
         }
         self.join(|index, field| Ok(field.emit(&values[index])?))
     }
 
     /// The text with the values in it that are known, each in its form and range; `?` stands for the others.
-    pub fn sketch(&self, values: &[Option<Value>]) -> Result<String, Misfit> {
+    pub fn sketch(&self, values: &[Option<Value>]) -> Result<String, LayoutProblem> {
         if values.len() != self.fields.len() {
-            return Err(Misfit::Count { expected: self.fields.len(), found: values.len() });
+            return Err(LayoutProblem::Count { expected: self.fields.len(), found: values.len() });
         }
         self.join(|index, field| match &values[index] {
             Some(value) => Ok(field.emit(value)?),
@@ -135,8 +135,8 @@ impl Layout {
         let mut fields = self.fields.iter();
         loop {
             let expected = words.next().unwrap_or_default();
-            rest =
-                pass(expected, rest).map_err(|rest| LayoutError { at: at(rest), what: Misfit::Words { expected } })?;
+            rest = pass(expected, rest)
+                .map_err(|rest| LayoutError { at: at(rest), what: LayoutProblem::Words { expected } })?;
             let Some(field) = fields.next() else { break };
             let mut taken = field.take(rest);
             if keeps {
@@ -152,21 +152,24 @@ impl Layout {
         }
         match rest.trim_end_matches(' ') {
             "" => Ok(()),
-            found => Err(LayoutError { at: at(rest), what: Misfit::Rest { found: found.to_owned() } }),
+            found => Err(LayoutError { at: at(rest), what: LayoutProblem::Rest { found: found.to_owned() } }),
         }
     }
 
     /// Values for the fields, which may be out of range: what a controller holds.
-    pub fn record(&self, values: Vec<Value>) -> Result<Record, Misfit> {
+    pub fn record(&self, values: Vec<Value>) -> Result<Record, LayoutProblem> {
         if values.len() == self.fields.len() {
             Ok(Record { layout: *self, values })
         } else {
-            Err(Misfit::Count { expected: self.fields.len(), found: values.len() })
+            Err(LayoutProblem::Count { expected: self.fields.len(), found: values.len() })
         }
     }
 
     /// Words and fields joined, each field as `write` has it.
-    fn join(&self, mut write: impl FnMut(usize, &Field) -> Result<String, Misfit>) -> Result<String, Misfit> {
+    fn join(
+        &self,
+        mut write: impl FnMut(usize, &Field) -> Result<String, LayoutProblem>,
+    ) -> Result<String, LayoutProblem> {
         let mut text = String::with_capacity(self.text.len() + 8 * self.fields.len());
         for (index, words) in self.text.split("{}").enumerate() {
             text.push_str(words);
@@ -270,7 +273,7 @@ impl Record {
     }
 
     /// As it is sent: every value in form and range.
-    pub fn emit(&self) -> Result<String, Misfit> {
+    pub fn emit(&self) -> Result<String, LayoutProblem> {
         self.layout.emit(&self.values)
     }
 
@@ -299,7 +302,7 @@ mod tests {
         let values = [Value::Number(1), Value::Number(0)];
         assert_eq!(TWO.emit(&values).unwrap(), "MCNT CN01=0000");
         assert_eq!(TWO.parse("MCNT CN01=0000").unwrap().values(), values);
-        assert_eq!(TWO.emit(&values[..1]), Err(Misfit::Count { expected: 2, found: 1 }));
+        assert_eq!(TWO.emit(&values[..1]), Err(LayoutProblem::Count { expected: 2, found: 1 }));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::field::Value;
-use super::layout::{Layout, LayoutError, Misfit, Record, UNLISTED};
+use super::layout::{Layout, LayoutError, LayoutProblem, Record, UNLISTED};
 use super::table::commands::{Command, Row};
 use super::table::{Instruction, Op, Pallet, Parameter};
 use crate::Risk;
@@ -60,7 +60,7 @@ pub enum BlockError {
     Layout(#[from] LayoutError),
     /// Values that may not be sent.
     #[error("{0}")]
-    Values(#[from] Misfit),
+    Values(#[from] LayoutProblem),
     /// No such parameter, instruction or record.
     #[error("there is no {what} '{}'", name.escape_debug())]
     Unknown {
@@ -83,12 +83,12 @@ pub enum BlockError {
 
 impl Request {
     /// A request in the first form of a command. Values are in the order of its fields; all must be in range.
-    pub fn new(command: Command, values: Vec<Value>) -> Result<Self, Misfit> {
+    pub fn new(command: Command, values: Vec<Value>) -> Result<Self, LayoutProblem> {
         Self::in_form(command, 0, values)
     }
 
     /// A request in one of the forms of a command.
-    pub fn in_form(command: Command, form: usize, values: Vec<Value>) -> Result<Self, Misfit> {
+    pub fn in_form(command: Command, form: usize, values: Vec<Value>) -> Result<Self, LayoutProblem> {
         let row = command.row();
         let record = row.requests[form].record(values)?;
         record.emit()?;
@@ -112,33 +112,33 @@ impl Request {
     }
 
     /// Reads a parameter, or a row of a table.
-    pub fn read_parameter(parameter: &Parameter, row: Option<i32>) -> Result<Self, Misfit> {
+    pub fn read_parameter(parameter: &Parameter, row: Option<i32>) -> Result<Self, LayoutProblem> {
         let key = parameter.key.emit(&row.map(Value::Number).into_iter().collect::<Vec<_>>())?;
         Self::new(Command::Rpar, vec![Value::Text(key)])
     }
 
     /// Writes a parameter, or a row of a table: all fields of [`Parameter::layout`].
-    pub fn write_parameter(parameter: &Parameter, values: &[Value]) -> Result<Self, Misfit> {
+    pub fn write_parameter(parameter: &Parameter, values: &[Value]) -> Result<Self, LayoutProblem> {
         Self::new(Command::Wpar, vec![Value::Text(parameter.layout.emit(values)?)])
     }
 
     /// Reads a step of the sequential program; 0 is the current one.
-    pub fn read_step(step: i32) -> Result<Self, Misfit> {
+    pub fn read_step(step: i32) -> Result<Self, LayoutProblem> {
         Self::new(Command::Rstx, vec![Value::Number(step)])
     }
 
     /// Writes a step of the sequential program.
-    pub fn write_step(step: i32, instruction: &Record) -> Result<Self, Misfit> {
+    pub fn write_step(step: i32, instruction: &Record) -> Result<Self, LayoutProblem> {
         Self::new(Command::Wstx, vec![Value::Number(step), Value::Text(instruction.emit()?)])
     }
 
     /// Reads a record of a palletizing program.
-    pub fn read_pallet(program: i32, record: &Pallet) -> Result<Self, Misfit> {
+    pub fn read_pallet(program: i32, record: &Pallet) -> Result<Self, LayoutProblem> {
         Self::new(Command::Rplt, vec![Value::Number(program), Value::Number(record.number.into())])
     }
 
     /// Writes a record of a palletizing program.
-    pub fn write_pallet(program: i32, record: &Pallet, values: &[Value]) -> Result<Self, Misfit> {
+    pub fn write_pallet(program: i32, record: &Pallet, values: &[Value]) -> Result<Self, LayoutProblem> {
         let body = Value::Text(record.layout.emit(values)?);
         Self::new(Command::Wplt, vec![Value::Number(program), Value::Number(record.number.into()), body])
     }
@@ -203,7 +203,7 @@ impl Request {
 
     /// The parameter that WPAR or RPAR is about.
     pub fn parameter(&self) -> Option<&'static Parameter> {
-        Parameter::of(self.record.text("body").or(self.record.text("key"))?)
+        Parameter::from_text(self.record.text("body").or(self.record.text("key"))?)
     }
 
     /// What a block of the controller says to it, all in the manual's form but what is in a step or a record.
@@ -287,7 +287,7 @@ impl Request {
             let (key, body) = (self.content()?, self.content_of(answer, reading)?);
             return match (key, body) {
                 (Some(key), Some(body))
-                    if self.parameter() != Parameter::of(&body.written())
+                    if self.parameter() != Parameter::from_text(&body.written())
                         || body.layout() == UNLISTED && !body.written().starts_with(&key.written()) =>
                 {
                     let (found, asked) = (body.written(), key.written());
@@ -355,7 +355,7 @@ fn instruction_as(text: &str, reading: Reading) -> Result<Record, BlockError> {
 }
 
 fn parameter(text: &str) -> Result<&'static Parameter, BlockError> {
-    Parameter::of(text).ok_or_else(|| {
+    Parameter::from_text(text).ok_or_else(|| {
         let name = text.split(' ').next().unwrap_or_default().to_owned();
         BlockError::Unknown { what: "parameter", name }
     })
@@ -397,7 +397,7 @@ fn fitting(forms: &[Layout], text: &str) -> Result<Record, LayoutError> {
             Err(_) => {}
         }
     }
-    let none = || LayoutError { at: 0, what: Misfit::Rest { found: text.to_owned() } };
+    let none = || LayoutError { at: 0, what: LayoutProblem::Rest { found: text.to_owned() } };
     // What is told counts from the start of the block, where the `@` is.
     Err(furthest.map_or_else(none, |error| LayoutError { at: error.at + 1, ..error }))
 }

@@ -57,7 +57,7 @@ pub enum Ended {
 
 /// One end of a line, for one exchange after the other.
 #[derive(Debug)]
-pub struct Line {
+pub struct LineSession {
     policy: Policy,
     framer: Framer,
     counters: Counters,
@@ -106,7 +106,7 @@ const QUIET: Duration = Duration::from_millis(50);
 /// How long an order waits for that silence. On a line that is never quiet it then goes out.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-impl Line {
+impl LineSession {
     /// A line in peace.
     pub fn new(policy: Policy) -> Self {
         Self {
@@ -300,7 +300,7 @@ impl Exchange {
     }
 }
 
-impl Session for Line {
+impl Session for LineSession {
     type Outcome = Ended;
 
     fn poll(&mut self, now: Now) -> Step<Ended> {

@@ -2,9 +2,9 @@
 
 use std::borrow::Cow;
 
-use super::findings::{Findings, Place};
+use super::findings::{Findings, SourceLocation};
 
-const START: Place = Place { line: 1, column: 1 };
+const START: SourceLocation = SourceLocation { line: 1, column: 1 };
 
 /// The lines of a text without their ends. Where it is not UTF-8, the replacement character stands; that was told then.
 pub(super) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, str>> {
@@ -20,7 +20,7 @@ pub(super) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, 
         None => text,
     };
     let mut lines = Vec::new();
-    let (mut ends_told, mut bad): (bool, Option<(Place, u8)>) = (false, None);
+    let (mut ends_told, mut bad): (bool, Option<(SourceLocation, u8)>) = (false, None);
     let mut bad_lines = 0;
     for (index, bytes) in text.split(|byte| *byte == b'\n').enumerate() {
         let number = index + 1;
@@ -59,6 +59,6 @@ pub(super) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, 
 }
 
 /// The place behind the front of a line.
-fn place(line: usize, front: &[u8]) -> Place {
-    Place { line, column: String::from_utf8_lossy(front).chars().count() + 1 }
+fn place(line: usize, front: &[u8]) -> SourceLocation {
+    SourceLocation { line, column: String::from_utf8_lossy(front).chars().count() + 1 }
 }

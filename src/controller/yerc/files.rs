@@ -51,7 +51,7 @@ impl FileType {
     }
 
     /// The type of a file name, by its extension.
-    pub fn of(name: &[u8]) -> Option<Self> {
+    pub fn from_name(name: &[u8]) -> Option<Self> {
         let point = name.iter().rposition(|&byte| byte == b'.')?;
         Self::ALL.into_iter().find(|kind| name[point + 1..].eq_ignore_ascii_case(kind.extension().as_bytes()))
     }
@@ -154,7 +154,7 @@ impl FileName {
 
     /// By its extension; `None` for one that the manuals do not list.
     pub fn file_type(&self) -> Option<FileType> {
-        FileType::of(&self.0)
+        FileType::from_name(&self.0)
     }
 
     /// Checks what is expected of a name beyond the usual before a file is sent under it.
@@ -282,7 +282,7 @@ pub fn check_name(name: &[u8]) -> Result<(), FileNameError> {
 pub fn check_load_name(name: &[u8]) -> Result<(), FileNameError> {
     check_name(name)?;
     let stem = stem_len(name);
-    match FileType::of(name) {
+    match FileType::from_name(name) {
         None => Err(FileNameError::Type { name: name.escape_ascii().to_string() }),
         Some(FileType::Jbi) if stem > MAX_JOB_NAME => {
             Err(FileNameError::JobName { name: name[..stem].escape_ascii().to_string(), len: stem })

@@ -47,6 +47,24 @@ pub trait Query {
     }
 }
 
+/// An exchange whose answer holds nothing but its status.
+pub trait WriteQuery {
+    /// The request, as in [`Query::request`].
+    fn write_request(&self) -> Request;
+}
+
+impl<W: WriteQuery> Query for W {
+    type Answer = ();
+
+    fn request(&self) -> Request {
+        self.write_request()
+    }
+
+    fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
+        Ok(())
+    }
+}
+
 /// A query that cannot be built.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum QueryError {

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::Model;
 use super::table::{Row, Span};
-use crate::text::integer;
+use crate::typed::unsigned;
 
 /// One signal by its logical number; the last digit is 0 to 7.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -69,7 +69,7 @@ impl Signal {
 
 /// The class of a group of eight signals.
 pub fn io_class(model: Model, group: u16) -> Option<&'static Span> {
-    Row::of(0x78)?.instances.find(model, group)
+    Row::from_number(0x78)?.instances.find(model, group)
 }
 
 impl fmt::Display for Signal {
@@ -83,8 +83,7 @@ impl FromStr for Signal {
 
     fn from_str(text: &str) -> Result<Self, SignalError> {
         let digits = text.strip_prefix('#').unwrap_or(text);
-        let number = integer(digits).filter(|_| digits.starts_with(|first: char| first.is_ascii_digit()));
-        let number = number.and_then(|number| u32::try_from(number).ok()).filter(|number| *number < 1_000_000);
+        let number = unsigned(digits).filter(|number: &u32| *number < 1_000_000);
         let number = number.ok_or_else(|| SignalError::Malformed { found: text.to_owned() })?;
         Self::new(number).map_err(|error| match error {
             SignalError::Malformed { .. } => SignalError::Malformed { found: text.to_owned() },

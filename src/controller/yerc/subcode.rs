@@ -17,7 +17,18 @@
 use std::fmt;
 
 use super::Model;
-use super::payload::AlarmKind;
+use super::table::ALARM_KINDS;
+
+/// How the sub-code of an alarm is to be read; numbers without a meaning are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct AlarmKind(pub u32);
+
+impl AlarmKind {
+    /// What kind of sub-code it is, where the manuals say so.
+    pub fn meaning(self) -> Option<&'static str> {
+        ALARM_KINDS.iter().find(|(number, _)| *number == self.0).map(|(_, meaning)| *meaning)
+    }
+}
 
 /// How far a rendering can be trusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -4,11 +4,14 @@
 //! Requests are checked, frames explained and simulated by these rows; there is no second list. Ranges and sizes that the
 //! manuals misprint are given corrected; the golden frames hold the evidence.
 
+mod bits;
 mod fields;
 mod rows;
 mod spans;
 
-pub use fields::{ALARM_KINDS, Bit, Field, Kind};
+pub use bits::Bit;
+pub(super) use bits::{DATA_1_BITS, DATA_2_BITS, EXTENDED_FORM_BITS, FORM_BITS};
+pub use fields::{ALARM_KINDS, Field, Kind};
 pub use rows::ROWS;
 pub use spans::{Instances, Span};
 
@@ -152,7 +155,7 @@ pub struct Row {
 
 impl Row {
     /// The row of a robot command.
-    pub fn of(command: u16) -> Option<&'static Self> {
+    pub fn from_number(command: u16) -> Option<&'static Self> {
         ROWS.iter().find(|row| row.division == Division::Robot && row.number == command)
     }
 
@@ -271,7 +274,7 @@ mod tests {
     fn spans_of_a_model_do_not_overlap() {
         for row in ROWS {
             for model in Model::ALL {
-                let spans = row.instances.of(model);
+                let spans = row.instances.for_model(model);
                 assert!(spans.windows(2).all(|pair| pair[0].last < pair[1].first), "{} {model}", row.name);
             }
         }

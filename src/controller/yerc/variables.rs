@@ -1,8 +1,8 @@
 //! Variables: kinds, values, references such as `B0..B99`, and the fewest requests that read or write many of them.
 
 mod plan;
-mod reference;
-mod value;
+pub(super) mod reference;
+pub(super) mod value;
 
 pub use plan::{
     IoStep, PlannedRead, ReadStep, RegisterStep, WriteIoStep, WriteRegisterStep, WriteStep, plan_io_reads,

@@ -338,10 +338,7 @@ fn le16(size: usize) -> [u8; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn hex(text: &str) -> Vec<u8> {
-        (0..text.len()).step_by(2).map(|i| u8::from_str_radix(&text[i..i + 2], 16).unwrap()).collect()
-    }
+    use crate::testing::hex;
 
     #[test]
     fn status_request_of_section_3_2_1() {

@@ -26,7 +26,7 @@ pub enum Status {
 
 impl Status {
     /// Reads WO0.
-    pub const fn of(word: u16) -> Self {
+    pub const fn from_word(word: u16) -> Self {
         match word {
             0x0000 => Self::Ready,
             0x0100 => Self::Running,
@@ -86,7 +86,7 @@ impl Answer {
     pub fn parse(order: &Order, words: &Words) -> Option<Self> {
         let collect = || fields(order, words).map(|(field, value)| (field.key, value)).collect();
         let none = Values::default;
-        match Status::of(words[0]) {
+        match Status::from_word(words[0]) {
             Status::Running if order.is_continuous() => Some(Self::Running(collect())),
             Status::Running => Some(Self::Running(none())),
             Status::NormalEnd => Some(Self::Done(collect())),

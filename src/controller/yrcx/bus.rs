@@ -60,7 +60,7 @@ impl std::str::FromStr for Bus {
 
 /// One row of the map.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct MapRow {
     /// SI and WI go to the controller, SO and WO come from it.
     pub side: Side,
     /// What the address begins with: `m` or `n` for words, `Im` or `Qn` for bytes.
@@ -79,7 +79,7 @@ pub struct Place {
     pub reserved: bool,
 }
 
-impl Place {
+impl MapRow {
     /// The address: as in the manual, or counted from where the master's area starts.
     pub fn address(&self, start: Option<u32>) -> String {
         match (start, self.offset) {
@@ -99,11 +99,11 @@ impl Place {
 }
 
 /// The map of a bus: what comes from the controller first, as in the manual; ascending by address.
-pub fn map(bus: Bus) -> Vec<Place> {
+pub fn map(bus: Bus) -> Vec<MapRow> {
     [Side::Output, Side::Input].into_iter().flat_map(|side| half(bus, side)).collect()
 }
 
-fn half(bus: Bus, side: Side) -> Vec<Place> {
+fn half(bus: Bus, side: Side) -> Vec<MapRow> {
     let base = match (side, bus.counts_bytes()) {
         (Side::Output, false) => "m",
         (Side::Input, false) => "n",
@@ -118,7 +118,7 @@ fn half(bus: Bus, side: Side) -> Vec<Place> {
             (false, false) => (word - DEDICATED_WORD, low, high),
         };
         let reserved = signal.is_empty();
-        Place { side, base, offset: word, low, high, signal, meaning, reserved }
+        MapRow { side, base, offset: word, low, high, signal, meaning, reserved }
     };
     let mut places = Vec::new();
     if bus.has_commands() {

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::alarm::{Alarm, INPUT_FORMAT};
 use super::image::Words;
-use super::table::{Field, Form, Need, Show, When};
+use super::table::{Field, Form, Presence, Show, When};
 use super::value::{Key, Value, Values};
 
 /// Which words.
@@ -33,7 +33,7 @@ impl fmt::Display for Side {
 #[error("{place}{problem}")]
 pub struct WordError {
     /// The word and the field, where there is one.
-    pub place: Place,
+    pub place: FieldLocation,
     /// What is wrong there.
     pub problem: String,
     /// What a controller answers to this, where the manual tells (4.2.1).
@@ -42,7 +42,7 @@ pub struct WordError {
 
 /// Where something is wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct FieldLocation {
     /// WI or WO.
     pub side: Side,
     /// 0 to 15; `None` for a value that has no word.
@@ -51,7 +51,7 @@ pub struct Place {
     pub key: Option<Key>,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FieldLocation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.word, self.key) {
             (Some(word), Some(key)) => write!(f, "{}{word} {key}: ", self.side),
@@ -68,7 +68,7 @@ impl WordError {
     }
 
     pub(super) fn at(side: Side, word: Option<usize>, key: Option<Key>, problem: impl Into<String>) -> Self {
-        Self { place: Place { side, word, key }, problem: problem.into(), alarm: None }
+        Self { place: FieldLocation { side, word, key }, problem: problem.into(), alarm: None }
     }
 }
 
@@ -156,9 +156,9 @@ fn counts(field: &Field, look: impl Fn(Key) -> i32) -> bool {
 /// Whether 0 is right for a field that is not given.
 fn may_be_missing(field: &Field, look: impl Fn(Key) -> i32) -> bool {
     match field.need {
-        Need::Required => false,
-        Need::Optional => true,
-        Need::OfAxis(axis) => look(Key::AxisFlag) == 1 && look(Key::Axes) >> (axis - 1) & 1 == 0,
+        Presence::Required => false,
+        Presence::Optional => true,
+        Presence::OfAxis(axis) => look(Key::AxisFlag) == 1 && look(Key::Axes) >> (axis - 1) & 1 == 0,
     }
 }
 

@@ -39,7 +39,7 @@ pub struct FieldNote {
 /// Explains WI0 to WI15.
 pub fn command(words: &Words) -> Description {
     let mut notes = Notes { side: Side::Command, words, fields: Vec::new(), problems: Vec::new() };
-    let Some(row) = Row::of(words[0]) else {
+    let Some(row) = Row::from_word(words[0]) else {
         notes.push(0, 0x0FFF, "command code", "unknown".to_owned());
         notes.rest(|_| 0);
         notes.problems.push(format!("{:#06X} is no code of a remote command; there are {}", words[0], ROWS.len()));
@@ -62,12 +62,12 @@ pub fn command(words: &Words) -> Description {
 /// Explains WO0 to WO15, as the answer to the command `request` where that is known.
 pub fn answer(words: &Words, request: Option<&Words>) -> Description {
     let mut notes = Notes { side: Side::Answer, words, fields: Vec::new(), problems: Vec::new() };
-    let status = Status::of(words[0]);
+    let status = Status::from_word(words[0]);
     notes.push(0, u16::MAX, "status", status.to_string());
     if let Status::Other(_) = status {
         notes.problems.push(format!("WO0: {status}"));
     }
-    let known = request.and_then(|request| Some((Row::of(request[0])?, values_of(request)?)));
+    let known = request.and_then(|request| Some((Row::from_word(request[0])?, values_of(request)?)));
     let alarm = Alarm::new(words[1], words[2]);
     if status == Status::AbnormalEnd {
         notes.push(1, u16::MAX, "alarm group", alarm.group_text().unwrap_or("unknown").to_owned());
@@ -93,7 +93,7 @@ pub fn answer(words: &Words, request: Option<&Words>) -> Description {
 
 /// A command in one line, for traces.
 pub fn command_summary(words: &Words) -> String {
-    match Row::of(words[0]) {
+    match Row::from_word(words[0]) {
         Some(row) => {
             let fields = codec::read(row.request(), words, None).filter(|(_, value)| *value != Value::Int(0));
             let shown = fields.map(|(field, value)| format!(" {}={}", field.key, field.show(&value)));
@@ -105,7 +105,7 @@ pub fn command_summary(words: &Words) -> String {
 
 /// An answer in one line, for traces.
 pub fn answer_summary(words: &Words) -> String {
-    match Status::of(words[0]) {
+    match Status::from_word(words[0]) {
         Status::AbnormalEnd => {
             let alarm = Alarm::new(words[1], words[2]);
             format!("abnormal end, {alarm} {}", alarm.text())
@@ -116,7 +116,7 @@ pub fn answer_summary(words: &Words) -> String {
 
 /// What the words of a command hold, whether or not they may be sent.
 fn values_of(words: &Words) -> Option<Values> {
-    let row = Row::of(words[0])?;
+    let row = Row::from_word(words[0])?;
     Some(codec::read(row.request(), words, None).map(|(field, value)| (field.key, value)).collect())
 }
 
@@ -147,7 +147,7 @@ impl Notes<'_> {
     /// Notes what is set in words 1 to 15 beyond the bits that are accounted for.
     fn rest(&mut self, accounted: impl Fn(usize) -> u16) {
         let alarm_words =
-            if self.side == Side::Answer && Status::of(self.words[0]) == Status::AbnormalEnd { 3 } else { 1 };
+            if self.side == Side::Answer && Status::from_word(self.words[0]) == Status::AbnormalEnd { 3 } else { 1 };
         for word in alarm_words..self.words.len() {
             let left = self.words[word] & !accounted(word);
             if left != 0 {

@@ -60,7 +60,7 @@ impl Order {
     pub fn parse(words: &Words) -> Result<Self, WordError> {
         let unknown =
             || WordError::at(Side::Command, Some(0), None, format!("{:#06X} is no code of a remote command", words[0]));
-        let row = Row::of(words[0]).ok_or_else(unknown)?;
+        let row = Row::from_word(words[0]).ok_or_else(unknown)?;
         let values = codec::decode_strictly(row.request(), words)?;
         for rule in row.rules {
             rule.check(row, &values)?;
@@ -116,7 +116,7 @@ impl Rule {
                 }
             }
             Self::ParameterAxis => {
-                let Some(parameter) = Parameter::of(int(Key::Parameter)) else { return Ok(()) };
+                let Some(parameter) = Parameter::from_number(int(Key::Parameter)) else { return Ok(()) };
                 match (parameter.per_axis, int(Key::Axes)) {
                     (true, 0) => wrong(Key::Axes, format!("{} belongs to an axis; name one", parameter.name)),
                     (false, 1..) => {
@@ -126,7 +126,7 @@ impl Rule {
                 }
             }
             Self::ParameterValue => {
-                let Some(parameter) = Parameter::of(int(Key::Parameter)) else { return Ok(()) };
+                let Some(parameter) = Parameter::from_number(int(Key::Parameter)) else { return Ok(()) };
                 let (least, most) = parameter.span;
                 match int(Key::Value) {
                     value if (least..=most).contains(&value) => Ok(()),

@@ -5,6 +5,7 @@ use std::fmt;
 
 use super::image::{COMMAND_WORDS, Words};
 use super::signal::Side;
+use crate::typed::integer;
 
 /// A general-purpose word or double word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -74,12 +75,7 @@ impl Register {
     pub fn value(self, text: &str) -> Result<u32, String> {
         let bits = if self.is_double { 32 } else { 16 };
         let (least, most) = (-(1_i64 << (bits - 1)), (1_i64 << bits) - 1);
-        let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-            Some(digits) if digits.bytes().all(|byte| byte.is_ascii_hexdigit()) => i64::from_str_radix(digits, 16).ok(),
-            Some(_) => None,
-            None => text.parse().ok(),
-        };
-        let number = number.ok_or_else(|| format!("'{text}' is no whole number such as 5 or 0x1F"))?;
+        let number = integer(text).ok_or_else(|| format!("'{text}' is no whole number such as 5 or 0x1F"))?;
         if !(least..=most).contains(&number) {
             return Err(format!("{number} does not fit {self}; allowed: {least} to {most}"));
         }

@@ -14,7 +14,7 @@ use super::signal::Signal;
 use super::table::Pace;
 use crate::Now;
 
-pub use exchange::{Ended, Exchange, Hindrance, Outcome, Silence};
+pub use exchange::{Ended, Exchange, NotSentReason, Outcome, Silence};
 
 /// What a session wants its driver to do.
 #[derive(Debug, Clone, PartialEq)]

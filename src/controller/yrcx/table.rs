@@ -8,7 +8,7 @@ mod layouts;
 pub mod parameter;
 mod rows;
 
-pub use field::{COMMON_LINES, Charset, Field, Form, Need, Show, When};
+pub use field::{COMMON_LINES, Charset, Field, Form, Presence, Show, When};
 pub use rows::{Command, ROWS};
 
 use super::value::Key;
@@ -71,7 +71,7 @@ pub type Fields = std::iter::Flatten<std::iter::Copied<std::slice::Iter<'static,
 
 impl Row {
     /// The row of the code in WI0, whatever the robot.
-    pub fn of(wi0: u16) -> Option<&'static Self> {
+    pub fn from_word(wi0: u16) -> Option<&'static Self> {
         let row = ROWS.iter().find(|row| row.code == wi0 & 0x0FFF)?;
         (wi0 & 0xF000 == 0 || row.has_robot()).then_some(row)
     }
@@ -138,7 +138,7 @@ mod tests {
         for (at, row) in ROWS.iter().enumerate() {
             assert!(ROWS[..at].iter().all(|other| other.code < row.code && other.id != row.id), "{}", row.id);
             assert_eq!(row.command.row().code, row.code);
-            assert_eq!(Row::of(row.code).unwrap().id, row.id);
+            assert_eq!(Row::from_word(row.code).unwrap().id, row.id);
             assert_eq!(Row::named(row.id).unwrap().code, row.code);
         }
         let counts = [0, 1, 2, 3, 4, 5, 6, 7].map(|n| ROWS.iter().filter(|row| row.category() == n).count());
@@ -147,11 +147,11 @@ mod tests {
 
     #[test]
     fn a_robot_is_named_only_where_there_is_a_place_for_it() {
-        assert!(Row::of(0x4001).is_some());
-        assert!(Row::of(0x1042).is_none(), "motor power is that of the whole system");
-        assert!(Row::of(0x1111).is_none(), "the layout of 4.3.5 has a robot, all else has not");
-        assert!(Row::of(0x4516).is_some(), "4.7.18 has a robot, the tables have not");
-        assert!(Row::of(0x0999).is_none());
+        assert!(Row::from_word(0x4001).is_some());
+        assert!(Row::from_word(0x1042).is_none(), "motor power is that of the whole system");
+        assert!(Row::from_word(0x1111).is_none(), "the layout of 4.3.5 has a robot, all else has not");
+        assert!(Row::from_word(0x4516).is_some(), "4.7.18 has a robot, the tables have not");
+        assert!(Row::from_word(0x0999).is_none());
     }
 
     #[test]

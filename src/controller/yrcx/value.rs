@@ -141,7 +141,7 @@ impl Key {
     pub const AXES: [Self; 4] = [Self::Axis1, Self::Axis2, Self::Axis3, Self::Axis4];
 
     /// The key of a name.
-    pub fn of(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|key| key.name() == name)
     }
 }
@@ -266,7 +266,7 @@ mod tests {
     #[test]
     fn names_are_unique() {
         for key in Key::ALL {
-            assert_eq!(Key::of(key.name()), Some(*key));
+            assert_eq!(Key::from_name(key.name()), Some(*key));
         }
     }
 }

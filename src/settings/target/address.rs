@@ -19,6 +19,13 @@ pub enum Address {
     },
     /// A device of this machine.
     Device(String),
+    /// One of several controllers on a line.
+    Station {
+        /// The adapter that leads to the line.
+        line: Box<Self>,
+        /// Its number there.
+        number: u8,
+    },
     /// A simulator of this process; two with the same parameters are not the same.
     Simulated,
 }
@@ -90,6 +97,11 @@ impl Address {
         Self::Device(if cfg!(windows) { path.to_ascii_uppercase() } else { path })
     }
 
+    /// A station on a line that this leads to.
+    pub(super) fn station(self, number: u8) -> Self {
+        Self::Station { line: Box::new(self), number }
+    }
+
     /// Whether both are one controller.
     pub fn meets(&self, other: &Self) -> bool {
         match (self, other) {
@@ -98,6 +110,9 @@ impl Address {
                 Self::Network { scheme: other_scheme, host: other_host, port: other_port },
             ) => scheme == other_scheme && port == other_port && host.meets(other_host, *port),
             (Self::Device(path), Self::Device(other)) => path == other,
+            (Self::Station { line, number }, Self::Station { line: other_line, number: other }) => {
+                number == other && line.meets(other_line)
+            }
             _ => false,
         }
     }
@@ -108,6 +123,7 @@ impl Address {
             Self::Network { scheme, host: Host::Address(address), port } => Some(format!("{scheme} {address} {port}")),
             Self::Network { scheme, host: Host::Name(name), port } => Some(format!("{scheme} {name} {port}")),
             Self::Device(path) => Some(format!("device {path}")),
+            Self::Station { line, number } => line.key().map(|line| format!("{line} station {number}")),
             Self::Simulated => None,
         }
     }
@@ -132,6 +148,9 @@ mod tests {
             ("eip://10.0.0.1:44818", "eip://10.0.0.1?rpi=5ms"),
             ("serial:///dev/../dev/null", "serial:///dev/null?baud=19200"),
             ("serial:///dev/ttyNOT", "serial:///dev/ttyNOT?baud=19200"),
+            ("slcan:///dev/ttyNOT?mac=5", "slcan:///dev/ttyNOT?bitrate=125k&mac=5"),
+            ("slcan://localhost:4001?mac=5", "slcan://127.0.0.1:4001?mac=5&cycle=30ms"),
+            ("can://can0?mac=5", "can://can0?mac=5&master=1"),
         ] {
             assert!(address(one).meets(&address(other)), "{one} {other}");
             assert_eq!(address(one).key(), address(other).key());
@@ -146,6 +165,8 @@ mod tests {
             ("tcp://10.0.0.1:10040", "udp://10.0.0.1:10040"),
             ("serial:///dev/null", "serial:///dev/zero"),
             ("sim:", "sim:"),
+            ("can://can0?mac=5", "can://can0?mac=6"),
+            ("can://can0?mac=5", "can://can1?mac=5"),
         ] {
             assert!(!address(one).meets(&address(other)), "{one} {other}");
         }

@@ -1,6 +1,9 @@
 //! What a packet carries: from its link type through IP to UDP, TCP, or the bytes of a serial line.
 
-use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+use std::net::{IpAddr, SocketAddr};
+use std::ops::Range;
+
+use etherparse::{EtherType, LaxNetSlice, LaxSlicedPacket, TransportSlice};
 
 use crate::tap::Direction;
 
@@ -25,6 +28,8 @@ pub enum PacketContent<'a> {
         /// The bytes.
         bytes: &'a [u8],
     },
+    /// A frame of a link with frames of its own.
+    Frame,
     /// A part of an IP packet.
     Fragment,
     /// Anything else.
@@ -51,30 +56,19 @@ pub struct Segment<'a> {
     pub bytes: &'a [u8],
 }
 
-const UDP: u8 = 17;
-const TCP: u8 = 6;
-const IPV4: u16 = 0x0800;
-const IPV6: u16 = 0x86DD;
-/// VLAN tags: 802.1Q, 802.1ad, and what was used before it.
-const TAGS: [u16; 3] = [0x8100, 0x88A8, 0x9100];
-/// Extension headers of IPv6 that say their length: hop by hop, routing, destination.
-const EXTENSIONS: [u8; 3] = [0, 43, 60];
-const FRAGMENT: u8 = 44;
-/// A length has 16 bits.
-const LONGEST_IP: usize = 0xFFFF;
-
 /// Looks into a packet of a link type.
 pub fn content_of(link_type: u16, packet: &[u8]) -> PacketContent<'_> {
     let content = match link_type {
         // Loopback of BSD: the address family, in the byte order of the host. IP tells itself which it is.
         0 | 108 => packet.get(4..).and_then(ip),
-        1 => ethernet(packet, 12),
+        1 => ethernet(packet, 12..14),
         // Raw IP, as numbered by several systems.
         12 | 14 | 101 | 228 | 229 => ip(packet),
         // Linux cooked, both versions.
-        113 => ethernet(packet, 14),
-        276 => of_type(short(packet, 0), packet.get(20..)),
+        113 => ethernet(packet, 14..16),
+        276 => of_type(packet.get(..2), packet.get(20..)),
         147 => serial(packet),
+        super::LINKTYPE_CAN => Some(PacketContent::Frame),
         _ => None,
     };
     content.unwrap_or(PacketContent::Other)
@@ -91,84 +85,51 @@ fn serial(packet: &[u8]) -> Option<PacketContent<'_>> {
     Some(PacketContent::Serial { direction, bytes })
 }
 
-/// A frame with its type at an offset, behind any VLAN tags.
-fn ethernet(frame: &[u8], mut at: usize) -> Option<PacketContent<'_>> {
-    while TAGS.contains(&short(frame, at)?) {
-        at += 4;
-    }
-    of_type(short(frame, at), frame.get(at + 2..))
+/// A frame with its type at an offset.
+fn ethernet(frame: &[u8], kind: Range<usize>) -> Option<PacketContent<'_>> {
+    of_type(frame.get(kind.clone()), frame.get(kind.end..))
 }
 
-fn of_type(kind: Option<u16>, content: Option<&[u8]>) -> Option<PacketContent<'_>> {
-    matches!(kind?, IPV4 | IPV6).then(|| ip(content?)).flatten()
+/// What is behind a type, VLAN tags or not.
+fn of_type<'a>(kind: Option<&[u8]>, content: Option<&'a [u8]>) -> Option<PacketContent<'a>> {
+    let kind = u16::from_be_bytes(*kind?.first_chunk()?);
+    transport(&LaxSlicedPacket::from_ether_type(EtherType(kind), bounded(content?)))
 }
 
 fn ip(packet: &[u8]) -> Option<PacketContent<'_>> {
-    match packet.first()? >> 4 {
-        4 => ipv4(packet),
-        6 => ipv6(packet),
-        _ => None,
-    }
+    transport(&LaxSlicedPacket::from_ip(bounded(packet)).ok()?)
 }
 
-fn ipv4(packet: &[u8]) -> Option<PacketContent<'_>> {
-    let header = usize::from(packet.first()? & 0x0F) * 4;
-    // A length of 0 is left to the card to fill in, which sends no packet that is longer than any.
-    let len = match usize::from(short(packet, 2)?) {
-        0 => packet.len().min(LONGEST_IP),
-        len => len,
+/// A length of 0 is left to the card to fill in, which sends no packet that is longer than any.
+fn bounded(packet: &[u8]) -> &[u8] {
+    const LONGEST: usize = 40 + 0xFFFF;
+
+    packet.get(..LONGEST).unwrap_or(packet)
+}
+
+fn transport<'a>(packet: &LaxSlicedPacket<'a>) -> Option<PacketContent<'a>> {
+    let (from, to): (IpAddr, IpAddr) = match packet.net.as_ref()? {
+        LaxNetSlice::Ipv4(ip) => (ip.header().source_addr().into(), ip.header().destination_addr().into()),
+        LaxNetSlice::Ipv6(ip) => (ip.header().source_addr().into(), ip.header().destination_addr().into()),
+        LaxNetSlice::Arp(_) => return None,
     };
-    let address = |at: usize| Some(IpAddr::V4(Ipv4Addr::from(*packet.get(at..)?.first_chunk::<4>()?)));
-    let (from, to) = (address(12)?, address(16)?);
-    // All but "don't fragment".
-    if short(packet, 6)? & 0x3FFF != 0 {
+    let ip = packet.net.as_ref()?.ip_payload_ref()?;
+    if ip.fragmented {
         return Some(PacketContent::Fragment);
     }
-    let content = packet.get(..len).unwrap_or(packet).get(header.max(20)..)?;
-    transport(*packet.get(9)?, (from, to), content, len > packet.len())
-}
-
-fn ipv6(packet: &[u8]) -> Option<PacketContent<'_>> {
-    let len = match usize::from(short(packet, 4)?) {
-        0 => packet.len().min(LONGEST_IP),
-        len => len + 40,
-    };
-    let address = |at: usize| Some(IpAddr::V6(Ipv6Addr::from(*packet.get(at..)?.first_chunk::<16>()?)));
-    let (from, to) = (address(8)?, address(24)?);
-    let (mut next, mut content) = (*packet.get(6)?, packet.get(..len).unwrap_or(packet).get(40..)?);
-    while EXTENSIONS.contains(&next) {
-        next = *content.first()?;
-        content = content.get(usize::from(*content.get(1)?) * 8 + 8..)?;
-    }
-    if next == FRAGMENT {
-        return Some(PacketContent::Fragment);
-    }
-    transport(next, (from, to), content, len > packet.len())
-}
-
-fn transport(protocol: u8, ends: (IpAddr, IpAddr), content: &[u8], is_cut: bool) -> Option<PacketContent<'_>> {
-    let from = SocketAddr::new(ends.0, short(content, 0)?);
-    let to = SocketAddr::new(ends.1, short(content, 2)?);
-    let (payload, is_cut) = match protocol {
-        UDP => {
-            let len = usize::from(short(content, 4)?);
-            let bytes = content.get(8..len).or_else(|| content.get(8..))?;
-            (Payload::Datagram(bytes), is_cut || len > content.len())
+    let (from_port, to_port, payload, is_cut) = match packet.transport.as_ref()? {
+        TransportSlice::Udp(udp) => {
+            let is_cut = usize::from(udp.length()) > udp.slice().len();
+            (udp.source_port(), udp.destination_port(), Payload::Datagram(udp.payload()), is_cut)
         }
-        TCP => {
-            let sequence = u32::from_be_bytes(*content.get(4..)?.first_chunk()?);
-            let header = usize::from(content.get(12)? >> 4) * 4;
-            let opens = content.get(13)? & 0x02 != 0;
-            let segment = Segment { sequence, opens, bytes: content.get(header.max(20)..)? };
-            (Payload::Segment(segment), is_cut)
+        TransportSlice::Tcp(tcp) => {
+            let segment = Segment { sequence: tcp.sequence_number(), opens: tcp.syn(), bytes: tcp.payload() };
+            (tcp.source_port(), tcp.destination_port(), Payload::Segment(segment), false)
         }
         _ => return None,
     };
-    Some(PacketContent::Packet { from, to, payload, is_cut })
-}
-
-fn short(bytes: &[u8], at: usize) -> Option<u16> {
-    Some(u16::from_be_bytes(*bytes.get(at..)?.first_chunk()?))
+    let (from, to) = (SocketAddr::new(from, from_port), SocketAddr::new(to, to_port));
+    Some(PacketContent::Packet { from, to, payload, is_cut: is_cut || ip.incomplete })
 }
 
 #[cfg(test)]
@@ -211,13 +172,14 @@ mod tests {
     #[test]
     fn a_packet_whose_length_the_card_fills_in_is_no_longer_than_any() {
         let mut packet = IP.to_vec();
-        (packet[2], packet[3], packet[9]) = (0, 0, TCP);
+        (packet[2], packet[3], packet[9]) = (0, 0, 6);
         packet.resize(200_000, 0);
+        packet[32] = 0x50;
         let PacketContent::Packet { payload: Payload::Segment(segment), is_cut: false, .. } = content_of(101, &packet)
         else {
             panic!("no segment");
         };
-        assert_eq!(segment.bytes.len(), LONGEST_IP - 40);
+        assert_eq!(segment.bytes.len(), 0xFFFF);
     }
 
     #[test]

@@ -1,20 +1,22 @@
 //! Reads capture files: pcap and pcapng, as `tap`(super::tap), tcpdump and Wireshark write them.
 //!
-//! A reader of our own, because the formats are small, damage has to be told by its offset with all that came before
-//! it, and what is inside the packets (addresses, streams) would have to be written anyway. `file` finds packets,
-//! `layers` what they carry, `stream` puts TCP together. No bytes make any of it panic.
+//! `file` finds packets, `layers` what they carry (by `etherparse`), `stream` puts TCP together. No bytes make any of it
+//! panic. The packets are found by a reader of our own: `pcap-file` stops at a packet with a comment that is not UTF-8 or
+//! an original length of 0, where nothing that is needed is damaged, and takes a length that no block has for the end of
+//! the file.
 
 mod file;
 mod layers;
 mod stream;
 
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read};
 use std::net::SocketAddr;
 use std::time::Duration;
 
 use self::file::Packets;
 use self::layers::{PacketContent, Payload, content_of};
-use self::stream::{StreamBytes, Streams};
+use self::stream::{Piece, Streams};
+use super::devicenet::can::Frame;
 use super::tap::Direction;
 
 pub use self::file::{Damage, OpenError};
@@ -62,14 +64,22 @@ pub enum Carrier {
         /// Section of the file: one for each command that was recorded.
         section: usize,
     },
+    /// A whole frame of a link with frames of its own.
+    Frame {
+        /// The kind of link, such as [`LINKTYPE_CAN`].
+        link_type: u16,
+    },
 }
+
+/// `LINKTYPE_CAN_SOCKETCAN`: frames of CAN.
+pub const LINKTYPE_CAN: u16 = 227;
 
 impl Carrier {
     /// Sender and receiver, where they have addresses.
     pub const fn ends(&self) -> Option<(SocketAddr, SocketAddr)> {
         match *self {
             Self::Datagram { from, to } | Self::Stream { from, to, .. } => Some((from, to)),
-            Self::Line { .. } => None,
+            Self::Line { .. } | Self::Frame { .. } => None,
         }
     }
 }
@@ -94,6 +104,10 @@ pub struct Summary {
 pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summary, OpenError> {
     let mut summary = Summary::default();
     let mut streams = Streams::default();
+    let mut file = BufReader::new(file);
+    if file.fill_buf().is_ok_and(|bytes| bytes.starts_with(b"(")) {
+        return Ok(candump(file, each));
+    }
     let mut packets = Packets::open(file)?;
     while let Some(packet) = packets.next() {
         let packet = match packet {
@@ -116,6 +130,7 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
                     say(carrier, bytes, packet.is_cut);
                 }
             }
+            PacketContent::Frame => say(Carrier::Frame { link_type: packet.link_type }, packet.bytes, packet.is_cut),
             PacketContent::Packet { from, to, payload: Payload::Datagram(bytes), is_cut } if !bytes.is_empty() => {
                 say(Carrier::Datagram { from, to }, bytes, is_cut || packet.is_cut);
             }
@@ -133,8 +148,39 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
     Ok(summary)
 }
 
-fn pass_on(arrived: &StreamBytes<'_>, each: &mut impl FnMut(&Message<'_>)) {
-    let StreamBytes { key: (_, from, to), origin: (number, time, is_cut), begins, lost, bytes } = *arrived;
+/// Longest line of a log.
+const MOST_LINE: u64 = 4096;
+
+/// Reads a log of candump, line by line.
+fn candump(mut file: impl BufRead, mut each: impl FnMut(&Message<'_>)) -> Summary {
+    let mut summary = Summary::default();
+    let mut line = Vec::new();
+    let mut offset = 0;
+    loop {
+        line.clear();
+        let len = match file.by_ref().take(MOST_LINE).read_until(b'\n', &mut line) {
+            Ok(0) => return summary,
+            Ok(len) => len,
+            Err(_) => {
+                summary.damage = Some(Damage { offset, problem: "it cannot be read any further" });
+                return summary;
+            }
+        };
+        offset += len;
+        summary.packets += 1;
+        // Extended and remote frames are no damage.
+        let Some((time, frame)) = Frame::from_candump(&String::from_utf8_lossy(&line)) else { continue };
+        let time = time.unwrap_or_default();
+        if summary.first.is_zero() {
+            summary.first = time;
+        }
+        let (bytes, carrier) = (frame.to_capture(), Carrier::Frame { link_type: LINKTYPE_CAN });
+        each(&Message { number: summary.packets, time, carrier, bytes: &bytes, is_cut: false });
+    }
+}
+
+fn pass_on(arrived: &Piece<'_>, each: &mut impl FnMut(&Message<'_>)) {
+    let Piece { key: (_, from, to), origin: (number, time, is_cut), begins, lost, bytes } = *arrived;
     let carrier = Carrier::Stream { from, to, begins, lost };
     each(&Message { number, time, carrier, bytes, is_cut });
 }

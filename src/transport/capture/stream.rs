@@ -14,7 +14,7 @@ pub type Origin = (u64, Duration, bool);
 
 /// Bytes of a stream, in their order.
 #[derive(Debug, Clone, Copy)]
-pub struct StreamBytes<'a> {
+pub struct Piece<'a> {
     /// Whose.
     pub key: StreamKey,
     /// The packet they came with.
@@ -59,13 +59,7 @@ struct Stream {
 
 impl Streams {
     /// Takes a segment, and hands over what is in order then.
-    pub fn take(
-        &mut self,
-        key: StreamKey,
-        segment: &Segment<'_>,
-        origin: Origin,
-        give: &mut impl FnMut(&StreamBytes<'_>),
-    ) {
+    pub fn take(&mut self, key: StreamKey, segment: &Segment<'_>, origin: Origin, give: &mut impl FnMut(&Piece<'_>)) {
         if self.held > MOST_HELD || self.streams.len() >= MOST_STREAMS {
             self.finish(give);
             self.streams.clear();
@@ -76,13 +70,7 @@ impl Streams {
         self.held = self.held + self.streams.get(&key).map_or(0, |stream| stream.held) - held;
     }
 
-    fn arrive(
-        &mut self,
-        key: StreamKey,
-        segment: &Segment<'_>,
-        origin: Origin,
-        give: &mut impl FnMut(&StreamBytes<'_>),
-    ) {
+    fn arrive(&mut self, key: StreamKey, segment: &Segment<'_>, origin: Origin, give: &mut impl FnMut(&Piece<'_>)) {
         let stream = self.streams.entry(key).or_default();
         if segment.opens {
             stream.skip(key, give);
@@ -115,7 +103,7 @@ impl Streams {
     }
 
     /// Hands over what still waits, with its gaps.
-    pub fn finish(&mut self, give: &mut impl FnMut(&StreamBytes<'_>)) {
+    pub fn finish(&mut self, give: &mut impl FnMut(&Piece<'_>)) {
         let mut left: Vec<_> = self.streams.iter_mut().filter(|(_, stream)| !stream.waiting.is_empty()).collect();
         left.sort_by_key(|(key, _)| **key);
         for (key, stream) in left {
@@ -130,21 +118,15 @@ impl Streams {
 }
 
 impl Stream {
-    fn give(
-        &mut self,
-        (key, origin): (StreamKey, Origin),
-        lost: u32,
-        bytes: &[u8],
-        give: &mut impl FnMut(&StreamBytes<'_>),
-    ) {
+    fn give(&mut self, (key, origin): (StreamKey, Origin), lost: u32, bytes: &[u8], give: &mut impl FnMut(&Piece<'_>)) {
         let len = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         self.next = self.next.map(|next| next.wrapping_add(lost).wrapping_add(len));
         self.passed += u64::from(lost) + u64::from(len);
-        give(&StreamBytes { key, origin, begins: std::mem::take(&mut self.begins), lost, bytes });
+        give(&Piece { key, origin, begins: std::mem::take(&mut self.begins), lost, bytes });
     }
 
     /// Hands over what waits without a gap; returns how many segments brought nothing new.
-    fn drain(&mut self, key: StreamKey, give: &mut impl FnMut(&StreamBytes<'_>)) -> u64 {
+    fn drain(&mut self, key: StreamKey, give: &mut impl FnMut(&Piece<'_>)) -> u64 {
         let mut repeated = 0;
         while let Some(first) = self.waiting.first_entry()
             && *first.key() <= self.passed
@@ -161,7 +143,7 @@ impl Stream {
     }
 
     /// Gives up on what is missing before the first that waits.
-    fn jump(&mut self, key: StreamKey, give: &mut impl FnMut(&StreamBytes<'_>)) {
+    fn jump(&mut self, key: StreamKey, give: &mut impl FnMut(&Piece<'_>)) {
         if let Some((at, (origin, bytes))) = self.waiting.pop_first() {
             self.held -= bytes.len();
             let lost = u32::try_from(at.saturating_sub(self.passed)).unwrap_or(u32::MAX);
@@ -169,7 +151,7 @@ impl Stream {
         }
     }
 
-    fn skip(&mut self, key: StreamKey, give: &mut impl FnMut(&StreamBytes<'_>)) {
+    fn skip(&mut self, key: StreamKey, give: &mut impl FnMut(&Piece<'_>)) {
         while !self.waiting.is_empty() {
             self.jump(key, give);
             self.drain(key, give);
@@ -189,7 +171,7 @@ mod tests {
     fn arrived(segments: &[(u32, &[u8])]) -> (Vec<(u64, u32, String)>, u64) {
         let mut streams = Streams::default();
         let mut all = Vec::new();
-        let mut give = |arrived: &StreamBytes<'_>| {
+        let mut give = |arrived: &Piece<'_>| {
             all.push((arrived.origin.0, arrived.lost, String::from_utf8_lossy(arrived.bytes).into_owned()));
         };
         for (number, (sequence, bytes)) in (1..).zip(segments) {

@@ -69,6 +69,9 @@ pub fn file_among(arguments: &[String]) -> Option<&Path> {
     matches!(extension.as_str(), "pcap" | "pcapng" | "cap").then_some(path)
 }
 
+/// A report, unless there is no room for one, and the decoder, ready to begin anew.
+type Captured<D> = (Option<Capture<<D as CaptureDecoder>::Field>>, D);
+
 /// Finds the messages of a family in what a file holds.
 pub trait CaptureDecoder: Sized {
     /// A field of a message.
@@ -258,7 +261,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         mut decoder: D,
         room: usize,
         without_fields: bool,
-    ) -> Result<(Option<Capture<D::Field>>, D), Failure> {
+    ) -> Result<Captured<D>, Failure> {
         let frame = self.selection.frame;
         let mut kept = MessageBuffer::new(room, frame, without_fields);
         // Of one packet, the links still are those of the whole file.
@@ -282,7 +285,9 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
             return Err(Failure::usage(message).hint("the numbers are in the list, without --frame"));
         }
         let mut problems = Problems::default();
-        messages.iter().for_each(|row| problems.add(row));
+        for row in &messages {
+            problems.add(row);
+        }
         let mut capture = Capture { messages, problems, links: links.list, ..self.about(&summary, packets, notes) };
         if kept.is_full {
             capture.damage = Some(FULL.to_owned());

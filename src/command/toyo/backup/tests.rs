@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::command::toyo::testing::{Bench, Fate, blocks};
+use crate::command::toyo::testing::{Bench, Fault, blocks};
 use crate::failure::{Failure, Kind};
 
 /// A controller with something of everything, and a small memory.
@@ -53,7 +53,7 @@ impl Desk {
 }
 
 fn controller(state: &str) -> Bench {
-    Bench::spoilt(state, |_, _| Fate::Pass).0
+    Bench::with_faults(state, |_, _| Fault::None).0
 }
 
 /// The files of a folder.
@@ -137,15 +137,15 @@ fn a_backup_that_was_cut_off_goes_on() {
     let desk = Desk::new();
     let folder = desk.path("saved");
     let folder = folder.to_str().unwrap();
-    let silent = |block: &str, _| if block == "@RPLT 05 SNO=07" { Fate::Lost } else { Fate::Pass };
-    let (mut bench, _) = Bench::spoilt(FULL, silent);
+    let silent = |block: &str, _| if block == "@RPLT 05 SNO=07" { Fault::Lost } else { Fault::None };
+    let (mut bench, _) = Bench::with_faults(FULL, silent);
     let (data, failed) = bench.run(&["backup", folder]).unwrap();
     let failed = failed.unwrap();
     assert_eq!((failed.kind, &data["complete"]), (Kind::NoAnswer, &false.into()));
     assert!(failed.message.starts_with("1 of 21 parts failed, 14 not tried: palletizing-05: "), "{}", failed.message);
     assert!(failed.hint.unwrap().ends_with("--resume reads what is missing"));
     assert_eq!(failure(&mut controller(FULL), &["backup", folder]).kind, Kind::Local);
-    let (mut bench, heard) = Bench::spoilt(FULL, |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults(FULL, |_, _| Fault::None);
     let data = bench.data(&["backup", folder, "--resume"]);
     assert_eq!(data["complete"], true);
     assert_eq!(
@@ -160,8 +160,8 @@ fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
     let desk = Desk::new();
     let folder = desk.path("saved");
     let folder = folder.to_str().unwrap();
-    let refuse = |block: &str, _| if block.starts_with("@RESY") { Fate::Answered("@NG") } else { Fate::Pass };
-    let (mut bench, _) = Bench::spoilt(FULL, refuse);
+    let refuse = |block: &str, _| if block.starts_with("@RESY") { Fault::Answered("@NG") } else { Fault::None };
+    let (mut bench, _) = Bench::with_faults(FULL, refuse);
     let (data, failed) = bench.run(&["backup", folder]).unwrap();
     assert_eq!((failed.unwrap().kind, &part(&data, "program-2")["state"]), (Kind::Refused, &"done".into()));
     let list = std::fs::read_to_string(desk.path("saved/manifest.json")).unwrap();
@@ -174,7 +174,7 @@ fn a_changed_file_is_not_sent() {
     let desk = Desk::new();
     let folder = desk.saved();
     std::fs::write(desk.path("saved/points-1.csv"), "point,x_mm,y_mm,z_mm,r_mm\n").unwrap();
-    let (mut bench, heard) = Bench::spoilt(FULL, |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults(FULL, |_, _| Fault::None);
     assert_eq!(failure(&mut bench, &["restore", &folder]).kind, Kind::Local);
     assert_eq!(heard.borrow().len(), 0);
     bench.data(&["restore", &folder, "--only", "easy"]);
@@ -195,7 +195,7 @@ fn another_robot_is_refused() {
 fn a_program_must_have_room_before_anything_is_written() {
     let desk = Desk::new();
     let folder = desk.saved();
-    let (mut bench, heard) = Bench::spoilt("axes = 2", |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults("axes = 2", |_, _| Fault::None);
     let failed = failure(&mut bench, &["restore", &folder]);
     assert_eq!(
         (failed.kind, failed.message.as_str()),
@@ -208,7 +208,7 @@ fn a_program_must_have_room_before_anything_is_written() {
 fn machine_parameters_come_first_and_alone() {
     let desk = Desk::new();
     let folder = desk.saved();
-    let (mut bench, heard) = Bench::spoilt("axes = 2", |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults("axes = 2", |_, _| Fault::None);
     let (data, failed) = bench.run(&["restore", &folder, "--machine"]).unwrap();
     assert_eq!(failed.unwrap().kind, Kind::ConditionNotMet);
     assert_eq!((&data["needs_power_cycle"], &part(&data, "points-1")["state"]), (&true.into(), &"not_tried".into()));
@@ -223,8 +223,8 @@ fn machine_parameters_come_first_and_alone() {
 fn a_restore_that_fails_says_how_far_it_got() {
     let desk = Desk::new();
     let folder = desk.saved();
-    let lost = |block: &str, _| if block.starts_with("@WPLT 03") { Fate::Unanswered } else { Fate::Pass };
-    let (mut bench, _) = Bench::spoilt(EMPTY, lost);
+    let lost = |block: &str, _| if block.starts_with("@WPLT 03") { Fault::Unanswered } else { Fault::None };
+    let (mut bench, _) = Bench::with_faults(EMPTY, lost);
     let (data, failed) = bench.run(&["restore", &folder]).unwrap();
     let failed = failed.unwrap();
     assert_eq!(failed.kind, Kind::OutcomeUnknown);
@@ -270,14 +270,14 @@ fn one_word_that_the_manual_does_not_list_spoils_no_backup() {
     let folder = desk.path("odd");
     let folder = folder.to_str().unwrap();
     let odd = |block: &str, _| match block {
-        "@RPAR M18" => Fate::Answered("@RPAR M18 STN=01 BRT=156K"),
-        "@RSTX 0004" => Fate::Answered("@RSTX 0004 FOO X=1"),
-        "@RPAR T1 PT=005" => Fate::Answered("@RPAR T1 PT=005 X=+1.5 Y=+0000.00 Z=+0000.00 R=+0000.00"),
-        "@RPLT 03 SNO=01" => Fate::Answered("@RPLT 03 SNO=01 TAG=007 MOD=X-Y"),
-        "@RESY PNO=02 ST=000" => Fate::Answered("@NG"),
-        _ => Fate::Pass,
+        "@RPAR M18" => Fault::Answered("@RPAR M18 STN=01 BRT=156K"),
+        "@RSTX 0004" => Fault::Answered("@RSTX 0004 FOO X=1"),
+        "@RPAR T1 PT=005" => Fault::Answered("@RPAR T1 PT=005 X=+1.5 Y=+0000.00 Z=+0000.00 R=+0000.00"),
+        "@RPLT 03 SNO=01" => Fault::Answered("@RPLT 03 SNO=01 TAG=007 MOD=X-Y"),
+        "@RESY PNO=02 ST=000" => Fault::Answered("@NG"),
+        _ => Fault::None,
     };
-    let (mut bench, _) = Bench::spoilt(FULL, odd);
+    let (mut bench, _) = Bench::with_faults(FULL, odd);
     let data = bench.data(&["backup", folder]);
     assert_eq!(data["complete"], true);
     let keys = |name: &str| {
@@ -294,7 +294,7 @@ fn one_word_that_the_manual_does_not_list_spoils_no_backup() {
     assert!(!files["points-1.csv"].contains("\n5,"));
     // The machine that holds it gets the rest back; another one nothing of that program.
     assert_eq!(part(&bench.data(&["restore", folder]), "program-1")["state"], "done");
-    let (mut bench, heard) = Bench::spoilt(EMPTY, |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults(EMPTY, |_, _| Fault::None);
     let failed = failure(&mut bench, &["restore", folder]);
     assert_eq!(failed.kind, Kind::RefusedHere);
     assert!(
@@ -315,7 +315,7 @@ fn axes_of_another_machine_are_refused_before_anything_is_written() {
             "E01 (axis-letters) is X Y Z R in the backup and X Z Y R here",
         ),
     ] {
-        let (mut bench, heard) = Bench::spoilt(other, |_, _| Fate::Pass);
+        let (mut bench, heard) = Bench::with_faults(other, |_, _| Fault::None);
         let failed = failure(&mut bench, &["restore", &folder, "--only", "parameters"]);
         assert_eq!(
             (failed.kind, &*failed.message),

@@ -68,7 +68,7 @@ impl CaptureDecoder for LineDecoder {
 
     fn take(&mut self, message: &Message<'_>) {
         let (connection, end) = match message.carrier {
-            Carrier::Datagram { .. } => return,
+            Carrier::Datagram { .. } | Carrier::Frame { .. } => return,
             Carrier::Stream { from, to, .. } if from <= to => (Connection::Tcp(from, to), 0),
             Carrier::Stream { from, to, .. } => (Connection::Tcp(to, from), 1),
             Carrier::Line { direction, section } => {

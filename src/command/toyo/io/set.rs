@@ -17,6 +17,7 @@ use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Mask, Value};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
+use crate::controller::typed;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
 
@@ -64,7 +65,7 @@ impl FromStr for Assignment {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (place, value) = text.split_once('=').ok_or("a port, '=' and a value are expected, as in 1.3=on")?;
+        let (place, value) = typed::setting(text, "a port", "a value", "1.3=on")?;
         let (port, bit) = place.split_once('.').map_or((place, None), |(port, bit)| (port, Some(bit)));
         let digits = port.strip_prefix("PN").or_else(|| port.strip_prefix("pn")).unwrap_or(port);
         let port = u8::try_from(number(&fields()[1], digits)?).map_err(|error| error.to_string())?;
@@ -88,11 +89,7 @@ fn one_bit(bit: &str, value: &str) -> Result<Mask, String> {
     let number = bit.parse().ok().filter(|number| (1..=8).contains(number));
     let number: u8 = number.ok_or_else(|| format!("'{bit}' is no bit; a port has the bits 1 to 8"))?;
     let care = 1 << (number - 1);
-    match value {
-        "on" | "1" => Ok(Mask { care, bits: care }),
-        "off" | "0" => Ok(Mask { care, bits: 0 }),
-        _ => Err(format!("'{value}' is no state; there are on and off")),
-    }
+    Ok(Mask { care, bits: if typed::state(value)? { care } else { 0 } })
 }
 
 impl Set {
@@ -277,7 +274,7 @@ impl Report for Outputs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, objection};
+    use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, objection};
 
     #[test]
     fn bits_and_whole_ports() {
@@ -333,20 +330,20 @@ mod tests {
         // A bit that was left alone may be anything.
         let odd = |block: &str, _| match block {
             "@MOUT SNO=0 GN=1" => {
-                Fate::Answered("@MOUT SNO=0 GN=1 SY01=00000000 PN01=10000000 PN02=10000001 PN03=00000000")
+                Fault::Answered("@MOUT SNO=0 GN=1 SY01=00000000 PN01=10000000 PN02=10000001 PN03=00000000")
             }
-            _ => Fate::Pass,
+            _ => Fault::None,
         };
-        let (set, failure) = Bench::spoilt("", odd).0.run(&["io", "set", "1.3=on"]).unwrap();
+        let (set, failure) = Bench::with_faults("", odd).0.run(&["io", "set", "1.3=on"]).unwrap();
         let output = &set["outputs"][0];
         assert_eq!((&output["ok"], &output["read"]), (&false.into(), &"10000000".into()), "{set}");
         let failure = failure.unwrap();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
         assert_eq!(failure.message, "the controller accepted @DOUT STN=0 PN01=.....1.., but PN01 reads 10000000");
-        let (set, failure) = Bench::spoilt("", odd).0.run(&["io", "set", "1.3=on", "2.1=on"]).unwrap();
+        let (set, failure) = Bench::with_faults("", odd).0.run(&["io", "set", "1.3=on", "2.1=on"]).unwrap();
         assert_eq!((&set["outputs"][1]["ok"], failure.unwrap().kind), (&true.into(), Kind::Mixed));
-        let silent = |block: &str, _| if block.starts_with("@MOUT") { Fate::Lost } else { Fate::Pass };
-        let failure = Bench::spoilt("", silent).0.run(&["io", "set", "1.3=on", "2.1=on"]).unwrap_err();
+        let silent = |block: &str, _| if block.starts_with("@MOUT") { Fault::Lost } else { Fault::None };
+        let failure = Bench::with_faults("", silent).0.run(&["io", "set", "1.3=on", "2.1=on"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
         assert!(failure.message.contains("DOUT STN=0 PN01=.....1.. was accepted, but not read back"), "{failure}");
         assert!(failure.message.ends_with("; not set: PN02"), "{failure}");

@@ -2,20 +2,20 @@ use std::cell::Cell as Flag;
 use std::rc::Rc;
 
 use super::*;
-use crate::command::toyo::testing::{Bench, Fate, Heard, all_blocks, blocks, intent, objection};
+use crate::command::toyo::testing::{Bench, Fault, ReceivedBlocks, all_blocks, blocks, intent, objection};
 
 const LOW: [&str; 6] = ["jog", "X", "+", "low", "--for", "500ms"];
 const STOP: &str = "@JGST X=SP Y=SP Z=SP R=SP";
 const GO: &str = "@JGST X=+L Y=SP Z=SP R=SP";
 const READY: &str = "origin = true\n";
 
-fn count(heard: &Heard, block: &str) -> usize {
+fn count(heard: &ReceivedBlocks, block: &str) -> usize {
     heard.borrow().iter().filter(|heard| *heard == block).count()
 }
 
 /// The stop must come after the last block that moves.
 #[track_caller]
-fn ends_with_a_stop(heard: &Heard) {
+fn ends_with_a_stop(heard: &ReceivedBlocks) {
     let heard = heard.borrow();
     let moved = heard.iter().rposition(|block| block.contains("=+") || block.contains("=-"));
     let stopped = heard.iter().rposition(|block| block == STOP);
@@ -68,7 +68,7 @@ fn a_jog_without_end_is_refused_before_anything_is_sent() {
 
 #[test]
 fn an_axis_moves_for_its_time() {
-    let (mut bench, heard) = Bench::spoilt(READY, |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults(READY, |_, _| Fault::None);
     let data = bench.data(&LOW);
     // 10 mm/s for half a second, with a ramp of 0.1 s at either end.
     let moved = data["moved_mm"].as_f64().unwrap();
@@ -80,16 +80,16 @@ fn an_axis_moves_for_its_time() {
 
 #[test]
 fn small_steps_are_done_one_by_one() {
-    let (mut bench, heard) = Bench::spoilt(READY, |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults(READY, |_, _| Fault::None);
     let data = bench.data(&["jog", "y", "-", "inch", "--steps", "3"]);
     assert_eq!((&data["moved_mm"], &data["steps"]), (&(-0.03).into(), &3.into()));
     assert_eq!(count(&heard, "@JGST X=SP Y=-C Z=SP R=SP"), 3);
     ends_with_a_stop(&heard);
 
-    let (mut bench, heard) =
-        Bench::spoilt("origin = true\nwrite = [\"WPAR P12 AX1=00.00 AX2=00.01 AX3=00.01 AX4=00.01\"]\n", |_, _| {
-            Fate::Pass
-        });
+    let (mut bench, heard) = Bench::with_faults(
+        "origin = true\nwrite = [\"WPAR P12 AX1=00.00 AX2=00.01 AX3=00.01 AX4=00.01\"]\n",
+        |_, _| Fault::None,
+    );
     let failure = bench.run(&["jog", "x", "+", "inch", "--steps", "3"]).unwrap_err();
     assert!(
         failure.message.starts_with("step 1 of 3: it was accepted, but the axis has not moved; the axis was stopped")
@@ -100,8 +100,10 @@ fn small_steps_are_done_one_by_one() {
 
 /// What becomes of `LOW` if blocks have this fate; the stop comes, and the axis stands.
 #[track_caller]
-fn spoilt(fate: impl FnMut(&str, usize) -> Fate + 'static) -> (Result<serde_json::Value, Failure>, Heard, f64) {
-    let (mut bench, heard) = Bench::spoilt(READY, fate);
+fn with_faults(
+    fate: impl FnMut(&str, usize) -> Fault + 'static,
+) -> (Result<serde_json::Value, Failure>, ReceivedBlocks, f64) {
+    let (mut bench, heard) = Bench::with_faults(READY, fate);
     let outcome = bench.run(&LOW).map(|(data, _)| data);
     ends_with_a_stop(&heard);
     assert_eq!(count(&heard, GO), 1, "what moves is sent once");
@@ -114,23 +116,23 @@ fn spoilt(fate: impl FnMut(&str, usize) -> Fate + 'static) -> (Result<serde_json
 
 #[test]
 fn an_order_whose_answer_is_lost_is_sent_once_and_stopped() {
-    let (outcome, _, moved) = spoilt(|block, _| if block == GO { Fate::Unanswered } else { Fate::Pass });
+    let (outcome, _, moved) = with_faults(|block, _| if block == GO { Fault::Unanswered } else { Fault::None });
     let failure = outcome.unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
     assert!(failure.hint.unwrap().contains("toyo stop --jog"));
     assert!(failure.message.contains("the axis was stopped and stands at X "), "{}", failure.message);
     assert!((2.0..4.0).contains(&moved), "a silence of 300 ms ends it: {moved} mm");
 
-    let (outcome, _, moved) = spoilt(|block, _| if block == GO { Fate::Lost } else { Fate::Pass });
+    let (outcome, _, moved) = with_faults(|block, _| if block == GO { Fault::Lost } else { Fault::None });
     assert_eq!((outcome.unwrap_err().kind, moved), (Kind::OutcomeUnknown, 0.0));
 }
 
 #[test]
 fn a_silence_while_an_axis_moves_ends_it() {
     for lost in ["@STAS SNO=0", "@MPST"] {
-        for fate in [Fate::Lost, Fate::Unanswered, Fate::Late(Duration::from_millis(700))] {
+        for fate in [Fault::Lost, Fault::Unanswered, Fault::Late(Duration::from_millis(700))] {
             let (outcome, _, moved) =
-                spoilt(move |block, count| if block == lost && count == 2 { fate } else { Fate::Pass });
+                with_faults(move |block, count| if block == lost && count == 2 { fate } else { Fault::None });
             let failure = outcome.unwrap_err();
             assert_eq!(failure.kind, Kind::NoAnswer, "{lost} {fate:?}");
             assert!((2.0..5.0).contains(&moved), "{lost} {fate:?}: {moved} mm");
@@ -140,10 +142,10 @@ fn a_silence_while_an_axis_moves_ends_it() {
 
 #[test]
 fn a_stop_that_is_lost_is_repeated() {
-    let late = Fate::Late(Duration::from_millis(450));
-    for (fate, least) in [(Fate::Lost, 4), (Fate::Unanswered, 4), (Fate::Answered("@NG"), 4), (late, 2)] {
+    let late = Fault::Late(Duration::from_millis(450));
+    for (fate, least) in [(Fault::Lost, 4), (Fault::Unanswered, 4), (Fault::Answered("@NG"), 4), (late, 2)] {
         let (outcome, heard, moved) =
-            spoilt(move |block, count| if block == STOP && count <= 3 { fate } else { Fate::Pass });
+            with_faults(move |block, count| if block == STOP && count <= 3 { fate } else { Fault::None });
         assert!(outcome.is_ok(), "{fate:?}: {outcome:?}");
         assert!(count(&heard, STOP) >= least, "{fate:?}: {heard:#?}");
         assert!(moved < 20.0, "{fate:?}: {moved} mm");
@@ -154,8 +156,8 @@ fn a_stop_that_is_lost_is_repeated() {
 fn a_dead_line_says_what_to_do() {
     let dead = Rc::new(Flag::new(false));
     let is_dead = dead.clone();
-    let (mut bench, heard) = Bench::spoilt(READY, move |block, _| {
-        let fate = if is_dead.get() { Fate::Lost } else { Fate::Pass };
+    let (mut bench, heard) = Bench::with_faults(READY, move |block, _| {
+        let fate = if is_dead.get() { Fault::Lost } else { Fault::None };
         is_dead.set(is_dead.get() || block == GO);
         fate
     });
@@ -175,7 +177,7 @@ fn a_dead_line_says_what_to_do() {
 #[test]
 fn a_controller_that_does_not_stop_is_told() {
     let (mut bench, heard) =
-        Bench::spoilt(READY, |block, _| if block == STOP { Fate::Answered("@OK") } else { Fate::Pass });
+        Bench::with_faults(READY, |block, _| if block == STOP { Fault::Answered("@OK") } else { Fault::None });
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!(failure.kind, Kind::ConditionNotMet);
     assert!(failure.message.contains("may still move: the controller moves on although it said @OK"));
@@ -185,7 +187,7 @@ fn a_controller_that_does_not_stop_is_told() {
 
 #[test]
 fn a_refusal_is_explained_and_stopped_all_the_same() {
-    let (mut bench, heard) = Bench::spoilt("servo = false\n", |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults("servo = false\n", |_, _| Fault::None);
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!(failure.message, "the controller refused JGST X=+L Y=SP Z=SP R=SP (@NG): servo power is off");
     ends_with_a_stop(&heard);
@@ -194,7 +196,7 @@ fn a_refusal_is_explained_and_stopped_all_the_same() {
 #[test]
 fn an_error_ends_a_jog() {
     let state = "origin = true\nposition = [998.0, 0.0, 0.0, 0.0]\n";
-    let (mut bench, heard) = Bench::spoilt(state, |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("28")));
     assert!(
@@ -206,7 +208,7 @@ fn an_error_ends_a_jog() {
 #[test]
 fn ctrl_c_at_any_moment_stops_the_axis() {
     for ms in (0..600).step_by(19) {
-        let (mut bench, heard) = Bench::spoilt(READY, |_, _| Fate::Pass);
+        let (mut bench, heard) = Bench::with_faults(READY, |_, _| Fault::None);
         let said = bench.interrupted(&LOW, Duration::from_millis(ms)).unwrap();
         let has_moved = count(&heard, GO) > 0 || said.starts_with("the robot was stopped");
         if has_moved {
@@ -223,10 +225,10 @@ fn ctrl_c_at_any_moment_stops_the_axis() {
 fn a_small_step_whose_answer_is_lost_is_not_repeated() {
     let step = "@JGST X=+C Y=SP Z=SP R=SP";
     let (mut bench, heard) =
-        Bench::spoilt(
+        Bench::with_faults(
             READY,
             move |block, count| {
-                if block == step && count == 2 { Fate::Unanswered } else { Fate::Pass }
+                if block == step && count == 2 { Fault::Unanswered } else { Fault::None }
             },
         );
     let failure = bench.run(&["jog", "X", "+", "inch", "--steps", "5"]).unwrap_err();
@@ -237,7 +239,7 @@ fn a_small_step_whose_answer_is_lost_is_not_repeated() {
 
 #[test]
 fn the_shortest_jog_is_one_too() {
-    let (mut bench, heard) = Bench::spoilt(READY, |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults(READY, |_, _| Fault::None);
     let data = bench.data(&["jog", "X", "+", "high", "--for", "100ms"]);
     // 50 mm/s, reached after 0.1 s.
     assert!((2.0..8.0).contains(&data["moved_mm"].as_f64().unwrap()), "{data}");
@@ -248,13 +250,9 @@ fn the_shortest_jog_is_one_too() {
 fn a_refused_jog_is_a_refusal_although_something_else_is_executed() {
     let program = "origin = true\nsteps = { 1 = [\"SPD V=01\", \"MOV a X=+0500.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=01 \
                    POST\", \"END\"] }\n";
-    let (mut bench, heard) =
-        Bench::spoilt(
-            program,
-            |block, _| {
-                if block.contains("=+L") || block == STOP { Fate::Answered("@NG") } else { Fate::Pass }
-            },
-        );
+    let (mut bench, heard) = Bench::with_faults(program, |block, _| {
+        if block.contains("=+L") || block == STOP { Fault::Answered("@NG") } else { Fault::None }
+    });
     bench.data(&["run", "sequential", "1", "--no-wait"]);
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Refused, Some("NG")), "{failure}");
@@ -268,7 +266,7 @@ fn a_refused_jog_is_a_refusal_although_something_else_is_executed() {
 #[test]
 fn a_letter_is_the_axis_that_the_machine_calls_so() {
     let lettered = "origin = true\nwrite = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\n";
-    let (mut bench, heard) = Bench::spoilt(lettered, |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults(lettered, |_, _| Fault::None);
     let data = bench.data(&["jog", "z", "+", "low", "--for", "300ms"]);
     assert_eq!((&data["axis"], &data["axis_number"]), (&"Z".into(), &2.into()));
     assert_eq!(count(&heard, "@JGST X=SP Y=+L Z=SP R=SP"), 1);
@@ -278,7 +276,7 @@ fn a_letter_is_the_axis_that_the_machine_calls_so() {
 
     // Two axes of one letter: only the number tells them apart.
     let twice = "origin = true\nwrite = [\"WPAR E01 AX1=X AX2=X AX3=Z AX4=R\"]\n";
-    let (mut bench, heard) = Bench::spoilt(twice, |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults(twice, |_, _| Fault::None);
     let failure = bench.run(&["jog", "x", "+", "low", "--for", "300ms"]).unwrap_err();
     assert_eq!(failure.message, "which axis X is, is open: the letters of axes 1 to 4 are X, X, Z, R");
     assert!(!heard.borrow().iter().any(|block| block.starts_with("@JGST")));

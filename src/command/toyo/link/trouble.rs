@@ -4,7 +4,7 @@ use std::io;
 
 use super::Link;
 use crate::controller::Risk;
-use crate::controller::toyo::layout::Misfit;
+use crate::controller::toyo::layout::LayoutProblem;
 use crate::controller::toyo::request::BlockError;
 use crate::controller::toyo::session::Ended;
 use crate::failure::{Failure, Kind, plain};
@@ -66,7 +66,7 @@ impl Link {
 }
 
 /// Values that cannot be sent, as a failure of the command line.
-pub fn wrong(error: &Misfit) -> Failure {
+pub fn wrong(error: &LayoutProblem) -> Failure {
     Failure::usage(error.to_string()).hint("`--help` tells what may be given")
 }
 

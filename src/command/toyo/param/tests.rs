@@ -1,6 +1,6 @@
 //! What `toyo param` sends, and what it refuses.
 
-use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, objection};
+use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, objection};
 
 use super::machine;
 use crate::controller::toyo::field::Value;
@@ -175,10 +175,10 @@ fn a_dump_is_restored_to_the_last_value() {
 
 #[test]
 fn a_busy_controller_is_asked_again() {
-    let (mut bench, _) = Bench::spoilt("", |block, count| match block {
-        "@RPAR U21" if count == 1 => Fate::Answered("@NG"),
-        "@RPAR U22" => Fate::Answered("@NG"),
-        _ => Fate::Pass,
+    let (mut bench, _) = Bench::with_faults("", |block, count| match block {
+        "@RPAR U21" if count == 1 => Fault::Answered("@NG"),
+        "@RPAR U22" => Fault::Answered("@NG"),
+        _ => Fault::None,
     });
     let listed = bench.data(&["param", "list", "--group", "special"]);
     let refused: Vec<_> = listed["parameters"].as_array().unwrap().iter().map(|entry| &entry["refused"]).collect();
@@ -203,9 +203,9 @@ fn a_file_of_another_controller_is_stored_as_far_as_it_goes() {
 
 #[test]
 fn what_may_not_be_written_stands_in_a_dump_as_a_comment() {
-    let (mut bench, _) = Bench::spoilt("", |block, _| match block {
-        "@RPAR M17" => Fate::Answered("@RPAR M17 STN=00 BRT=156K OPT=0000"),
-        _ => Fate::Pass,
+    let (mut bench, _) = Bench::with_faults("", |block, _| match block {
+        "@RPAR M17" => Fault::Answered("@RPAR M17 STN=00 BRT=156K OPT=0000"),
+        _ => Fault::None,
     });
     let dumped = bench.data(&["param", "dump"]);
     assert_eq!(dumped["unfit"][0]["key"], "M17");
@@ -229,7 +229,7 @@ fn a_machine_parameter_asks_for_the_power_to_be_cycled() {
 
 #[test]
 fn a_change_of_a_part_reads_once_before_it_writes() {
-    let (mut bench, heard) = Bench::spoilt("", |_, _| Fate::Pass);
+    let (mut bench, heard) = Bench::with_faults("", |_, _| Fault::None);
     for (words, read) in [
         (&["param", "set", "P01", "ax2=150"][..], "@RPAR P01"),
         (&["point", "set", "7", "z=5"], "@RPAR T1 PT=007"),

@@ -1,6 +1,6 @@
 //! What `toyo point` sends, and what becomes of it.
 
-use crate::command::toyo::testing::{Bench, Fate, blocks, objection};
+use crate::command::toyo::testing::{Bench, Fault, blocks, objection};
 
 #[test]
 fn points_and_ranges_are_read_once_each() {
@@ -91,7 +91,7 @@ fn five_points() -> tempfile::NamedTempFile {
 
 #[test]
 fn a_worn_cell_ends_it_with_an_account() {
-    let (mut bench, _) = Bench::spoilt("eeprom_limit = 1", |_, _| Fate::Pass);
+    let (mut bench, _) = Bench::with_faults("eeprom_limit = 1", |_, _| Fault::None);
     bench.data(&["point", "set", "3", "9", "9", "9", "9"]);
     let points = five_points();
     let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
@@ -105,7 +105,7 @@ fn a_worn_cell_ends_it_with_an_account() {
 #[test]
 fn a_refusal_on_the_way_says_why_and_what_is_done() {
     let event = "[[event]]\nat_ms = 1200\ndo = \"pendant on\"\n";
-    let (mut bench, _) = Bench::spoilt(event, |_, _| Fate::Pass);
+    let (mut bench, _) = Bench::with_faults(event, |_, _| Fault::None);
     let points = five_points();
     let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
     assert_eq!(failure.kind.exit(), 3);
@@ -114,9 +114,9 @@ fn a_refusal_on_the_way_says_why_and_what_is_done() {
 
 #[test]
 fn what_was_accepted_and_not_read_back_is_open() {
-    let (mut bench, heard) = Bench::spoilt("", |block, count| match block {
-        "@RPAR T1 PT=003" if count > 1 => Fate::Lost,
-        _ => Fate::Pass,
+    let (mut bench, heard) = Bench::with_faults("", |block, count| match block {
+        "@RPAR T1 PT=003" if count > 1 => Fault::Lost,
+        _ => Fault::None,
     });
     let points = five_points();
     let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
@@ -128,7 +128,8 @@ fn what_was_accepted_and_not_read_back_is_open() {
 
 #[test]
 fn a_silent_controller_had_nothing_written() {
-    let (mut bench, _) = Bench::spoilt("", |block, _| if block == "@RPAR T1 PT=001" { Fate::Lost } else { Fate::Pass });
+    let (mut bench, _) =
+        Bench::with_faults("", |block, _| if block == "@RPAR T1 PT=001" { Fault::Lost } else { Fault::None });
     let points = five_points();
     let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
     assert_eq!(failure.kind.exit(), 4);

@@ -240,18 +240,18 @@ impl Report for Got {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, Fate, all_blocks, blocks, objection};
+    use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, objection};
     use crate::failure::Kind;
 
     /// A controller that does this with step 2 of three.
-    fn with_step_2(fate: Fate) -> Bench {
+    fn with_step_2(fault: Fault) -> Bench {
         let state = "steps = { 1 = [\"SPD V=05\", \"NOP\", \"END\"] }";
-        Bench::spoilt(state, move |block, _| if block == "@RSTX 0002" { fate } else { Fate::Pass }).0
+        Bench::with_faults(state, move |block, _| if block == "@RSTX 0002" { fault } else { Fault::None }).0
     }
 
     #[test]
     fn a_refused_step_hides_no_other_and_makes_no_program() {
-        let mut bench = with_step_2(Fate::Answered("@NG"));
+        let mut bench = with_step_2(Fault::Answered("@NG"));
         let (got, failure) = bench.run(&["program", "get"]).unwrap();
         let failure = failure.unwrap();
         let why = "the controller refused RSTX 0002 (@NG): the status does not tell why";
@@ -284,18 +284,18 @@ mod tests {
         std::fs::write(file.path(), "whole").unwrap();
         let path = file.path().to_str().unwrap();
         let words = ["program", "get", path, "--force"];
-        let (got, failure) = with_step_2(Fate::Answered("@NG")).run(&words).unwrap();
+        let (got, failure) = with_step_2(Fault::Answered("@NG")).run(&words).unwrap();
         assert!(got["file"].is_null() && got["text"].as_str().unwrap().contains("\n?  # step 2"), "{got}");
         let failure = failure.unwrap();
         assert!(failure.message.ends_with("was not written, as the program is not whole"), "{failure}");
         assert_eq!(std::fs::read_to_string(path).unwrap(), "whole");
-        let (got, _) = with_step_2(Fate::Lost).run(&["program", "get", "--to", "9"]).unwrap();
+        let (got, _) = with_step_2(Fault::Lost).run(&["program", "get", "--to", "9"]).unwrap();
         assert_eq!(
             got["text"],
             "# NOT WHOLE: 8 of 9 steps were not read\nSPD V=05\n?  # steps 2 to 9 were not read: no answer\n"
         );
         assert_eq!(got["steps"].as_array().unwrap().len(), 9);
-        let failure = with_step_2(Fate::Answered("@NG")).run(&["program", "get", "--from", "2", "--to", "2"]);
+        let failure = with_step_2(Fault::Answered("@NG")).run(&["program", "get", "--from", "2", "--to", "2"]);
         assert_eq!(failure.unwrap_err().kind, Kind::Refused, "nothing was answered");
     }
 

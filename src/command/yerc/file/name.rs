@@ -67,7 +67,7 @@ impl TypeArg {
 
 /// The type of a file in reports; null where its extension is not one of the manuals.
 pub fn word_of(name: &[u8]) -> Option<&'static str> {
-    FileType::of(name).map(type_word)
+    FileType::from_name(name).map(type_word)
 }
 
 /// A type in reports and manifests: `jbi`.

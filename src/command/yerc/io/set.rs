@@ -9,8 +9,7 @@ use serde::Serialize;
 
 use super::super::orders::usage;
 use super::super::parts::{Parts, plan_in_parts, read_in_parts};
-use super::super::register::unsigned;
-use super::super::writes::{Order, runs, write_all};
+use super::super::writes::{Order, write_all};
 use super::signal;
 use super::{GroupState, SignalState, group_table, signal_table};
 use crate::command::frame::dry_run::{Reason, unknown};
@@ -18,6 +17,7 @@ use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
+use crate::controller::typed;
 use crate::controller::yerc::query::Query as _;
 use crate::controller::yerc::signal::{Signal, SignalError};
 use crate::controller::yerc::variables::{WriteIoStep, plan_io_reads, plan_io_writes};
@@ -51,12 +51,8 @@ impl FromStr for Switch {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (signal, state) = text.split_once('=').ok_or("a signal, '=' and a state are expected, as in 27010=on")?;
-        let on = match state {
-            "on" | "1" => true,
-            "off" | "0" => false,
-            _ => return Err(format!("'{state}' is no state; there are on and off")),
-        };
+        let (signal, state) = typed::setting(text, "a signal", "a state", "27010=on")?;
+        let on = typed::state(state)?;
         Ok(Self { signal: signal.parse().map_err(|error: SignalError| error.to_string())?, on })
     }
 }
@@ -71,11 +67,11 @@ impl FromStr for Whole {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (group, value) = text.split_once('=').ok_or("a group, '=' and a value are expected, as in 2701=0xA5")?;
-        let number = unsigned(group).and_then(|group| u16::try_from(group).ok());
-        let group = number.ok_or_else(|| format!("'{group}' is no group; #27010 to #27017 are group 2701"))?;
-        let parsed = unsigned(value).and_then(|value| u8::try_from(value).ok());
-        let value = parsed.ok_or_else(|| format!("'{value}' is not a number from 0 to 255 (0x00 to 0xFF)"))?;
+        let (group, value) = typed::setting(text, "a group", "a value", "2701=0xA5")?;
+        let group =
+            typed::unsigned(group).ok_or_else(|| format!("'{group}' is no group; #27010 to #27017 are group 2701"))?;
+        let value =
+            typed::unsigned(value).ok_or_else(|| format!("'{value}' is not a number from 0 to 255 (0x00 to 0xFF)"))?;
         Ok(Self { group, value })
     }
 }
@@ -160,7 +156,7 @@ impl Set {
 fn plan(link: &mut Link, partial: &[u16], changes: &BTreeMap<u16, Change>) -> Result<Failure, Failure> {
     let model = link.model;
     let reads = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
-    let about = |groups: &[u16]| Some(format!("reads group {}", runs(groups)));
+    let about = |groups: &[u16]| Some(format!("reads group {}", typed::runs(groups, "..")));
     plan_in_parts(link, reads, partial, |_| Parts::Halves, about)?;
     let writes = |byte: u8| {
         let values: Vec<(u16, u8)> = changes.iter().map(|(group, change)| (*group, change.apply(byte))).collect();
@@ -168,7 +164,7 @@ fn plan(link: &mut Link, partial: &[u16], changes: &BTreeMap<u16, Change>) -> Re
     };
     let steps: Vec<(WriteIoStep, WriteIoStep)> = writes(0)?.into_iter().zip(writes(u8::MAX)?).collect();
     for (one, other) in steps {
-        let (one, other, groups) = (one.request(), other.request(), runs(one.written()));
+        let (one, other, groups) = (one.request(), other.request(), typed::runs(one.written(), ".."));
         if one == other {
             link.plan(&one, &format!("writes group {groups}"));
         } else {
@@ -187,7 +183,7 @@ impl Order for WriteIoStep {
     }
 
     fn listed(items: Vec<u16>) -> String {
-        format!("group {}", runs(&items))
+        format!("group {}", typed::runs(&items, ".."))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Signals and groups as the operator names them.
 
+use crate::controller::typed;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::signal::{Signal, io_class};
 use crate::controller::yerc::table::{Row, Span};
@@ -12,13 +13,8 @@ pub struct Signals(pub Vec<Signal>);
 impl Signals {
     /// `20010`, `#20010`, `20010..20027`; both ends belong to the range.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let (first, last) = text.split_once("..").unwrap_or((text, text));
-        let parse = |text: &str| text.parse::<Signal>().map_err(|error| error.to_string());
-        let (first, last) = (parse(first)?, parse(last)?);
-        if last < first {
-            return Err(format!("'{text}' is no range; the lower end comes first"));
-        }
-        Ok(Self((first.number()..=last.number()).filter_map(|number| Signal::new(number).ok()).collect()))
+        let number = |text: &str| text.parse::<Signal>().map(Signal::number).map_err(|error| error.to_string());
+        Ok(Self(typed::range(text, number)?.filter_map(|number| Signal::new(number).ok()).collect()))
     }
 }
 
@@ -47,7 +43,7 @@ pub fn writable(model: Model, group: u16) -> Result<&'static Span, Failure> {
 }
 
 fn listed(model: Model, wanted: impl Fn(&Span) -> bool) -> String {
-    let spans = Row::of(0x78).map_or(&[][..], |row| row.instances.of(model));
+    let spans = Row::from_number(0x78).map_or(&[][..], |row| row.instances.for_model(model));
     let range = |span: &Span| format!("{} to {} ({})", name(span.first, 0), name(span.last, 7), span.meaning);
     spans.iter().filter(|span| wanted(span)).map(range).collect::<Vec<_>>().join(", ")
 }

@@ -19,7 +19,7 @@ use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
-use crate::controller::text::integer;
+use crate::controller::typed::{self, integer};
 use crate::controller::yerc::payload::PayloadError;
 use crate::controller::yerc::query::{Query, WriteField, WriteVariable};
 use crate::controller::yerc::request::Request;
@@ -71,7 +71,7 @@ impl FromStr for Assignment {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (name, value) = text.split_once('=').ok_or("a variable, '=' and a value are expected, as in B0=255")?;
+        let (name, value) = typed::setting(text, "a variable", "a value", "B0=255")?;
         if let Some((name, field)) = name.split_once('.') {
             let reference: Reference = name.parse().map_err(message)?;
             return Ok(Self { reference, input: field_of(reference, field, value)? });

@@ -110,7 +110,7 @@ impl Images {
                     }
                 }
                 Change::Words { words, .. } => {
-                    let answered = shown.command.filter(|_| Status::of(words[0]) != Status::Ready);
+                    let answered = shown.command.filter(|_| Status::from_word(words[0]) != Status::Ready);
                     decoded.answers = answered.map(|(number, _)| number);
                     describe(&mut decoded, answer(words, answered.as_ref().map(|(_, words)| words)));
                 }

@@ -179,7 +179,7 @@ impl BusDecoder for Decoder {
                 }
             }
             Carrier::Datagram { from, to } => self.cyclic(message, from, to, images),
-            Carrier::Line { .. } => {}
+            Carrier::Line { .. } | Carrier::Frame { .. } => {}
         }
     }
 

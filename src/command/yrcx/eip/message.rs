@@ -12,6 +12,7 @@ use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text;
+use crate::controller::typed;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, View};
 
@@ -125,12 +126,9 @@ fn bytes(text: &str) -> Result<Bytes, String> {
 
 /// A number of an object: 16 bits, decimal or hexadecimal with 0x.
 fn number(text: &str) -> Result<u32, String> {
-    let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        Some(digits) if !digits.starts_with('+') => u16::from_str_radix(digits, 16).ok(),
-        None if !text.starts_with('+') => text.parse().ok(),
-        _ => None,
-    };
-    number.map(u32::from).ok_or_else(|| format!("'{text}' is no number from 0 to 65535, as in 4 or 0xF5"))
+    typed::unsigned::<u16>(text)
+        .map(u32::from)
+        .ok_or_else(|| format!("'{text}' is no number from 0 to 65535, as in 4 or 0xF5"))
 }
 
 /// What an attribute holds.

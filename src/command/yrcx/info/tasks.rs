@@ -10,6 +10,7 @@ use crate::command::yrcx::program;
 use crate::command::yrcx::several::{Answers, Rows, Several, ask_each};
 use crate::command::yrcx::single::shown;
 use crate::command::{Command, Context, Report};
+use crate::controller::typed;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
@@ -36,13 +37,8 @@ fn tasks(text: &str) -> Result<Span, String> {
         Ok(number @ 1..=16) => Ok(number),
         _ => Err(format!("'{text}' is no task; there are 1 to 16")),
     };
-    match text.split_once("..").or_else(|| text.split_once('-')) {
-        None => number(text).map(|task| Span(task, task)),
-        Some((first, last)) => match (number(first)?, number(last)?) {
-            (first, last) if first <= last => Ok(Span(first, last)),
-            _ => Err("the range ends before it begins".to_owned()),
-        },
-    }
+    let tasks = typed::range(text, number)?;
+    Ok(Span(*tasks.start(), *tasks.end()))
 }
 
 impl Chosen {

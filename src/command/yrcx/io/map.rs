@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::{OfflineCommand, Report};
-use crate::controller::yrcx::bus::{self, Bus, Place};
+use crate::controller::yrcx::bus::{self, Bus, MapRow};
 use crate::controller::yrcx::signal::Side;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -64,7 +64,7 @@ struct Row {
 }
 
 impl Row {
-    fn of(place: &Place, start: Option<u32>) -> Self {
+    fn of(place: &MapRow, start: Option<u32>) -> Self {
         Self {
             direction: if place.side == Side::Output { "from_controller" } else { "to_controller" },
             address: place.address(start),

@@ -9,6 +9,7 @@ use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
+use crate::controller::typed;
 use crate::controller::yrcx::procedure::Procedure;
 use crate::controller::yrcx::register::Register;
 use crate::controller::yrcx::signal::{Side, Signal};
@@ -35,7 +36,7 @@ enum Change {
 }
 
 fn change(text: &str) -> Result<Change, String> {
-    let (signal, state) = text.split_once('=').ok_or("say what to switch it to, as in servo-on=on")?;
+    let (signal, state) = typed::setting(text, "a signal", "a state", "servo-on=on")?;
     if let Some(register) = Register::parse(signal) {
         let register = register?;
         if register.side() == Side::Output {
@@ -43,11 +44,7 @@ fn change(text: &str) -> Result<Change, String> {
         }
         return Ok(Change::Word { register, value: register.value(state)? });
     }
-    let on = match state {
-        "on" | "1" => true,
-        "off" | "0" => false,
-        _ => return Err(format!("a signal is on or off, not '{state}'")),
-    };
+    let on = typed::state(state)?;
     Ok(Change::Signal { signal: input(signal)?, on })
 }
 
@@ -212,7 +209,7 @@ mod tests {
         for (line, part) in [
             (&["io", "set"][..], "SIGNAL=STATE"),
             (&["io", "set", "20"], "servo-on=on"),
-            (&["io", "set", "20=maybe"], "on or off"),
+            (&["io", "set", "20=maybe"], "there are on and off"),
             (&["io", "set", "SI(02)=on"], "reserved"),
             (&["io", "pulse", "cpu-ok"], "is no signal"),
             (&["io", "set", "SOW2=5"], "the controller's to set"),

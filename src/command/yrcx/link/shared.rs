@@ -91,7 +91,7 @@ impl Link {
         let until = Instant::now() + self.policy.accept;
         loop {
             let seen = self.input.unwrap_or_default().command();
-            match Status::of(seen[0]) {
+            match Status::from_word(seen[0]) {
                 Status::Running => {
                     self.is_over = true;
                     self.give_turn();

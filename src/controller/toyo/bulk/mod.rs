@@ -7,7 +7,7 @@ pub mod points;
 mod reading;
 
 use super::field::{Field, Form, Value};
-use super::layout::Misfit;
+use super::layout::LayoutProblem;
 use super::request::Request;
 use super::table::Parameter;
 
@@ -31,12 +31,12 @@ impl Setting {
     }
 
     /// What reads it.
-    pub fn read(&self) -> Result<Request, Misfit> {
+    pub fn read(&self) -> Result<Request, LayoutProblem> {
         Request::read_parameter(self.parameter, self.row())
     }
 
     /// What writes it.
-    pub fn write(&self) -> Result<Request, Misfit> {
+    pub fn write(&self) -> Result<Request, LayoutProblem> {
         Request::write_parameter(self.parameter, &self.values)
     }
 }

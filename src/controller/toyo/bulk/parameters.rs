@@ -22,7 +22,7 @@ use toml_edit::{Item, TableLike};
 use super::reading::{self, Reading};
 use super::{Placed, Setting};
 use crate::toyo::field::Value;
-use crate::toyo::findings::{Finding, Place};
+use crate::toyo::findings::{Finding, SourceLocation};
 use crate::toyo::program::MOST_STEPS;
 use crate::toyo::table::Parameter;
 use crate::toyo::table::parameters::PARAMETERS;
@@ -154,7 +154,7 @@ impl Reader<'_, '_> {
     }
 
     /// One parameter, or one row.
-    fn setting(&mut self, parameter: &'static Parameter, row: Option<Value>, item: &Item, at: Place) {
+    fn setting(&mut self, parameter: &'static Parameter, row: Option<Value>, item: &Item, at: SourceLocation) {
         let before = self.reading.findings.errors();
         let mut values: Vec<Value> = row.into_iter().collect();
         values.extend(self.reading.values(parameter.name, parameter.fields(), item, at));
@@ -175,7 +175,7 @@ impl Reader<'_, '_> {
             let steps = steps.fold(0_usize, |sum, steps| sum + usize::try_from(steps).unwrap_or_default());
             if steps > MOST_STEPS {
                 let message = format!("the tasks have {steps} steps together; there are {MOST_STEPS}");
-                self.reading.findings.error(Place { line: *line, column: 1 }, message, None);
+                self.reading.findings.error(SourceLocation { line: *line, column: 1 }, message, None);
             }
         }
     }

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use super::{Placed, Setting, plain};
 use crate::nearest::nearest;
 use crate::toyo::field::{Field, Value};
-use crate::toyo::findings::{Finding, Findings, Place};
+use crate::toyo::findings::{Finding, Findings, SourceLocation};
 use crate::toyo::source;
 use crate::toyo::table::Parameter;
 
@@ -54,7 +54,7 @@ pub fn read(bytes: &[u8], axes: usize) -> Result<Vec<Placed>, Vec<Finding>> {
             points = rows(lines, &header, &mut findings);
         }
     } else {
-        findings.error(Place { line: 1, column: 1 }, "the file is empty", Some(expected(axes)));
+        findings.error(SourceLocation { line: 1, column: 1 }, "the file is empty", Some(expected(axes)));
     }
     if findings.errors() == 0 { Ok(points) } else { Err(findings.into_errors()) }
 }
@@ -199,8 +199,8 @@ fn told<'l>(
     cells.map_err(|at| findings.error(place(line, number, at), "the quotes are wrong here", None)).ok()
 }
 
-fn place(line: &str, number: usize, at: usize) -> Place {
-    Place { line: number, column: line[..at].chars().count() + 1 }
+fn place(line: &str, number: usize, at: usize) -> SourceLocation {
+    SourceLocation { line: number, column: line[..at].chars().count() + 1 }
 }
 
 #[cfg(test)]

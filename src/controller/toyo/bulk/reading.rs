@@ -8,7 +8,7 @@ use toml_edit::{Document, Item, Table, TableLike, Value as Toml};
 use super::plain;
 use crate::nearest::nearest;
 use crate::toyo::field::{Field, Form, Value};
-use crate::toyo::findings::{Finding, Findings, Place};
+use crate::toyo::findings::{Finding, Findings, SourceLocation};
 use crate::toyo::source;
 
 /// What fields are, for people: `, mm` or `; J Japanese, E English`.
@@ -77,7 +77,7 @@ pub(super) struct Reading<'t> {
 
 impl Reading<'_> {
     /// The values of all fields of something that is called `name`.
-    pub fn values(&mut self, name: &str, fields: &'static [Field], item: &Item, at: Place) -> Vec<Value> {
+    pub fn values(&mut self, name: &str, fields: &'static [Field], item: &Item, at: SourceLocation) -> Vec<Value> {
         match (fields, item, item.as_table_like()) {
             ([field], Item::Value(value), _) => self.value(field, value).into_iter().collect(),
             ([field], ..) => {
@@ -95,7 +95,7 @@ impl Reading<'_> {
     }
 
     /// All fields, in their order.
-    fn fields(&mut self, fields: &'static [Field], table: &dyn TableLike, at: Place) -> Vec<Value> {
+    fn fields(&mut self, fields: &'static [Field], table: &dyn TableLike, at: SourceLocation) -> Vec<Value> {
         for (name, _) in table.iter().filter(|(name, _)| !fields.iter().any(|field| field.name == *name)) {
             let at = self.key(table, name);
             self.unknown(at, "value", name, fields.iter().map(|field| field.name));
@@ -130,7 +130,13 @@ impl Reading<'_> {
     }
 
     /// There is nothing of that name.
-    pub fn unknown(&mut self, at: Place, what: &str, name: &str, known: impl IntoIterator<Item = &'static str>) {
+    pub fn unknown(
+        &mut self,
+        at: SourceLocation,
+        what: &str,
+        name: &str,
+        known: impl IntoIterator<Item = &'static str>,
+    ) {
         if self.findings.is_full() {
             return self.findings.error(at, "", None);
         }
@@ -139,7 +145,7 @@ impl Reading<'_> {
     }
 
     /// Where a key of a table is.
-    pub fn key(&self, table: &dyn TableLike, name: &str) -> Place {
+    pub fn key(&self, table: &dyn TableLike, name: &str) -> SourceLocation {
         self.places.place(&table.key(name).and_then(toml_edit::Key::span).unwrap_or_default())
     }
 }
@@ -157,10 +163,10 @@ impl<'t> Places<'t> {
         Self { text, lines }
     }
 
-    fn place(&self, span: &Range<usize>) -> Place {
+    fn place(&self, span: &Range<usize>) -> SourceLocation {
         let line = self.lines.partition_point(|start| *start <= span.start);
         let start = self.lines.get(line.saturating_sub(1)).copied().unwrap_or_default();
         let column = self.text.get(start..span.start).map_or(0, |before| before.chars().count()) + 1;
-        Place { line, column }
+        SourceLocation { line, column }
     }
 }

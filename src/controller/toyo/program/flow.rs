@@ -1,7 +1,7 @@
 //! What runs after what: ends that are missing, steps that nothing reaches, jumps that only the controller knows.
 
 use super::tags::Resolved;
-use crate::toyo::findings::{Findings, Place};
+use crate::toyo::findings::{Findings, SourceLocation};
 use crate::toyo::table::{Instruction, Op};
 
 /// Tells what looks wrong in a program without errors. A part of one may go on behind its last step.
@@ -41,7 +41,7 @@ pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings)
 }
 
 /// Instructions that not every controller has, each told once.
-fn limits<'s>(steps: impl Iterator<Item = (&'s Instruction, Place)>, findings: &mut Findings) {
+fn limits<'s>(steps: impl Iterator<Item = (&'s Instruction, SourceLocation)>, findings: &mut Findings) {
     let mut told: Vec<Op> = Vec::new();
     for (row, at) in steps.filter(|(row, _)| !row.only_on.is_empty()) {
         if !told.contains(&row.op) {

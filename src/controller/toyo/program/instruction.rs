@@ -2,7 +2,7 @@
 
 use crate::nearest::nearest;
 use crate::toyo::field::{Field, FieldError, Form, Value};
-use crate::toyo::findings::{Findings, Place};
+use crate::toyo::findings::{Findings, SourceLocation};
 use crate::toyo::table::instructions::INSTRUCTIONS;
 use crate::toyo::table::{Instruction, Op};
 
@@ -19,7 +19,7 @@ pub(super) struct TagUse {
     /// Which of its values.
     pub index: usize,
     pub target: Target,
-    pub at: Place,
+    pub at: SourceLocation,
 }
 
 /// An instruction whose tags are still to be found.
@@ -29,17 +29,17 @@ pub(super) struct Draft {
     pub values: Vec<Value>,
     pub tags: Vec<TagUse>,
     /// Where it begins.
-    pub at: Place,
+    pub at: SourceLocation,
 }
 
 impl Draft {
     /// In the place of an instruction that has errors, so that steps still count.
-    pub fn empty(at: Place) -> Self {
+    pub fn empty(at: SourceLocation) -> Self {
         Self { instruction: Op::Nop.row(), values: Vec::new(), tags: Vec::new(), at }
     }
 
     /// A TAG step.
-    pub fn tag(target: Target, at: Place) -> Self {
+    pub fn tag(target: Target, at: SourceLocation) -> Self {
         let tags = vec![TagUse { index: 0, target, at }];
         Self { instruction: Op::Tag.row(), values: vec![Value::Number(0)], tags, at }
     }
@@ -187,8 +187,8 @@ impl<'t> Cursor<'t> {
         self.line[self.at..].trim_matches(BLANKS)
     }
 
-    pub fn place(&self) -> Place {
-        Place { line: self.number, column: self.line[..self.at].chars().count() + 1 }
+    pub fn place(&self) -> SourceLocation {
+        SourceLocation { line: self.number, column: self.line[..self.at].chars().count() + 1 }
     }
 
     /// Takes what stands before the next colon, and the colon; nothing where there is none.

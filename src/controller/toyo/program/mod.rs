@@ -28,7 +28,7 @@ pub use listing::{
 };
 
 pub use super::findings::{Finding, Severity};
-use super::findings::{Findings, Place};
+use super::findings::{Findings, SourceLocation};
 use super::layout::Record;
 use super::table::Instruction;
 
@@ -152,7 +152,7 @@ pub fn check_part(text: &[u8], room: usize, part: &Part) -> Checked {
 fn check_with(text: &[u8], room: usize, part: Option<&Part>) -> Checked {
     let mut findings = Findings::default();
     if let Some((what, hint)) = foreign(text) {
-        findings.error(Place { line: 1, column: 1 }, what, Some(hint.to_owned()));
+        findings.error(SourceLocation { line: 1, column: 1 }, what, Some(hint.to_owned()));
         return Checked { program: None, findings: findings.sorted() };
     }
     let read = reader::read(text, room, part, &mut findings);

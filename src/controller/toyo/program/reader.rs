@@ -3,7 +3,7 @@
 use super::instruction::{Cursor, Draft, TagUse, Target, is_label, read as read_instruction, shown};
 use super::listing::NOT_READ;
 use super::{MOST_STEPS, Part};
-use crate::toyo::findings::{Findings, Place};
+use crate::toyo::findings::{Findings, SourceLocation};
 use crate::toyo::source;
 use crate::toyo::table::Op;
 
@@ -22,7 +22,7 @@ pub(super) struct Defined {
     pub tag: Option<i32>,
     /// Its TAG step, from 0.
     pub step: usize,
-    pub at: Place,
+    pub at: SourceLocation,
 }
 
 /// Reads the lines, for a task or a part of it that has room for so many steps.
@@ -49,7 +49,7 @@ pub(super) fn read(text: &[u8], room: usize, part: Option<&Part>, findings: &mut
         }
     }
     if reader.read.steps.is_empty() && reader.findings.errors() == 0 {
-        reader.findings.error(Place { line: 1, column: 1 }, "there is no instruction in the file", None);
+        reader.findings.error(SourceLocation { line: 1, column: 1 }, "there is no instruction in the file", None);
     }
     reader.read
 }
@@ -107,7 +107,7 @@ impl Reader<'_> {
         if wrong != char::REPLACEMENT_CHARACTER {
             let hint = narrow(wrong).map(|narrow| format!("it is a wide character: write '{narrow}'"));
             let message = format!("character '{}' cannot be here", wrong.escape_default());
-            self.findings.error(Place { line, column: column + 1 }, message, hint);
+            self.findings.error(SourceLocation { line, column: column + 1 }, message, hint);
         }
         false
     }
@@ -137,7 +137,7 @@ impl Reader<'_> {
     }
 
     /// `name` or `name = 010`, behind which a colon was.
-    fn label(&mut self, text: &str, at: Place) {
+    fn label(&mut self, text: &str, at: SourceLocation) {
         let (name, tag) = match text.split_once('=') {
             Some((name, tag)) => (name.trim(), Some(tag.trim())),
             None => (text.trim(), None),

@@ -8,13 +8,13 @@ use super::reader::{Defined, Read};
 use super::{Label, Part, Program, Step};
 use crate::nearest::nearest;
 use crate::toyo::field::Value;
-use crate::toyo::findings::{Findings, Place};
+use crate::toyo::findings::{Findings, SourceLocation};
 use crate::toyo::table::Op;
 
 /// A program with the places of its steps.
 pub(super) struct Resolved {
     pub program: Program,
-    pub places: Vec<Place>,
+    pub places: Vec<SourceLocation>,
 }
 
 /// Greatest number of a tag.
@@ -43,14 +43,14 @@ struct Tags<'p> {
     /// By name in lower case.
     by_name: HashMap<String, usize>,
     /// Where each tag is; there is no tag 0.
-    defined: Vec<Option<Place>>,
+    defined: Vec<Option<SourceLocation>>,
     /// What the text is a part of.
     part: Option<&'p Part>,
 }
 
 struct Known {
     name: String,
-    at: Place,
+    at: SourceLocation,
     step: usize,
     tag: i32,
     given: bool,
@@ -158,7 +158,7 @@ impl Tags<'_> {
     }
 
     /// A jump uses its label, or needs its number.
-    fn jump(&mut self, tag: i32, target: &Target, at: Place, findings: &mut Findings) {
+    fn jump(&mut self, tag: i32, target: &Target, at: SourceLocation, findings: &mut Findings) {
         match target {
             Target::Label(name) => {
                 if let Some(index) = self.by_name.get(&name.to_lowercase()) {

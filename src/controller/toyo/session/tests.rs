@@ -1,19 +1,16 @@
 use super::*;
+use crate::testing::{ms, waits};
 
 const SECOND: Duration = Duration::from_secs(1);
 const POLICY: Policy = Policy { timeout: SECOND, retries: 2, character: Duration::from_micros(1146) };
-
-fn ms(ms: u64) -> Now {
-    Duration::from_millis(ms)
-}
 
 fn request(text: &str) -> Request {
     Request::parse(text).unwrap()
 }
 
 /// A line on which a request was just sent.
-fn sent(text: &str, is_repeatable: bool) -> Line {
-    let mut line = Line::new(POLICY);
+fn sent(text: &str, is_repeatable: bool) -> LineSession {
+    let mut line = LineSession::new(POLICY);
     line.begin(&request(text), is_repeatable);
     assert_eq!(line.poll(Now::ZERO), Step::Send(format!("{text}\r\n").into_bytes()));
     line
@@ -27,7 +24,7 @@ fn answered(block: &str) -> Step<Ended> {
 fn an_answer_in_pieces_ends_the_exchange() {
     let mut line = sent("@STAS SNO=0", true);
     line.handle(ms(20), b"@STAS SNO=0 ST1=2");
-    assert!(matches!(line.poll(ms(20)), Step::Wait(_)));
+    waits(&mut line, ms(20));
     line.handle(ms(25), b"2 ST2=00\r");
     assert_eq!(line.poll(ms(25)), answered("@STAS SNO=0 ST1=22 ST2=00"));
     line.handle(ms(26), b"\n");
@@ -45,14 +42,14 @@ fn the_time_for_an_answer_begins_after_the_last_character() {
 fn reads_are_repeated_and_orders_are_not() {
     let mut line = sent("@MTSK", true);
     for _ in 0..2 {
-        let Step::Wait(deadline) = line.poll(ms(1)) else { panic!("it waits") };
+        let deadline = waits(&mut line, ms(1));
         assert_eq!(line.poll(deadline), Step::Send(b"@MTSK\r\n".to_vec()));
     }
-    let Step::Wait(deadline) = line.poll(ms(1)) else { panic!("it waits") };
+    let deadline = waits(&mut line, ms(1));
     assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
 
     let mut line = sent("@HOME", false);
-    let Step::Wait(deadline) = line.poll(ms(1)) else { panic!("it waits") };
+    let deadline = waits(&mut line, ms(1));
     assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
     assert_eq!(line.counters().sent, 1);
 }
@@ -60,17 +57,17 @@ fn reads_are_repeated_and_orders_are_not() {
 #[test]
 fn a_late_ok_is_not_the_answer_to_the_next_order() {
     let mut line = sent("@MAUT", false);
-    let Step::Wait(deadline) = line.poll(ms(1)) else { panic!("it waits") };
+    let deadline = waits(&mut line, ms(1));
     assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
     line.begin(&request("@SVON"), false);
-    let Step::Wait(settled) = line.poll(deadline) else { panic!("it lets the line settle") };
+    let settled = waits(&mut line, deadline);
     assert_eq!(settled, deadline + SECOND);
     // It comes, and passes; the next order goes out as soon as the line is quiet.
     line.handle(deadline + ms(300), b"@OK\r\n");
     assert_eq!(line.poll(deadline + ms(300)), Step::Wait(deadline + ms(350)));
     let now = deadline + ms(350);
     assert_eq!(line.poll(now), Step::Send(b"@SVON\r\n".to_vec()));
-    assert!(matches!(line.poll(now), Step::Wait(_)));
+    waits(&mut line, now);
     line.handle(now + ms(20), b"@NG\r\n");
     assert_eq!(line.poll(now + ms(20)), answered("@NG"));
 }
@@ -101,7 +98,7 @@ fn a_stop_does_not_wait_for_what_is_owed() {
 
 #[test]
 fn a_line_in_peace_needs_no_urgency() {
-    let mut line = Line::new(POLICY);
+    let mut line = LineSession::new(POLICY);
     assert_eq!(line.urgent(Now::ZERO, &request("@STOP")), None);
     let mut line = sent("@SPST 0001", false);
     line.handle(ms(9), b"@OK\r\n");
@@ -141,7 +138,7 @@ fn a_garbled_read_is_asked_again_when_the_line_is_quiet() {
 fn a_garbled_answer_to_an_order_leaves_it_open() {
     let mut line = sent("@SVON", false);
     line.handle(ms(10), b"@O\x80\r\n");
-    let Step::Wait(deadline) = line.poll(ms(10)) else { panic!("it waits") };
+    let deadline = waits(&mut line, ms(10));
     assert!(matches!(line.poll(deadline), Step::Done(Ended::Unfitting { .. })));
 }
 
@@ -155,7 +152,7 @@ fn a_line_that_echoes_is_no_controller() {
     line.begin(&request("@TYPE AX1 RTYP=000001"), false);
     assert!(matches!(line.poll(ms(6)), Step::Send(_)));
     line.handle(ms(7), b"@TYPE AX1 RTYP=000001\r\n");
-    let Step::Wait(deadline) = line.poll(ms(7)) else { panic!("an echo is no answer") };
+    let deadline = waits(&mut line, ms(7));
     assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
 }
 
@@ -163,7 +160,7 @@ fn a_line_that_echoes_is_no_controller() {
 fn an_answer_that_looks_like_its_request_counts_in_the_end() {
     let mut line = sent("@TYPE AX1 RTYP=000001", false);
     line.handle(ms(20), b"@TYPE AX1 RTYP=000001\r\n");
-    let Step::Wait(deadline) = line.poll(ms(20)) else { panic!("it may be an echo") };
+    let deadline = waits(&mut line, ms(20));
     assert_eq!(line.poll(deadline), answered("@TYPE AX1 RTYP=000001"));
 }
 
@@ -173,14 +170,14 @@ fn ten_thousand_characters_without_an_end_are_bounded() {
     line.handle(ms(10), &[b'A'; 10_000]);
     line.handle(ms(10), b"@");
     line.handle(ms(10), &[b'A'; 10_000]);
-    let Step::Wait(deadline) = line.poll(ms(10)) else { panic!("it waits") };
+    let deadline = waits(&mut line, ms(10));
     assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
     assert!(line.counters().noise >= 10_000);
 }
 
 #[test]
 fn whatever_answers_a_raw_block_is_its_answer() {
-    let mut line = Line::new(POLICY);
+    let mut line = LineSession::new(POLICY);
     line.begin_raw("@ABCD");
     assert_eq!(line.poll(Now::ZERO), Step::Send(b"@ABCD\r\n".to_vec()));
     line.handle(ms(9), b"@ABCD\r\n@ABCD X=1\r\n");
@@ -189,7 +186,7 @@ fn whatever_answers_a_raw_block_is_its_answer() {
 
 #[test]
 fn an_order_waits_for_a_quiet_line_but_not_for_ever_and_a_stop_not_at_all() {
-    let mut line = Line::new(POLICY);
+    let mut line = LineSession::new(POLICY);
     line.handle(ms(0), b"@OK\r\n");
     line.begin(&request("@SVON"), false);
     assert_eq!(line.poll(ms(10)), Step::Wait(ms(50)));
@@ -201,7 +198,7 @@ fn an_order_waits_for_a_quiet_line_but_not_for_ever_and_a_stop_not_at_all() {
     line.handle(ms(500), b"x");
     assert_eq!(line.poll(ms(510)), Step::Send(b"@SVON\r\n".to_vec()));
 
-    let mut line = Line::new(POLICY);
+    let mut line = LineSession::new(POLICY);
     line.handle(ms(0), b"@OK\r\n");
     line.begin(&request("@STOP"), true);
     assert_eq!(line.poll(ms(10)), Step::Send(b"@STOP\r\n".to_vec()));
@@ -211,7 +208,7 @@ fn an_order_waits_for_a_quiet_line_but_not_for_ever_and_a_stop_not_at_all() {
 fn what_the_manual_does_not_list_is_believed_the_second_time() {
     let mut line = sent("@RPAR E17", true);
     line.handle(ms(10), b"@RPAR E17 E=I\r\n");
-    let Step::Wait(again) = line.poll(ms(10)) else { panic!("it waits for a quiet line") };
+    let again = waits(&mut line, ms(10));
     assert_eq!(line.poll(again), Step::Send(b"@RPAR E17\r\n".to_vec()));
     line.handle(again + ms(10), b"@RPAR E17 E=I\r\n");
     assert_eq!(line.poll(again + ms(10)), answered("@RPAR E17 E=I"));
@@ -219,7 +216,7 @@ fn what_the_manual_does_not_list_is_believed_the_second_time() {
     // Damage is another one each time.
     let mut line = sent("@RPAR E17", true);
     line.handle(ms(10), b"@RPAR E17 E=I\r\n");
-    let Step::Wait(again) = line.poll(ms(10)) else { panic!("it waits for a quiet line") };
+    let again = waits(&mut line, ms(10));
     assert_eq!(line.poll(again), Step::Send(b"@RPAR E17\r\n".to_vec()));
     line.handle(again + ms(10), b"@RPAR E17 E=i\r\n");
     assert_eq!(line.poll(again + ms(10)), answered("@RPAR E17 E=i"));

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::io::Port;
 use super::memory::index;
-use super::motion::{AXES, Place};
+use super::motion::{AXES, Coordinates};
 use crate::toyo::field::Mask;
 use crate::toyo::layout::Record;
 use crate::toyo::table::{Instruction, Op};
@@ -155,7 +155,7 @@ pub(super) struct Move {
 /// Where to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Target {
-    Place(Place),
+    Coordinates(Coordinates),
     /// A row of the coordinate table, a counter added to its number (ambiguity R7).
     Row {
         point: i32,
@@ -297,7 +297,7 @@ pub(super) fn axis(letter: &str) -> Option<usize> {
 }
 
 /// Coordinates in 0.01 mm as mm.
-pub(super) fn place(hundredths: [i32; AXES]) -> Place {
+pub(super) fn place(hundredths: [i32; AXES]) -> Coordinates {
     hundredths.map(|value| f64::from(value) / 100.0)
 }
 
@@ -337,7 +337,7 @@ impl Fields<'_> {
     }
 
     fn coordinates(&self) -> Target {
-        Target::Place(["x", "y", "z", "r"].map(|name| self.millimetres(name)))
+        Target::Coordinates(["x", "y", "z", "r"].map(|name| self.millimetres(name)))
     }
 
     fn row(&self) -> Target {

@@ -3,7 +3,7 @@
 //! The commanded place is the goal of all moves, less what each of them still has to go. So moves add up: a pass point
 //! is rounded because the next move begins while the last one slows down.
 
-use super::motion::{AXES, Drive, Path, Place, Segment, minus, plus};
+use super::motion::{AXES, Coordinates, Drive, Path, Segment, minus, plus};
 use crate::Now;
 
 /// Owner of moves that no task makes: JOG and return to origin by the host.
@@ -15,10 +15,19 @@ const HALVINGS: u32 = 40;
 /// An axis within this many mm is in the same place.
 const SAME: f64 = 1e-6;
 
+/// An axis that pushes against something.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Press {
+    /// When it is judged.
+    pub(super) due: Option<Now>,
+    /// Whether it was judged to be locked.
+    pub(super) locked: bool,
+}
+
 /// All axes.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Arm {
-    goal: Place,
+    goal: Coordinates,
     segments: Vec<Segment>,
     held: Vec<Held>,
     walls: [Option<Wall>; AXES],
@@ -28,7 +37,7 @@ pub(super) struct Arm {
     /// Whether an axis knows its origin.
     pub(super) known: [bool; AXES],
     /// Coordinate at which each axis finds its origin.
-    pub(super) sensors: Place,
+    pub(super) sensors: Coordinates,
     /// The return to origin under way.
     pub(super) homing: Option<Homing>,
 }
@@ -56,7 +65,7 @@ struct Held {
     owner: usize,
     rests: Vec<Rest>,
     /// Where they were going.
-    aim: Place,
+    aim: Coordinates,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -68,12 +77,12 @@ struct Rest {
 
 impl Arm {
     /// Where the axes should be.
-    pub(super) fn commanded(&self, now: Now) -> Place {
+    pub(super) fn commanded(&self, now: Now) -> Coordinates {
         self.segments.iter().fold(self.goal, |place, segment| plus(&place, &segment.rest(now)))
     }
 
     /// Where the axes are.
-    pub(super) fn position(&self, now: Now) -> Place {
+    pub(super) fn position(&self, now: Now) -> Coordinates {
         let commanded = self.commanded(now);
         std::array::from_fn(|axis| match self.walls[axis] {
             Some(wall) if wall.depth(commanded[axis]) > 0.0 => wall.at,
@@ -82,12 +91,12 @@ impl Arm {
     }
 
     /// Where all moves end.
-    pub(super) const fn goal(&self) -> Place {
+    pub(super) const fn goal(&self) -> Coordinates {
         self.goal
     }
 
     /// Puts the axes somewhere, at rest.
-    pub(super) fn put(&mut self, place: Place) {
+    pub(super) fn put(&mut self, place: Coordinates) {
         self.touch();
         self.segments.clear();
         self.held.clear();
@@ -305,13 +314,13 @@ mod tests {
         Duration::from_millis(ms)
     }
 
-    fn to(arm: &mut Arm, place: Place, at: Now) {
+    fn to(arm: &mut Arm, place: Coordinates, at: Now) {
         let from = arm.goal();
         let length = minus(&place, &from).into_iter().map(f64::abs).fold(0.0, f64::max);
         arm.begin(&Segment::new(0, Path::line(from, place, length), 0.0, DRIVE, at));
     }
 
-    fn near(a: Place, b: Place) -> bool {
+    fn near(a: Coordinates, b: Coordinates) -> bool {
         a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6)
     }
 

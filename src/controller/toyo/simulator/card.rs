@@ -101,7 +101,7 @@ impl World {
                 let Some(content) = self.card.content.as_deref() else { return };
                 self.switches.machine_changed |= self.memory.content.differs(content, Group::Machine);
                 self.memory.content = content.clone();
-                self.settings = Settings::of(&self.memory.content);
+                self.settings = Settings::from_content(&self.memory.content);
                 self.reset_program();
             }
         }

@@ -1,21 +1,11 @@
 //! The commands of the host: which may be done when, and what they answer.
 
-use super::memory::index;
 use super::operate::Refusal;
+use super::reply::{Fields, Reply};
 use super::world::{Mode, World};
 use crate::toyo::field::{Mask, Value};
-use crate::toyo::layout::Record;
 use crate::toyo::request::{BlockError, Request};
 use crate::toyo::table::Command;
-
-/// What a command is answered.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Reply {
-    /// `@OK`.
-    Done,
-    /// Values in a form of the answer.
-    Data(usize, Vec<Value>),
-}
 
 /// Carries a block out; what to answer, without line end.
 pub(super) fn answer(world: &mut World, block: &str) -> String {
@@ -152,25 +142,4 @@ fn direct(world: &mut World, request: &Request) -> Result<(), Refusal> {
         (bit.port, Mask { care: bit.mask(), bits: bit.mask() })
     };
     if world.ports.set_output(port, mask) { Ok(()) } else { Err("there is no such port") }
-}
-
-/// The values of a request, which are all in range.
-pub(super) struct Fields<'a>(pub(super) &'a Record);
-
-impl Fields<'_> {
-    pub(super) fn number(&self, name: &str) -> i32 {
-        self.0.number(name).unwrap_or_default()
-    }
-
-    pub(super) fn index(&self, name: &str) -> usize {
-        index(self.number(name))
-    }
-
-    pub(super) fn word(&self, name: &str) -> &'static str {
-        self.0.word(name).unwrap_or_default()
-    }
-
-    fn port(&self) -> super::io::Port {
-        super::io::Port { station: self.index("station"), port: self.index("port") }
-    }
 }

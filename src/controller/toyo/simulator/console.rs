@@ -4,6 +4,7 @@ use super::action::axis;
 use super::io::{Port, PortBit, Ports};
 use super::memory::TASKS;
 use super::world::{Kind, Mode, World};
+use crate::simulator::console::{self, expected, number, on_off, unknown};
 use crate::toyo::field::Mask;
 use crate::toyo::layout::Record;
 
@@ -31,7 +32,7 @@ why";
 
 /// A line of the console.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Line {
+pub(super) enum ConsoleLine {
     Help,
     State,
     /// The last refusal.
@@ -66,7 +67,7 @@ pub(super) enum Button {
 const BUTTONS: [(u8, Button); 4] =
     [(0b0001, Button::Home), (0b0010, Button::Start), (0b0100, Button::Stop), (0b1000, Button::Reset)];
 
-impl Line {
+impl ConsoleLine {
     /// Reads a line; the error says what is wrong with it.
     pub(super) fn parse(line: &str) -> Result<Self, String> {
         let words: Vec<&str> = line.split_whitespace().collect();
@@ -76,7 +77,7 @@ impl Line {
             ["why"] => Self::Why,
             ["input", place, value] => input(place, value)?,
             ["start"] => Self::Press(Button::Start),
-            ["start", step] => Self::StartAt(number(step, 1, 5000)?),
+            ["start", step] => Self::StartAt(number(step, 1..=5000)?),
             ["stop"] => Self::Press(Button::Stop),
             ["reset"] => Self::Press(Button::Reset),
             ["home"] => Self::Press(Button::Home),
@@ -96,7 +97,7 @@ impl Line {
             ["slave", state] => Self::Slave(on_off(state)?),
             ["battery", "low"] => Self::BatteryLow(true),
             ["battery", "ok"] => Self::BatteryLow(false),
-            _ => return Err(format!("no such line: '{}'", line.trim())),
+            _ => return Err(unknown(line)),
         })
     }
 
@@ -132,33 +133,38 @@ impl Line {
     }
 }
 
+/// Reads a line and carries it out.
+pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
+    ConsoleLine::parse(line)?.carry_out(world)
+}
+
 /// `0/01/3 on`, `0/01 00000100`; `0/SY/2 on` is a bit of the system port.
-fn input(place: &str, value: &str) -> Result<Line, String> {
+fn input(place: &str, value: &str) -> Result<ConsoleLine, String> {
     let parts: Vec<&str> = place.split('/').collect();
     let existing = |station: &str, port: &str| {
-        let port = Port { station: number(station, 0, 4)?, port: number(port, 1, 99)? };
+        let port = Port { station: number(station, 0..=4)?, port: number(port, 1..=99)? };
         let known = Ports::default().input(port).is_some();
         if known { Ok(port) } else { Err(format!("there is no input port {}/{:02}", port.station, port.port)) }
     };
     match parts.as_slice() {
-        ["0", "SY", bit] => Ok(Line::System(mask(bit)?, on_off(value)?)),
+        ["0", "SY", bit] => Ok(ConsoleLine::System(mask(bit)?, on_off(value)?)),
         [station, port, bit] => {
             let (port, care) = (existing(station, port)?, mask(bit)?);
-            Ok(Line::Input(port, Mask { care, bits: if on_off(value)? { care } else { 0 } }))
+            Ok(ConsoleLine::Input(port, Mask { care, bits: if on_off(value)? { care } else { 0 } }))
         }
         [station, port] => {
             let bits = u8::from_str_radix(value, 2).ok().filter(|_| value.len() == 8);
             let bits = bits.ok_or_else(|| expected(value, "eight of 0 and 1"))?;
-            Ok(Line::Input(existing(station, port)?, Mask::all(bits)))
+            Ok(ConsoleLine::Input(existing(station, port)?, Mask::all(bits)))
         }
         _ => Err(expected(place, "a place like 0/01/3 or 0/01")),
     }
 }
 
-fn obstacle(letter: &str, place: &str) -> Result<Line, String> {
+fn obstacle(letter: &str, place: &str) -> Result<ConsoleLine, String> {
     let axis = axis(letter).ok_or_else(|| expected(letter, "X, Y, Z or R"))?;
     let coordinate = || place.parse().ok().filter(|at: &f64| at.abs() <= 8000.0);
-    Ok(Line::Obstacle(
+    Ok(ConsoleLine::Obstacle(
         axis,
         match place {
             "off" => None,
@@ -210,7 +216,7 @@ fn set_system(world: &mut World, mask: u8, on: bool) {
 
 /// One line about everything that decides what is refused.
 fn summary(world: &World) -> String {
-    let mut parts = vec![
+    let always = [
         match world.kind() {
             Kind::Sequential => "sequential",
             Kind::Palletizing => "palletizing",
@@ -236,8 +242,7 @@ fn summary(world: &World) -> String {
         (world.card.is_busy(), "card busy"),
         (world.errors.current().is_some(), "error"),
     ];
-    parts.extend(optional.into_iter().filter_map(|(on, text)| on.then_some(text)));
-    parts.join(", ")
+    console::summary(&always, optional)
 }
 
 /// The summary, then error, place, tasks and outputs.
@@ -267,23 +272,6 @@ fn state(world: &World) -> String {
 
 /// The bit with a number, from 1.
 fn mask(bit: &str) -> Result<u8, String> {
-    let bit = u8::try_from(number(bit, 1, 8)?).unwrap_or(1);
+    let bit = u8::try_from(number(bit, 1..=8)?).unwrap_or(1);
     Ok(PortBit { port: Port { station: 0, port: 1 }, bit }.mask())
-}
-
-fn on_off(word: &str) -> Result<bool, String> {
-    match word {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err(expected(word, "on or off")),
-    }
-}
-
-fn number(word: &str, least: usize, most: usize) -> Result<usize, String> {
-    let number = word.parse().ok().filter(|number| (least..=most).contains(number));
-    number.ok_or_else(|| expected(word, &format!("a number from {least} to {most}")))
-}
-
-fn expected(word: &str, what: &str) -> String {
-    format!("'{word}' is not {what}")
 }

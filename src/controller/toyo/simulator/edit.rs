@@ -1,7 +1,7 @@
 //! Commands that change what is stored: parameters, steps, palletizing and easy programs.
 
-use super::commands::{Fields, Reply};
 use super::memory::{Easy, NoRoom, TASKS};
+use super::reply::{Fields, Reply};
 use super::world::World;
 use crate::toyo::layout::Record;
 use crate::toyo::request::Request;

@@ -3,14 +3,12 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use super::motion::AXES;
-
 /// Entries of the history (TO 2-8, EHTR).
 const ENTRIES: usize = 99;
 
 /// Codes that something here raises (TO 4-1).
 pub(super) mod code {
-    use super::AXES;
+    use crate::toyo::simulator::motion::AXES;
 
     pub(in super::super) const EMERGENCY_STOP: u8 = 0x13;
     pub(in super::super) const ORIGIN_INCOMPLETE: u8 = 0x61;

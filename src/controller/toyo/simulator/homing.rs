@@ -2,7 +2,7 @@
 
 use super::arm::{HOST, Homing};
 use super::errors::code;
-use super::motion::{AXES, Drive, Path, Place, Segment};
+use super::motion::{AXES, Coordinates, Drive, Path, Segment};
 use super::task::Wait;
 use super::trace::What;
 use super::watch::NEAR;
@@ -96,7 +96,7 @@ impl World {
         let [low, high] = self.settings.jog[axis];
         let bound = if upwards { self.settings.plus[axis] } else { self.settings.minus[axis] };
         let limit = self.arm.known[axis].then_some((bound, upwards));
-        let mut to: Place = from;
+        let mut to: Coordinates = from;
         let inches = word.ends_with('C');
         to[axis] = if inches { from[axis] + sign * self.settings.inch[axis] } else { sign * END };
         let length = (to[axis] - from[axis]).abs();

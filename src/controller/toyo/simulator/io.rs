@@ -29,6 +29,17 @@ pub(super) struct PortBit {
     pub(super) bit: u8,
 }
 
+/// An output that waits for an axis (OUTS).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct OutputAt {
+    pub(super) task: usize,
+    pub(super) axis: usize,
+    pub(super) at_least: bool,
+    pub(super) place: f64,
+    pub(super) port: Port,
+    pub(super) mask: Mask,
+}
+
 /// All ports.
 #[derive(Debug, Clone)]
 pub(super) struct Ports {
@@ -48,7 +59,7 @@ impl Default for Ports {
 
 impl PortBit {
     /// Of a parameter, whose fields end in `suffix`; `None` if no bit is assigned.
-    pub(super) fn of(record: &Record, suffix: &str) -> Option<Self> {
+    pub(super) fn from_record(record: &Record, suffix: &str) -> Option<Self> {
         let field = |name: &str| record.number(&format!("{name}{suffix}")).map(index);
         let bit = u8::try_from(field("bit")?).ok().filter(|bit| *bit > 0)?;
         Some(Self { port: Port { station: field("station")?, port: field("port")? }, bit })

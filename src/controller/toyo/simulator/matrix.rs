@@ -2,7 +2,7 @@
 
 use super::errors::code;
 use super::memory::index;
-use super::motion::{Place, minus};
+use super::motion::{Coordinates, minus};
 use super::world::World;
 use crate::toyo::field::Value;
 
@@ -13,14 +13,14 @@ const TURN: usize = 3;
 /// A corner, the corners in three directions, and how many places there are in each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Matrix {
-    pub(super) origin: Place,
-    pub(super) corners: [Place; SPACE],
+    pub(super) origin: Coordinates,
+    pub(super) corners: [Coordinates; SPACE],
     pub(super) pieces: [u16; SPACE],
 }
 
 impl Matrix {
     /// The place of a piece; pieces count from 1. A direction with one place or none has no part in it.
-    pub(super) fn place(&self, piece: [u16; SPACE]) -> Result<Place, u8> {
+    pub(super) fn place(&self, piece: [u16; SPACE]) -> Result<Coordinates, u8> {
         let mut place = self.origin;
         for direction in 0..SPACE {
             let (pieces, piece) = (self.pieces[direction], piece[direction]);
@@ -52,7 +52,7 @@ impl Matrix {
 
 impl World {
     /// The place of an MVM group that its counters stand at.
-    pub(super) fn place_of_group(&self, task: usize, group: i32, approach: bool) -> Result<Place, u8> {
+    pub(super) fn place_of_group(&self, task: usize, group: i32, approach: bool) -> Result<Coordinates, u8> {
         let counters = self.counters_of(group);
         let mut place = self.group(task, group)?.place(counters.map(|counter| self.counters[counter]))?;
         let [turn] = self.memory.content.numbers("T4.S5", group);
@@ -76,7 +76,11 @@ impl World {
     /// Counts on in a group; whether there was another place. After the last one it is the first one's turn.
     pub(super) fn next_of_group(&mut self, group: i32) -> bool {
         let counters = self.counters_of(group);
-        let matrix = Matrix { origin: Place::default(), corners: [Place::default(); 3], pieces: self.pieces_of(group) };
+        let matrix = Matrix {
+            origin: Coordinates::default(),
+            corners: [Coordinates::default(); 3],
+            pieces: self.pieces_of(group),
+        };
         let next = matrix.next(counters.map(|counter| self.counters[counter]));
         for (counter, piece) in counters.into_iter().zip(next.unwrap_or([1; 3])) {
             self.counters[counter] = piece;

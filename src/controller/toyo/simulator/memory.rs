@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::action::{Action, action, place};
 use super::defaults;
-use super::motion::{AXES, Place};
+use super::motion::{AXES, Coordinates};
 use crate::toyo::field::{Field, Form, Value};
 use crate::toyo::layout::Record;
 use crate::toyo::table::parameters::PARAMETERS;
@@ -140,7 +140,7 @@ pub(super) struct Memory {
 
 /// Where a tag is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Found {
+pub(super) enum TagLookup {
     Step(usize),
     Nowhere,
     Twice,
@@ -237,7 +237,7 @@ impl Content {
         std::array::from_fn(|_| numbers.next().unwrap_or_default())
     }
 
-    pub(super) fn point(&self, task: usize, row: i32) -> Option<Place> {
+    pub(super) fn point(&self, task: usize, row: i32) -> Option<Coordinates> {
         self.points[task].get(index(row).checked_sub(1)?).map(|point| place(*point))
     }
 
@@ -293,11 +293,11 @@ impl Memory {
     }
 
     /// Where a tag is, by the last [`Memory::index_tags`].
-    pub(super) fn tag(&self, task: usize, tag: usize) -> Found {
+    pub(super) fn tag(&self, task: usize, tag: usize) -> TagLookup {
         match self.tags[task].get(tag) {
-            None | Some(0) => Found::Nowhere,
-            Some(&TWICE) => Found::Twice,
-            Some(step) => Found::Step(usize::from(*step)),
+            None | Some(0) => TagLookup::Nowhere,
+            Some(&TWICE) => TagLookup::Twice,
+            Some(step) => TagLookup::Step(usize::from(*step)),
         }
     }
 

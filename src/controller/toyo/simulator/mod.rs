@@ -13,7 +13,7 @@
 //! | `motion`, `arm`, `moves`, `homing` | ramps and paths, axes, moves of programs, origin and JOG |
 //! | `action`, `task`, `run` | steps, tasks, the interpreter |
 //! | `matrix`, `routine` | places in rows; palletizing, easy programs, single points |
-//! | `commands`, `edit`, `monitor`, `operate` | the host's commands |
+//! | `commands`, `edit`, `monitor`, `operate`, `reply` | the host's commands |
 //! | `console`, `trace` | what somebody at the machine does, and sees |
 //!
 //! The manual tells what is sent, hardly what is done. Where it is silent, this was chosen:
@@ -64,6 +64,7 @@ mod monitor;
 mod motion;
 mod moves;
 mod operate;
+mod reply;
 mod routine;
 mod run;
 mod settings;
@@ -76,36 +77,33 @@ mod world;
 #[cfg(test)]
 mod tests;
 
-use std::collections::VecDeque;
-use std::time::Duration;
-
 pub use memory::{Cell, Wear};
 pub use start::{EXAMPLE, Start};
 pub use trace::{Event, What};
 
+use self::console::ConsoleLine;
 use self::io::Port;
 use self::world::World;
 use super::layout::Record;
 use super::request::MOST;
 use crate::Now;
+use crate::simulator::answers::{Answers, Busy};
 
-/// Answers that wait to be fetched; the oldest give way to a host that does not wait for its turn.
+/// Answers that wait to be fetched.
 const MAX_WAITING: usize = 64;
 
 /// A controller.
 #[derive(Debug, Clone)]
 pub struct Simulator {
     world: World,
-    random: fastrand::Rng,
-    busy: f64,
-    answer_delay: Duration,
-    line: Line,
-    waiting: VecDeque<(Now, Vec<u8>)>,
+    busy: Busy,
+    incoming: IncomingBlock,
+    answers: Answers<Vec<u8>>,
 }
 
 /// A block that is coming in.
 #[derive(Debug, Clone, Default)]
-struct Line {
+struct IncomingBlock {
     /// From the `@` on; empty before it.
     bytes: Vec<u8>,
     /// Whether some of it was damaged.
@@ -139,11 +137,9 @@ impl Simulator {
     pub fn new(start: Start) -> Self {
         Self {
             world: start.world,
-            random: fastrand::Rng::with_seed(start.seed),
-            busy: start.busy,
-            answer_delay: start.answer_delay,
-            line: Line::default(),
-            waiting: VecDeque::new(),
+            busy: Busy::new(start.busy, start.seed),
+            incoming: IncomingBlock::default(),
+            answers: Answers::new(start.answer_delay, MAX_WAITING),
         }
     }
 
@@ -152,12 +148,12 @@ impl Simulator {
         self.advance(now);
         for &byte in bytes {
             match byte {
-                b'@' => self.line = Line { bytes: vec![byte], damaged: false },
+                b'@' => self.incoming = IncomingBlock { bytes: vec![byte], damaged: false },
                 b'\r' => self.take_block(),
-                b'\n' if self.line.bytes.is_empty() => {}
+                b'\n' if self.incoming.bytes.is_empty() => {}
                 // What comes before a block is noise; of a block that is too long, enough is kept to refuse it.
-                _ if self.line.bytes.is_empty() || self.line.bytes.len() > MOST => {}
-                _ => self.line.bytes.push(byte),
+                _ if self.incoming.bytes.is_empty() || self.incoming.bytes.len() > MOST => {}
+                _ => self.incoming.bytes.push(byte),
             }
         }
         // What the blocks began may have something due at once.
@@ -167,30 +163,27 @@ impl Simulator {
     /// Tells of a parity or framing error: the block under way is not answered.
     pub fn damaged(&mut self, now: Now) {
         self.advance(now);
-        self.line.damaged = true;
+        self.incoming.damaged = true;
     }
 
     /// The next answer that is due at `now`, if any, with its line end.
     pub fn transmit(&mut self, now: Now) -> Option<Vec<u8>> {
         self.advance(now);
-        if self.waiting.front().is_none_or(|(due, _)| *due > now) {
-            return None;
-        }
-        self.waiting.pop_front().map(|(_, answer)| answer)
+        self.answers.take(now)
     }
 
     /// When [`Simulator::transmit`] will have something, or something changes by itself.
     pub fn wake(&self) -> Option<Now> {
-        [self.waiting.front().map(|(due, _)| *due), self.world.next()].into_iter().flatten().min()
+        [self.answers.due(), self.world.next()].into_iter().flatten().min()
     }
 
     /// Carries out one line of the console: `input 0/01/3 on`, `start`, `state`. What to print, or what is wrong.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
         self.advance(now);
-        let line = console::Line::parse(line)?;
-        if line == console::Line::PowerCycle {
-            self.line = Line::default();
-            self.waiting.clear();
+        let line = ConsoleLine::parse(line)?;
+        if line == ConsoleLine::PowerCycle {
+            self.incoming = IncomingBlock::default();
+            self.answers.clear();
         }
         let answer = line.carry_out(&mut self.world);
         self.advance(now);
@@ -256,18 +249,13 @@ impl Simulator {
     }
 
     fn take_block(&mut self) {
-        let Line { bytes, damaged } = std::mem::take(&mut self.line);
+        let IncomingBlock { bytes, damaged } = std::mem::take(&mut self.incoming);
         // Noise, and what a faulty line has made of a block, has no answer (TO 1-3).
         if damaged || bytes.is_empty() || !bytes.iter().all(|byte| matches!(byte, b' '..=b'~')) {
             return;
         }
         let block = String::from_utf8_lossy(&bytes);
-        let is_busy = self.busy > 0.0 && self.random.f64() < self.busy;
-        let answer = if is_busy { "@NG".to_owned() } else { commands::answer(&mut self.world, &block) };
-        if self.waiting.len() >= MAX_WAITING {
-            self.waiting.pop_front();
-        }
-        let due = self.world.now.saturating_add(self.answer_delay);
-        self.waiting.push_back((due, format!("{answer}\r\n").into_bytes()));
+        let answer = if self.busy.refuses() { "@NG".to_owned() } else { commands::answer(&mut self.world, &block) };
+        self.answers.push(self.world.now, format!("{answer}\r\n").into_bytes());
     }
 }

@@ -1,9 +1,9 @@
 //! Commands that only read.
 
-use super::commands::{Fields, Reply};
 use super::errors::Entry;
 use super::io::Port;
 use super::memory::index;
+use super::reply::{Fields, Reply};
 use super::routine::Routine;
 use super::world::World;
 use crate::toyo::field::Value;

@@ -13,7 +13,7 @@ const SPACE: usize = 3;
 const FLAT: f64 = 1e-6;
 
 /// Coordinates of all axes, in mm.
-pub(super) type Place = [f64; AXES];
+pub(super) type Coordinates = [f64; AXES];
 
 /// Speeds of a move along its path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +43,7 @@ struct Phase {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Path {
     /// Straight, all axes in proportion.
-    Line { from: Place, to: Place, length: f64 },
+    Line { from: Coordinates, to: Coordinates, length: f64 },
     /// On a circle; axes outside of its plane go in proportion.
     Arc(Arc),
 }
@@ -51,12 +51,12 @@ pub(super) enum Path {
 /// Part of a circle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Arc {
-    from: Place,
-    to: Place,
-    center: Place,
+    from: Coordinates,
+    to: Coordinates,
+    center: Coordinates,
     radius: f64,
     /// Unit vectors in its plane; the first one points to the start.
-    basis: [Place; 2],
+    basis: [Coordinates; 2],
     angle: f64,
 }
 
@@ -72,7 +72,7 @@ pub(super) struct Segment {
     profile: Profile,
     began: Now,
     /// Where it ends, which is before the end of its path after it was braked.
-    end: Place,
+    end: Coordinates,
 }
 
 impl Drive {
@@ -137,7 +137,7 @@ impl Profile {
 
 impl Path {
     /// A line; its length is that of the axes that decide about the speed.
-    pub(super) fn line(from: Place, to: Place, length: f64) -> Self {
+    pub(super) fn line(from: Coordinates, to: Coordinates, length: f64) -> Self {
         Self::Line { from, to, length }
     }
 
@@ -148,7 +148,7 @@ impl Path {
         }
     }
 
-    pub(super) fn end(&self) -> Place {
+    pub(super) fn end(&self) -> Coordinates {
         match self {
             Self::Line { to, .. } => *to,
             Self::Arc(arc) => arc.to,
@@ -156,7 +156,7 @@ impl Path {
     }
 
     /// Where it is after some of its length.
-    pub(super) fn at(&self, distance: f64) -> Place {
+    pub(super) fn at(&self, distance: f64) -> Coordinates {
         let share = if self.length() > 0.0 { (distance / self.length()).clamp(0.0, 1.0) } else { 1.0 };
         match self {
             Self::Line { from, to, .. } => blend(from, to, share),
@@ -189,9 +189,10 @@ impl Arc {
     /// From a place through another to a third, on the circle in the first axes; `None` if they are on a line.
     ///
     /// `round` tells which axes the circle lies in: the first two or three that are named.
-    pub(super) fn through(from: Place, via: Place, to: Place, round: &[usize]) -> Option<Self> {
-        let flat = |place: Place| std::array::from_fn(|axis| if round.contains(&axis) { place[axis] } else { 0.0 });
-        let (p0, p1, p2): (Place, Place, Place) = (flat(from), flat(via), flat(to));
+    pub(super) fn through(from: Coordinates, via: Coordinates, to: Coordinates, round: &[usize]) -> Option<Self> {
+        let flat =
+            |place: Coordinates| std::array::from_fn(|axis| if round.contains(&axis) { place[axis] } else { 0.0 });
+        let (p0, p1, p2): (Coordinates, Coordinates, Coordinates) = (flat(from), flat(via), flat(to));
         let (a, b) = (minus(&p0, &p2), minus(&p1, &p2));
         let normal = cross(&a, &b);
         let area = dot(&normal, &normal);
@@ -200,7 +201,7 @@ impl Arc {
         }
         let (aa, bb) = (dot(&a, &a), dot(&b, &b));
         let turned = cross(&std::array::from_fn(|axis| aa * b[axis] - bb * a[axis]), &normal);
-        let center: Place = std::array::from_fn(|axis| p2[axis] + turned[axis] / (2.0 * area));
+        let center: Coordinates = std::array::from_fn(|axis| p2[axis] + turned[axis] / (2.0 * area));
         let spoke = minus(&p0, &center);
         let radius = dot(&spoke, &spoke).sqrt();
         // The plane is oriented so that the way through the middle point turns in the positive sense.
@@ -217,7 +218,7 @@ impl Arc {
         self.radius
     }
 
-    fn at(&self, share: f64) -> Place {
+    fn at(&self, share: f64) -> Coordinates {
         let (sin, cos) = (self.angle * share).sin_cos();
         let along = blend(&self.from, &self.to, share);
         std::array::from_fn(|axis| {
@@ -267,7 +268,7 @@ impl Segment {
     }
 
     /// How far it still is from its end.
-    pub(super) fn rest(&self, now: Now) -> Place {
+    pub(super) fn rest(&self, now: Now) -> Coordinates {
         if now >= self.ends() {
             return [0.0; AXES];
         }
@@ -275,12 +276,12 @@ impl Segment {
     }
 
     /// Where it ends.
-    pub(super) const fn end(&self) -> Place {
+    pub(super) const fn end(&self) -> Coordinates {
         self.end
     }
 
     /// From its beginning to its end.
-    pub(super) fn way(&self) -> Place {
+    pub(super) fn way(&self) -> Coordinates {
         minus(&self.end, &self.path.at(self.skip))
     }
 
@@ -326,24 +327,24 @@ pub(super) fn duration(seconds: f64) -> Duration {
 }
 
 /// The sum of two places.
-pub(super) fn plus(a: &Place, b: &Place) -> Place {
+pub(super) fn plus(a: &Coordinates, b: &Coordinates) -> Coordinates {
     std::array::from_fn(|axis| a[axis] + b[axis])
 }
 
 /// The way from the second place to the first.
-pub(super) fn minus(a: &Place, b: &Place) -> Place {
+pub(super) fn minus(a: &Coordinates, b: &Coordinates) -> Coordinates {
     std::array::from_fn(|axis| a[axis] - b[axis])
 }
 
-fn blend(from: &Place, to: &Place, share: f64) -> Place {
+fn blend(from: &Coordinates, to: &Coordinates, share: f64) -> Coordinates {
     if share >= 1.0 { *to } else { std::array::from_fn(|axis| from[axis] + (to[axis] - from[axis]) * share) }
 }
 
-fn dot(a: &Place, b: &Place) -> f64 {
+fn dot(a: &Coordinates, b: &Coordinates) -> f64 {
     (0..SPACE).map(|axis| a[axis] * b[axis]).sum()
 }
 
-fn cross(a: &Place, b: &Place) -> Place {
+fn cross(a: &Coordinates, b: &Coordinates) -> Coordinates {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], 0.0]
 }
 

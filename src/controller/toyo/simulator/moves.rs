@@ -2,9 +2,8 @@
 
 use super::action::{Move, Target, Torque};
 use super::errors::code;
-use super::motion::{AXES, Arc, Drive, Path, Place, Segment, minus, plus};
-use super::run::Flow;
-use super::task::Wait;
+use super::motion::{AXES, Arc, Coordinates, Drive, Path, Segment, minus, plus};
+use super::task::{Flow, Wait};
 use super::watch::NEAR;
 use super::world::World;
 
@@ -19,7 +18,8 @@ impl World {
         let order = match (order.to, self.tasks[index].supplied) {
             (Target::Host, None) => return Ok(Flow::Wait(Wait::Host(order), next)),
             (Target::Host, Some((place, row))) => {
-                let order = Move { to: Target::Place(place), speed: if row == 0 { order.speed } else { row }, ..order };
+                let order =
+                    Move { to: Target::Coordinates(place), speed: if row == 0 { order.speed } else { row }, ..order };
                 self.tasks[index].supplied = None;
                 order
             }
@@ -52,7 +52,7 @@ impl World {
         let (via_base, via) = self.aim(index, &first, &from)?;
         let (to_base, to) = self.aim(index, &second, &via)?;
         let round = &axes.axes[..axes.space];
-        let arc = |via: Place, to: Place| {
+        let arc = |via: Coordinates, to: Coordinates| {
             Arc::through(from, via, to, round).filter(|arc| arc.radius() <= MOST_RADIUS).map(Path::Arc)
         };
         if let Some(base) = arc(via_base, to_base) {
@@ -75,7 +75,7 @@ impl World {
     }
 
     /// The place of a row of the coordinate table, by a number and a counter.
-    pub(super) fn row(&self, index: usize, point: i32, counter: usize) -> Result<Place, u8> {
+    pub(super) fn row(&self, index: usize, point: i32, counter: usize) -> Result<Coordinates, u8> {
         let row = point + if counter == 0 { 0 } else { self.counters[counter].into() };
         let row = Some(row).filter(|row| (1..=LAST_POINT).contains(row));
         row.and_then(|row| self.memory.content.point(index, row)).ok_or(code::TABLE)
@@ -97,7 +97,7 @@ impl World {
     }
 
     /// Where a move goes, without and with the offset. Axes of other tasks stay.
-    fn aim(&self, index: usize, order: &Move, from: &Place) -> Result<(Place, Place), u8> {
+    fn aim(&self, index: usize, order: &Move, from: &Coordinates) -> Result<(Coordinates, Coordinates), u8> {
         let axes = &self.machine.tasks[index].axes;
         if !axes.iter().all(|&axis| self.arm.known[axis]) {
             return Err(code::ORIGIN_INCOMPLETE);
@@ -109,7 +109,7 @@ impl World {
         let base = if order.incremental { plus(from, &place) } else { place };
         let shifted = order.incremental || order.to == Target::Back;
         let to = if shifted { base } else { plus(&base, &self.tasks[index].offset) };
-        let own = |place: Place| -> Place {
+        let own = |place: Coordinates| -> Coordinates {
             let mut own = *from;
             for &axis in axes {
                 // A driven axis does what its drive does.
@@ -124,7 +124,7 @@ impl World {
     }
 
     /// A line, whose length is that of the longest axis, or the one in space.
-    fn line(&self, index: usize, from: Place, to: Place, in_space: bool) -> Path {
+    fn line(&self, index: usize, from: Coordinates, to: Coordinates, in_space: bool) -> Path {
         let way = minus(&to, &from);
         let axes = &self.machine.tasks[index];
         let longest = way.iter().fold(0.0, |most: f64, part| most.max(part.abs()));

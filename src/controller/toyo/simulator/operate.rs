@@ -294,7 +294,7 @@ impl World {
 
     /// What changes when the memory was written: settings, and programs that do not fit any more.
     pub(super) fn memory_changed(&mut self) {
-        self.settings = super::settings::Settings::of(&self.memory.content);
+        self.settings = super::settings::Settings::from_content(&self.memory.content);
         for index in 0..TASKS {
             debug_assert!(self.memory.size(index) <= MOST_STEPS);
             if self.tasks[index].step > self.memory.size(index).max(1) {

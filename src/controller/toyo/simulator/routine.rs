@@ -7,8 +7,8 @@ use super::errors::code;
 use super::io::PortBit;
 use super::matrix::Matrix;
 use super::memory::{Easy, index as to_index};
-use super::motion::Place;
-use super::run::Flow;
+use super::motion::Coordinates;
+use super::task::Flow;
 use super::world::World;
 use crate::toyo::layout::Record;
 use crate::toyo::table::Pallet;
@@ -74,7 +74,7 @@ const LAST: usize = 8;
 const END: usize = 9;
 
 /// What a routine wants next.
-enum Order {
+enum RoutineStep {
     Move(Move),
     Call(i32),
     Done,
@@ -110,12 +110,12 @@ impl World {
         self.tasks[index].routine = Some(routine);
         let step = self.tasks[index].step;
         match order {
-            Ok(Order::Done) => self.end(index),
-            Ok(Order::Move(order)) => {
+            Ok(RoutineStep::Done) => self.end(index),
+            Ok(RoutineStep::Move(order)) => {
                 let flow = self.move_then(index, order, step);
                 self.apply(index, flow);
             }
-            Ok(Order::Call(tag)) => {
+            Ok(RoutineStep::Call(tag)) => {
                 let flow = self.find(index, to_index(tag)).map(Flow::To);
                 self.tasks[index].called = flow.is_ok();
                 self.apply(index, flow);
@@ -196,7 +196,7 @@ impl Palletizing {
         }
     }
 
-    fn next(&mut self) -> Result<Order, u8> {
+    fn next(&mut self) -> Result<RoutineStep, u8> {
         loop {
             self.phase = if !std::mem::replace(&mut self.begun, true) {
                 0
@@ -213,15 +213,15 @@ impl Palletizing {
                         HAND => side.tag,
                         part => {
                             self.hand = 0;
-                            return side.order(part == DOWN).map(Order::Move);
+                            return side.order(part == DOWN).map(RoutineStep::Move);
                         }
                     }
                 }
                 END => self.end,
-                _ => return Ok(Order::Done),
+                _ => return Ok(RoutineStep::Done),
             };
             if self.hand != 0 {
-                return Ok(Order::Call(self.hand));
+                return Ok(RoutineStep::Call(self.hand));
             }
         }
     }
@@ -251,40 +251,40 @@ impl Side {
         let mut place = self.matrix.place(piece)?;
         place[3] = self.turn;
         if down {
-            return Ok(Move { to: Target::Place(place), incremental: false, pass: false, ..self.approach });
+            return Ok(Move { to: Target::Coordinates(place), incremental: false, pass: false, ..self.approach });
         }
         let [z, r] = self.height;
         let add = self.approach.incremental;
         place[2] = if add { place[2] + z } else { z };
         place[3] = if add { place[3] + r } else { r };
-        Ok(Move { to: Target::Place(place), incremental: false, ..self.approach })
+        Ok(Move { to: Target::Coordinates(place), incremental: false, ..self.approach })
     }
 }
 
-fn point(row: i32, begun: &mut bool) -> Order {
+fn point(row: i32, begun: &mut bool) -> RoutineStep {
     if std::mem::replace(begun, true) {
-        return Order::Done;
+        return RoutineStep::Done;
     }
     let to = Target::Row { point: row, counter: 0 };
-    Order::Move(Move { to, incremental: false, line: false, speed: 0, pass: false, escape: false })
+    RoutineStep::Move(Move { to, incremental: false, line: false, speed: 0, pass: false, escape: false })
 }
 
 /// The start program so many times, at least once; then the end program, once.
-fn easy(easy: Easy, round: &mut i32, part: &mut EasyPart) -> Order {
+fn easy(easy: Easy, round: &mut i32, part: &mut EasyPart) -> RoutineStep {
     if *part == EasyPart::Start {
         if easy.start != 0 && *round < easy.times.max(1) {
             *round += 1;
-            return Order::Call(easy.start);
+            return RoutineStep::Call(easy.start);
         }
         *part = EasyPart::End;
         if easy.end != 0 {
-            return Order::Call(easy.end);
+            return RoutineStep::Call(easy.end);
         }
     }
-    Order::Done
+    RoutineStep::Done
 }
 
-fn corner(record: &Record) -> Place {
+fn corner(record: &Record) -> Coordinates {
     let [x, y, z] = ["x", "y", "z"].map(|name| millimetres(record, name));
     [x, y, z, 0.0]
 }

@@ -2,11 +2,10 @@
 
 use super::action::{Action, Change, Choice, Target, TaskOrder, Test};
 use super::errors::code;
-use super::io::Port;
-use super::memory::{Found, TASKS};
-use super::task::Wait;
+use super::io::{OutputAt, Port};
+use super::memory::{TASKS, TagLookup};
+use super::task::{Flow, Wait};
 use super::trace::What;
-use super::watch::OutputAt;
 use super::world::World;
 use crate::toyo::field::Mask;
 
@@ -14,20 +13,6 @@ use crate::toyo::field::Mask;
 pub(super) const DEPTH: usize = 16;
 /// What a counter holds at most.
 const MOST_COUNT: i32 = 9999;
-
-/// How a task goes on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Flow {
-    /// With the next step.
-    Next,
-    /// With this step.
-    To(usize),
-    /// After a wait, with this step.
-    Wait(Wait, usize),
-    /// With the next step, once it is started again.
-    Stop,
-    End,
-}
 
 impl World {
     /// Does the steps that are due.
@@ -269,9 +254,9 @@ impl World {
             return Err(code::TAG_NUMBER);
         }
         match self.memory.tag(index, tag) {
-            Found::Step(step) => Ok(step),
-            Found::Nowhere => Err(code::TAG_UNDEFINED),
-            Found::Twice => Err(code::TAG_TWICE),
+            TagLookup::Step(step) => Ok(step),
+            TagLookup::Nowhere => Err(code::TAG_UNDEFINED),
+            TagLookup::Twice => Err(code::TAG_TWICE),
         }
     }
 
@@ -393,9 +378,9 @@ impl World {
     }
 
     /// What an offset or a place is taken from.
-    pub(super) fn target(&self, index: usize, target: Target) -> Result<super::motion::Place, u8> {
+    pub(super) fn target(&self, index: usize, target: Target) -> Result<super::motion::Coordinates, u8> {
         match target {
-            Target::Place(place) => Ok(place),
+            Target::Coordinates(place) => Ok(place),
             Target::Row { point, counter } => self.row(index, point, counter),
             Target::Back => Ok(self.tasks[index].from.unwrap_or_else(|| self.arm.goal())),
             Target::Group { group, approach } => self.place_of_group(index, group, approach),

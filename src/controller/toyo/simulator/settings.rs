@@ -2,7 +2,7 @@
 
 use super::io::PortBit;
 use super::memory::{Content, TASKS};
-use super::motion::{AXES, Place};
+use super::motion::{AXES, Coordinates};
 use crate::toyo::field::Value;
 use crate::toyo::layout::Record;
 
@@ -45,13 +45,13 @@ pub(super) struct Settings {
     pub(super) special: Special,
     pub(super) clear_on_reset: bool,
     pub(super) japanese: bool,
-    pub(super) plus: Place,
-    pub(super) minus: Place,
-    pub(super) origin: Place,
+    pub(super) plus: Coordinates,
+    pub(super) minus: Coordinates,
+    pub(super) origin: Coordinates,
     pub(super) sequence: [i32; AXES],
     /// mm/s, low and high.
     pub(super) jog: [[f64; 2]; AXES],
-    pub(super) inch: Place,
+    pub(super) inch: Coordinates,
     /// Whether the area is upwards of a place.
     pub(super) areas: [(bool, f64); AXES],
 }
@@ -61,15 +61,15 @@ pub(super) struct Settings {
 pub(super) struct Machine {
     /// The axes of each task.
     pub(super) tasks: [Axes; TASKS],
-    pub(super) top: Place,
+    pub(super) top: Coordinates,
     /// mm/s: low, middle, high.
     pub(super) origin: [[f64; 3]; AXES],
     /// Where a fast return to origin goes first.
-    pub(super) fast: Place,
+    pub(super) fast: Coordinates,
     /// Whether the origin is in plus direction.
     pub(super) upwards: [bool; AXES],
     /// mm of position error that count as overflow.
-    pub(super) overflow: Place,
+    pub(super) overflow: Coordinates,
     pub(super) absolute: bool,
     /// Tasks in the order in which they do what is due at the same time (E20).
     pub(super) order: [usize; TASKS],
@@ -88,8 +88,8 @@ pub(super) struct Axes {
 }
 
 impl Settings {
-    pub(super) fn of(content: &Content) -> Self {
-        let bit = |id| PortBit::of(content.single(id), "");
+    pub(super) fn from_content(content: &Content) -> Self {
+        let bit = |id| PortBit::from_record(content.single(id), "");
         let mut signals = Vec::new();
         for (id, signal) in
             [("M07", Signal::Paused), ("M08", Signal::InputWait), ("M13", Signal::Ready), ("M19", Signal::Battery)]
@@ -104,7 +104,7 @@ impl Settings {
                 ("M25", Signal::Limit(task)),
                 ("M26", Signal::Locked(task)),
             ] {
-                let bit = PortBit::of(content.single(id), &(task + 1).to_string());
+                let bit = PortBit::from_record(content.single(id), &(task + 1).to_string());
                 signals.extend(bit.map(|bit| (bit, signal)));
             }
         }
@@ -121,7 +121,7 @@ impl Settings {
             palletizing: bit("M06"),
             servo_on: bit("M21"),
             signals,
-            direct: std::array::from_fn(|place| PortBit::of(content.single("M12"), &(place + 1).to_string())),
+            direct: std::array::from_fn(|place| PortBit::from_record(content.single("M12"), &(place + 1).to_string())),
             special: match content.single("M10").word("mode") {
                 Some("E") => Special::Easy,
                 Some("P") => Special::Point,
@@ -145,7 +145,7 @@ impl Settings {
 }
 
 impl Machine {
-    pub(super) fn of(content: &Content) -> Self {
+    pub(super) fn from_content(content: &Content) -> Self {
         let lead = decimals(content, "E14", 1000.0);
         let division = decimals(content, "E15", 1.0);
         let multiplier = decimals(content, "E16", 1.0);
@@ -209,7 +209,7 @@ fn words(record: &Record) -> [&'static str; AXES] {
     std::array::from_fn(|place| if let Some(Value::Word(word)) = record.values().get(place) { word } else { "" })
 }
 
-fn decimals(content: &Content, id: &str, scale: f64) -> Place {
+fn decimals(content: &Content, id: &str, scale: f64) -> Coordinates {
     numbers(content.single(id)).map(|number: i32| f64::from(number) / scale)
 }
 
@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn defaults_make_sense() {
         let content = Content::new(4, 0);
-        let (settings, machine) = (Settings::of(&content), Machine::of(&content));
+        let (settings, machine) = (Settings::from_content(&content), Machine::from_content(&content));
         assert!(settings.signals.is_empty());
         let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
         assert!(near(settings.plus[3], 1000.0) && near(settings.jog[2][1], 50.0));

@@ -11,18 +11,20 @@ use toml::Spanned;
 
 use super::arm::Arm;
 use super::card::Card;
-use super::console;
+use super::console::ConsoleLine;
 use super::edit;
 use super::errors::{Entry, Errors};
 use super::io::{Port, Ports};
-use super::memory::{Content, MOST_STEPS, Memory, STEPS_WITH_EASY, TASKS, Wear};
+use super::memory::{Content, MOST_STEPS, Memory, POINTS, STEPS_WITH_EASY, TASKS, Wear};
 use super::motion::AXES;
 use super::settings::{Machine, Settings};
 use super::task::Task;
 use super::trace::Trace;
 use super::world::{COUNTERS, Mode, Switches, TIMERS, World};
 use crate::Now;
-use crate::entries::{self, At, Event};
+use crate::simulator::console;
+use crate::simulator::start::{self, Event, Source, Table, default_entry, default_text};
+use crate::simulator::timeline::Timeline;
 use crate::toyo::field::{Mask, Value};
 use crate::toyo::layout::Record;
 use crate::toyo::request::{Request, instruction};
@@ -85,7 +87,7 @@ impl Default for Start {
 impl Start {
     /// Reads a start state. The error says what is wrong, and in which line.
     pub fn parse(text: &str) -> Result<Self, String> {
-        build(&entries::parse(text)?, text)
+        build(&start::parse(text)?, text)
     }
 
     /// Another seed for everything random.
@@ -137,17 +139,17 @@ struct Entries {
     servo: bool,
     origin: bool,
     position: Spanned<[f64; AXES]>,
-    points: BTreeMap<String, BTreeMap<String, Spanned<[f64; AXES]>>>,
-    speeds: BTreeMap<String, Spanned<f64>>,
-    ramps: BTreeMap<String, Spanned<f64>>,
-    counters: BTreeMap<String, Spanned<u16>>,
-    inputs: BTreeMap<String, Spanned<String>>,
-    outputs: BTreeMap<String, Spanned<String>>,
-    steps: BTreeMap<String, Spanned<Vec<Spanned<String>>>>,
+    points: BTreeMap<String, Table<[f64; AXES]>>,
+    speeds: Table<f64>,
+    ramps: Table<f64>,
+    counters: Table<u16>,
+    inputs: Table<String>,
+    outputs: Table<String>,
+    steps: Table<Vec<Spanned<String>>>,
     /// Commands of the host, without `@`.
     write: Vec<Spanned<String>>,
     error: Option<Spanned<String>>,
-    history: Vec<Spanned<Past>>,
+    history: Vec<Spanned<HistoryEntry>>,
     hours: u32,
     card: Slot,
     card_seconds: u64,
@@ -162,26 +164,25 @@ struct Entries {
 
 impl Default for Entries {
     fn default() -> Self {
-        let text = |text: &str| Spanned::new(0..0, text.to_owned());
         Self {
-            model: text(KCA[2]),
-            version: text("4.00"),
-            robot_types: Spanned::new(0..0, vec![0]),
-            axes: Spanned::new(0..0, AXES),
+            model: default_text(KCA[2]),
+            version: default_text("4.00"),
+            robot_types: default_entry(vec![0]),
+            axes: default_entry(AXES),
             mode: Mode::Automatic,
             palletizing: false,
             host: false,
             pendant: false,
             servo: true,
             origin: false,
-            position: Spanned::new(0..0, [0.0; AXES]),
+            position: default_entry([0.0; AXES]),
             points: BTreeMap::new(),
-            speeds: BTreeMap::new(),
-            ramps: BTreeMap::new(),
-            counters: BTreeMap::new(),
-            inputs: BTreeMap::new(),
-            outputs: BTreeMap::new(),
-            steps: BTreeMap::new(),
+            speeds: Table::new(),
+            ramps: Table::new(),
+            counters: Table::new(),
+            inputs: Table::new(),
+            outputs: Table::new(),
+            steps: Table::new(),
             write: Vec::new(),
             error: None,
             history: Vec::new(),
@@ -190,8 +191,8 @@ impl Default for Entries {
             card_seconds: 2,
             seed: 0,
             answer_delay_ms: 0,
-            busy: Spanned::new(0..0, 0.0),
-            instruction_us: Spanned::new(0..0, 1000),
+            busy: default_entry(0.0),
+            instruction_us: default_entry(1000),
             eeprom_limit: 0,
             events: Vec::new(),
         }
@@ -208,7 +209,7 @@ enum Slot {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Past {
+struct HistoryEntry {
     code: Option<String>,
     #[serde(default)]
     after_seconds: u64,
@@ -217,17 +218,12 @@ struct Past {
 }
 
 fn build(entries: &Entries, text: &str) -> Result<Start, String> {
-    let at = At { text };
-    let busy = *entries.busy.get_ref();
-    if !(0.0..=1.0).contains(&busy) {
-        return Err(at.wrong(&entries.busy, "busy is a share from 0 to 1"));
-    }
-    let mut world = bare_world(entries, &at)?;
-    programs(&mut world, entries, &at)?;
-    tables(&mut world, entries, &at)?;
-    for line in &entries.write {
-        write(&mut world, line.get_ref()).map_err(|what| at.wrong(line, what))?;
-    }
+    let source = Source { text };
+    let busy = source.share("busy", &entries.busy)?;
+    let mut world = bare_world(entries, source)?;
+    programs(&mut world, entries, source)?;
+    tables(&mut world, entries, source)?;
+    source.each(&entries.write, |line| write(&mut world, line))?;
     // That was there before; it did not wear anything, and parameters 2 are in force.
     world.memory.wear = Wear::new(Some(entries.eeprom_limit).filter(|limit| *limit > 0));
     world.power_up();
@@ -238,57 +234,54 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     if !entries.servo {
         world.switches.servo = [false; AXES];
     }
-    for (key, count) in &entries.counters {
-        let counter = at.key(key, COUNTERS - 1, count)?;
-        let value = Some(*count.get_ref()).filter(|count| *count <= 9999);
-        world.counters[counter] = value.ok_or_else(|| at.wrong(count, "counters hold 0 to 9999"))?;
-    }
-    for (key, bits) in &entries.inputs {
-        let (port, mask) = port(key, bits, &at)?;
-        if !world.ports.set_input(port, mask) {
-            return Err(at.wrong(bits, format!("there is no input port {key}")));
-        }
-    }
-    for (key, bits) in &entries.outputs {
-        let (port, mask) = port(key, bits, &at)?;
-        if !world.ports.set_output(port, mask) {
-            return Err(at.wrong(bits, format!("there is no output port {key}")));
-        }
-    }
-    errors(&mut world, entries, &at)?;
+    source.each_of(&entries.counters, |number, count| {
+        let counter = row(number, COUNTERS - 1)?;
+        let value = Some(*count).filter(|count| *count <= 9999);
+        world.counters[counter] = value.ok_or("counters hold 0 to 9999")?;
+        Ok(())
+    })?;
+    source.each_of(&entries.inputs, |name, bits| {
+        let (port, mask) = port(name, bits)?;
+        if world.ports.set_input(port, mask) { Ok(()) } else { Err(format!("there is no input port {name}")) }
+    })?;
+    source.each_of(&entries.outputs, |name, bits| {
+        let (port, mask) = port(name, bits)?;
+        if world.ports.set_output(port, mask) { Ok(()) } else { Err(format!("there is no output port {name}")) }
+    })?;
+    errors(&mut world, entries, source)?;
     if entries.card == Slot::Written {
         let content = world.memory.content.clone();
         world.card.fill(&content);
     }
     world.settle();
-    world.events = at.events(&entries.events, console::Line::parse)?.into();
+    world.events = source.timeline(&entries.events, ConsoleLine::parse)?;
     let answer_delay = Duration::from_millis(entries.answer_delay_ms);
     Ok(Start { world, seed: entries.seed, answer_delay, busy })
 }
 
 /// The controller with nothing in it.
-fn bare_world(entries: &Entries, at: &At<'_>) -> Result<World, String> {
+fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
     let model = entries.model.get_ref();
     if model != "other" && !KCA.contains(&model.as_str()) {
-        return Err(at.wrong(&entries.model, format!("a model is one of {}, or other", KCA.join(", "))));
+        return Err(source.error(&entries.model, format!("a model is one of {}, or other", KCA.join(", "))));
     }
     let axes = *entries.axes.get_ref();
     if !(1..=AXES).contains(&axes) {
-        return Err(at.wrong(&entries.axes, "a controller has 1 to 4 axes"));
+        return Err(source.error(&entries.axes, "a controller has 1 to 4 axes"));
     }
-    let version =
-        hundredths(&entries.version).ok_or_else(|| at.wrong(&entries.version, "a version is like \"4.00\""))?;
+    let version = source
+        .read(&entries.version, |version| hundredths(version).ok_or_else(|| "a version is like \"4.00\"".to_owned()))?;
     let types = entries.robot_types.get_ref();
     if types.is_empty() || types.iter().any(|number| !(0..=999_999).contains(number)) {
-        return Err(at.wrong(&entries.robot_types, "robot types are 0 to 999999, and there is one at least"));
+        return Err(source.error(&entries.robot_types, "robot types are 0 to 999999, and there is one at least"));
     }
     let tick = *entries.instruction_us.get_ref();
     if !(1..=1_000_000).contains(&tick) {
-        return Err(at.wrong(&entries.instruction_us, "an instruction takes 1 to 1000000 microseconds"));
+        return Err(source.error(&entries.instruction_us, "an instruction takes 1 to 1000000 microseconds"));
     }
     let position = *entries.position.get_ref();
     if !position.iter().all(|place| place.abs() <= 8000.0) {
-        return Err(at.wrong(&entries.position, "coordinates are within 8000 mm"));
+        return Err(source.error(&entries.position, "coordinates are within 8000 mm"));
     }
     let mut arm = Arm::default();
     // Without its origin an axis counts from where it is.
@@ -296,7 +289,7 @@ fn bare_world(entries: &Entries, at: &At<'_>) -> Result<World, String> {
     arm.sensors = if entries.origin { [0.0; AXES] } else { position.map(|place| -place) };
     arm.known = [entries.origin; AXES];
     let content = Content::new(axes, types[0]);
-    let (settings, machine) = (Settings::of(&content), Machine::of(&content));
+    let (settings, machine) = (Settings::from_content(&content), Machine::from_content(&content));
     let memory = Memory::new(content);
     Ok(World {
         now: Now::ZERO,
@@ -341,27 +334,29 @@ fn bare_world(entries: &Entries, at: &At<'_>) -> Result<World, String> {
         presses: [None; AXES],
         crossing: None,
         watched: 0,
-        events: std::collections::VecDeque::new(),
+        events: Timeline::default(),
         trace: Trace::default(),
         refusal: None,
     })
 }
 
-fn programs(world: &mut World, entries: &Entries, at: &At<'_>) -> Result<(), String> {
-    for (key, lines) in &entries.steps {
-        let task = at.key(key, TASKS, lines)?;
-        let steps: Result<Vec<Record>, String> = lines
-            .get_ref()
-            .iter()
-            .map(|line| {
-                let record = instruction(line.get_ref()).map_err(|error| at.wrong(line, error))?;
-                record.emit().map_err(|error| at.wrong(line, error))?;
-                Ok(record)
-            })
-            .collect();
-        program(world, task, steps?).map_err(|what| at.wrong(lines, what))?;
+fn programs(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
+    for (task, lines) in &entries.steps {
+        let mut steps = Vec::new();
+        source.each(lines.get_ref(), |line| {
+            steps.push(step(line)?);
+            Ok(())
+        })?;
+        source.read(lines, |_| program(world, row(task, TASKS)?, steps))?;
     }
     Ok(())
+}
+
+/// A step, which must be one that the memory can hold.
+fn step(line: &str) -> Result<Record, String> {
+    let record = instruction(line).map_err(|error| error.to_string())?;
+    record.emit().map_err(|error| error.to_string())?;
+    Ok(record)
 }
 
 /// Puts a program in a task, which gets as many steps as it needs.
@@ -389,28 +384,28 @@ fn program(world: &mut World, task: usize, steps: Vec<Record>) -> Result<(), Str
     written
 }
 
-fn tables(world: &mut World, entries: &Entries, at: &At<'_>) -> Result<(), String> {
-    for (key, rows) in &entries.points {
-        for (row, place) in rows {
-            let task = at.key(key, TASKS, place)?;
-            let row = at.key(row, super::memory::POINTS, place)?;
-            let values = place.get_ref().map(|place| format!("{place:+08.2}"));
-            let [x, y, z, r] = &values;
+fn tables(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
+    for (task, rows) in &entries.points {
+        source.each_of(rows, |number, place| {
+            let task = row(task, TASKS)?;
+            let number = row(number, POINTS)?;
+            let [x, y, z, r] = place.map(|place| format!("{place:+08.2}"));
             let current = std::mem::replace(&mut world.current, task - 1);
-            let written = write(world, &format!("WPAR T1 PT={row:03} X={x} Y={y} Z={z} R={r}"));
+            let written = write(world, &format!("WPAR T1 PT={number:03} X={x} Y={y} Z={z} R={r}"));
             world.current = current;
-            written.map_err(|what| at.wrong(place, what))?;
-        }
+            written
+        })?;
     }
-    for (key, speed) in &entries.speeds {
-        let row = at.key(key, 20, speed)?;
-        write(world, &format!("WPAR T2 V{row:02}={:06.1}", speed.get_ref())).map_err(|what| at.wrong(speed, what))?;
-    }
-    for (key, ramp) in &entries.ramps {
-        let row = at.key(key, 20, ramp)?;
-        write(world, &format!("WPAR T3 A{row:02}={:04.2}", ramp.get_ref())).map_err(|what| at.wrong(ramp, what))?;
-    }
-    Ok(())
+    source.each_of(&entries.speeds, |number, speed| {
+        write(world, &format!("WPAR T2 V{:02}={speed:06.1}", row(number, 20)?))
+    })?;
+    source
+        .each_of(&entries.ramps, |number, ramp| write(world, &format!("WPAR T3 A{:02}={ramp:04.2}", row(number, 20)?)))
+}
+
+/// A key that is a number from 1.
+fn row(key: &str, most: usize) -> Result<usize, String> {
+    console::number(key, 1..=most)
 }
 
 /// Writes what a command of the host writes.
@@ -423,10 +418,9 @@ fn write(world: &mut World, command: &str) -> Result<(), String> {
     edit::carry_out(world, &request).map(|_| ())
 }
 
-fn errors(world: &mut World, entries: &Entries, at: &At<'_>) -> Result<(), String> {
+fn errors(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
     let code = |text: &str| u8::from_str_radix(text, 16).ok().filter(|code| *code > 0);
-    for past in entries.history.iter().rev() {
-        let Past { code: text, after_seconds, power_cut } = past.get_ref();
+    source.each(entries.history.iter().rev(), |HistoryEntry { code: text, after_seconds, power_cut }| {
         let entry = match (text, power_cut) {
             (None, true) => Some(Entry::PowerCut),
             (Some(text), false) => {
@@ -434,28 +428,27 @@ fn errors(world: &mut World, entries: &Entries, at: &At<'_>) -> Result<(), Strin
             }
             _ => None,
         };
-        world.errors.record(entry.ok_or_else(|| at.wrong(past, "an entry has a code from 01 to FF, or power_cut"))?);
-    }
-    if let Some(error) = &entries.error {
-        let code = code(error.get_ref()).ok_or_else(|| at.wrong(error, "an error has a code from 01 to FF"))?;
-        world.fail(code);
-    }
-    Ok(())
+        world.errors.record(entry.ok_or("an entry has a code from 01 to FF, or power_cut")?);
+        Ok(())
+    })?;
+    source.each(&entries.error, |error| {
+        world.fail(code(error).ok_or("an error has a code from 01 to FF")?);
+        Ok(())
+    })
 }
 
 /// `0/01` and eight bits.
-fn port(key: &str, bits: &Spanned<String>, at: &At<'_>) -> Result<(Port, Mask), String> {
-    let parts = key.split_once('/').and_then(|(station, port)| Some((station.parse().ok()?, port.parse().ok()?)));
-    let (station, port) = parts.ok_or_else(|| at.wrong(bits, format!("'{key}' is not a port like 0/01")))?;
-    let eight = u8::from_str_radix(bits.get_ref(), 2).ok().filter(|_| bits.get_ref().len() == 8);
-    let eight = eight.ok_or_else(|| at.wrong(bits, "a port has eight of 0 and 1"))?;
-    Ok((Port { station, port }, Mask::all(eight)))
+fn port(name: &str, bits: &str) -> Result<(Port, Mask), String> {
+    let parts = name.split_once('/').and_then(|(station, port)| Some((station.parse().ok()?, port.parse().ok()?)));
+    let (station, port) = parts.ok_or_else(|| format!("'{name}' is not a port like 0/01"))?;
+    let eight = u8::from_str_radix(bits, 2).ok().filter(|_| bits.len() == 8);
+    Ok((Port { station, port }, Mask::all(eight.ok_or("a port has eight of 0 and 1")?)))
 }
 
 /// A version like `4.00` in hundredths.
-fn hundredths(version: &Spanned<String>) -> Option<i32> {
+fn hundredths(version: &str) -> Option<i32> {
     let field = Command::Cver.row().answers.first()?.fields.last()?;
-    match field.read(version.get_ref()).ok()? {
+    match field.read(version).ok()? {
         Value::Number(number) => Some(number),
         _ => None,
     }

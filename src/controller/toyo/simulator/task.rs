@@ -1,7 +1,7 @@
 //! A task: which step it is at, and what it waits for.
 
 use super::action::{Move, Test, Torque};
-use super::motion::Place;
+use super::motion::Coordinates;
 use super::routine::Routine;
 use crate::Now;
 
@@ -21,6 +21,20 @@ pub(super) enum Wait {
     Test(Test),
     /// Coordinates from the host.
     Host(Move),
+}
+
+/// How a task goes on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Flow {
+    /// With the next step.
+    Next,
+    /// With this step.
+    To(usize),
+    /// After a wait, with this step.
+    Wait(Wait, usize),
+    /// With the next step, once it is started again.
+    Stop,
+    End,
 }
 
 /// One of four.
@@ -44,9 +58,9 @@ pub(super) struct Task {
     pub(super) ramps: [i32; 2],
     /// Share of the last ramp at pass points.
     pub(super) pass: f64,
-    pub(super) offset: Place,
+    pub(super) offset: Coordinates,
     /// Where the last move began.
-    pub(super) from: Option<Place>,
+    pub(super) from: Option<Coordinates>,
     /// How the next move is limited.
     pub(super) torque: Option<Torque>,
     /// How the move under way is.
@@ -54,7 +68,7 @@ pub(super) struct Task {
     /// Whether the escape input ends the move under way.
     pub(super) escape: bool,
     /// Coordinates from the host that were not used yet, and a row of the speed table.
-    pub(super) supplied: Option<(Place, i32)>,
+    pub(super) supplied: Option<(Coordinates, i32)>,
     /// What it does besides its program.
     pub(super) routine: Option<Routine>,
     /// Whether the routine has called the program.
@@ -73,7 +87,7 @@ impl Default for Task {
             speed: 1,
             ramps: [1, 1],
             pass: 1.0,
-            offset: Place::default(),
+            offset: Coordinates::default(),
             from: None,
             torque: None,
             limited: None,

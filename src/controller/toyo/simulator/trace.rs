@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use super::io::Port;
-use super::motion::Place;
+use super::motion::Coordinates;
 use crate::Now;
 
 /// Events that are kept; the oldest give way.
@@ -67,7 +67,7 @@ impl Trace {
         self.events.is_some()
     }
 
-    pub(super) fn record(&mut self, at: Now, position: Place, what: What) {
+    pub(super) fn record(&mut self, at: Now, position: Coordinates, what: What) {
         let Some(events) = &mut self.events else { return };
         if events.len() >= MOST {
             events.pop_front();
@@ -76,7 +76,7 @@ impl Trace {
     }
 
     /// Notes the output ports that have changed since the last time; at first all are off.
-    pub(super) fn outputs(&mut self, at: Now, position: Place, outputs: impl Iterator<Item = (Port, u8)>) {
+    pub(super) fn outputs(&mut self, at: Now, position: Coordinates, outputs: impl Iterator<Item = (Port, u8)>) {
         for (port, bits) in outputs {
             if self.shown.insert(port, bits).unwrap_or_default() != bits {
                 self.record(at, position, What::Output { station: port.station, port: port.port, bits });

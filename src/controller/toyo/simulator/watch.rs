@@ -2,40 +2,20 @@
 
 use std::time::Duration;
 
+use super::arm::Press;
 use super::errors::code;
-use super::io::Port;
+use super::io::OutputAt;
 use super::motion::AXES;
 use super::settings::Signal;
 use super::task::Wait;
 use super::trace::What;
 use super::world::World;
 use crate::Now;
-use crate::toyo::field::Mask;
 
 /// Places that differ by no more than this many mm are the same.
 pub(super) const NEAR: f64 = 1e-6;
 /// How long a motor can push with all its force.
 const OVERLOAD_AFTER: Duration = Duration::from_secs(1);
-
-/// An output that waits for an axis (OUTS).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct OutputAt {
-    pub(super) task: usize,
-    pub(super) axis: usize,
-    pub(super) at_least: bool,
-    pub(super) place: f64,
-    pub(super) port: Port,
-    pub(super) mask: Mask,
-}
-
-/// An axis that pushes against something.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Press {
-    /// When it is judged.
-    pub(super) due: Option<Now>,
-    /// Whether it was judged to be locked.
-    pub(super) locked: bool,
-}
 
 impl World {
     /// Adds to the trace, if somebody watches.

@@ -1,20 +1,19 @@
 //! The controller as a machine: switches, power, errors, what may be done when, and the passing of time.
 
-use std::collections::VecDeque;
 use std::time::Duration;
 
-use super::arm::{Arm, HOST};
+use super::arm::{Arm, HOST, Press};
 use super::card::Card;
-use super::console::Line;
+use super::console;
 use super::errors::{Errors, code};
-use super::io::{Port, Ports};
+use super::io::{OutputAt, Port, Ports};
 use super::memory::{Memory, TASKS};
-use super::motion::{AXES, Place};
+use super::motion::{AXES, Coordinates};
 use super::settings::{Machine, Settings, Special, axes_of};
 use super::task::{Task, Wait};
 use super::trace::{Trace, What};
-use super::watch::{OutputAt, Press};
 use crate::Now;
+use crate::simulator::timeline::Timeline;
 use crate::toyo::field::Mask;
 use crate::toyo::table::{FROM_3_36, Models};
 
@@ -120,8 +119,7 @@ pub(super) struct World {
     /// When an axis next passes a place that matters, and of which state of the arm that is true.
     pub(super) crossing: Option<Now>,
     pub(super) watched: u64,
-    /// Lines of the console with the time at which they are carried out.
-    pub(super) events: VecDeque<(Now, String, Line)>,
+    pub(super) events: Timeline,
     pub(super) trace: Trace,
     /// The block that was refused last, and why.
     pub(super) refusal: Option<(String, String)>,
@@ -142,18 +140,19 @@ impl World {
         let tasks = if self.is_held() { None } else { self.tasks.iter().filter_map(Task::due).min() };
         let presses = self.presses.iter().flatten().filter_map(|press| press.due).min();
         let pulses = self.pulses.iter().map(|(at, ..)| *at).min();
-        let event = self.events.front().map(|(at, ..)| *at);
-        [tasks, self.arm.next_end(), self.crossing, presses, pulses, event, self.card.due()].into_iter().flatten().min()
+        [tasks, self.arm.next_end(), self.crossing, presses, pulses, self.events.due(), self.card.due()]
+            .into_iter()
+            .flatten()
+            .min()
     }
 
     /// Does what is due now.
     fn happen(&mut self) {
-        while self.events.front().is_some_and(|(at, ..)| *at <= self.now) {
-            let Some((_, text, line)) = self.events.pop_front() else { break };
+        while let Some(line) = self.events.take(self.now) {
             // What is impossible by now is not done; `why` and the trace tell.
-            if let Err(why) = line.carry_out(self) {
-                self.note(What::Console(format!("{text}: {why}")));
-                self.refusal = Some((text, why));
+            if let Err(why) = console::execute(self, &line) {
+                self.note(What::Console(format!("{line}: {why}")));
+                self.refusal = Some((line, why));
             }
         }
         self.card_done();
@@ -201,8 +200,8 @@ impl World {
 
     /// Goes by the parameters that are stored, those of the machine included.
     pub(super) fn load(&mut self) {
-        self.machine = Machine::of(&self.memory.content);
-        self.settings = Settings::of(&self.memory.content);
+        self.machine = Machine::from_content(&self.memory.content);
+        self.settings = Settings::from_content(&self.memory.content);
         for (task, axes) in self.machine.tasks.iter().enumerate() {
             axes.axes.iter().for_each(|axis| self.arm.owners[*axis] = task);
         }
@@ -379,7 +378,7 @@ impl World {
     }
 
     /// The offset that each axis goes by.
-    pub(super) fn offset(&self) -> Place {
+    pub(super) fn offset(&self) -> Coordinates {
         std::array::from_fn(|axis| self.tasks[self.arm.owners[axis]].offset[axis])
     }
 

@@ -64,7 +64,7 @@ impl Parameter {
     }
 
     /// The one that a text after `RPAR` or `WPAR` is about.
-    pub fn of(text: &str) -> Option<&'static Self> {
+    pub fn from_text(text: &str) -> Option<&'static Self> {
         PARAMETERS.iter().find(|row| {
             let id = row.key.text.split(" {}").next().and_then(|text| text.split("{}").next()).unwrap_or_default();
             let mut given = text.split(' ').filter(|word| !word.is_empty());
@@ -585,12 +585,12 @@ mod tests {
         for row in &PARAMETERS {
             let values: Vec<_> = row.key.fields.iter().map(|_| crate::toyo::field::Value::Number(1)).collect();
             let key = row.key.emit(&values).unwrap();
-            assert_eq!(Parameter::of(&key).map(|row| row.id), Some(row.id), "{key}");
+            assert_eq!(Parameter::from_text(&key).map(|row| row.id), Some(row.id), "{key}");
         }
-        assert_eq!(Parameter::of("T2 V01=0001.0").unwrap().id, "T2");
-        assert_eq!(Parameter::of("P19 AX1=1"), None);
-        assert_eq!(Parameter::of("T4 S6 GRP=01"), None);
-        assert_eq!(Parameter::of(""), None);
+        assert_eq!(Parameter::from_text("T2 V01=0001.0").unwrap().id, "T2");
+        assert_eq!(Parameter::from_text("P19 AX1=1"), None);
+        assert_eq!(Parameter::from_text("T4 S6 GRP=01"), None);
+        assert_eq!(Parameter::from_text(""), None);
     }
 
     #[test]

@@ -1,20 +1,9 @@
 //! Alarms (FS and DX 3.3.1, 3.3.2; with sub-code strings 3.3.37, 3.3.38).
 
-use super::{PayloadError, Reader, Text, push_u32s};
+use super::reader::{PayloadError, Reader, push_u32s};
+use super::text::Text;
 use crate::yerc::Model;
-use crate::yerc::subcode::{self, SubCode};
-use crate::yerc::table::ALARM_KINDS;
-
-/// How the sub-code of an alarm is to be read; numbers without a meaning are kept.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct AlarmKind(pub u32);
-
-impl AlarmKind {
-    /// What kind of sub-code it is, where the manuals say so.
-    pub fn meaning(self) -> Option<&'static str> {
-        ALARM_KINDS.iter().find(|(number, _)| *number == self.0).map(|(_, meaning)| *meaning)
-    }
-}
+use crate::yerc::subcode::{self, AlarmKind, SubCode};
 
 /// The three texts that 0x30A and 0x30B add.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::{PayloadError, Reader, Text, push_words};
+use super::reader::{PayloadError, Reader, push_words};
+use super::text::Text;
 
 /// Most axes of a control group.
 pub const MAX_AXES: usize = 8;

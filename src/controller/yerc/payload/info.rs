@@ -1,6 +1,7 @@
 //! Job, management time, system information (FS and DX 3.3.4, 3.3.25, 3.3.26).
 
-use super::{PayloadError, Reader, Text, push_u32s};
+use super::reader::{PayloadError, Reader, push_u32s};
+use super::text::Text;
 
 /// The job a task executes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]

@@ -1,6 +1,7 @@
 //! The data of move instructions (FS and DX 3.3.39, 3.3.40).
 
-use super::{ExtendedForm, Form, PayloadError, PositionKind, Reader, push_u32s, push_words};
+use super::position::{ExtendedForm, Form, PositionKind};
+use super::reader::{PayloadError, Reader, push_u32s, push_words};
 
 /// What the speed word counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

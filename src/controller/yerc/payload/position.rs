@@ -1,33 +1,9 @@
 //! Positions of robots, bases and external axes (FS and DX 3.3.6, 3.3.16 to 3.3.18).
 
-use super::{Axes, MAX_AXES, PayloadError, Reader, push_u32s};
+use super::axes::{Axes, MAX_AXES};
+use super::reader::{PayloadError, Reader, push_u32s};
 use crate::units::{self, Unit};
-use crate::yerc::table::Bit;
-
-const fn bit(bit: u8, clear: &'static str, set: &'static str) -> Bit {
-    Bit { bit, clear, set }
-}
-
-/// The form word: the words of the text form for each bit clear and set.
-pub(in crate::yerc) const FORM_BITS: [Bit; 8] = [
-    bit(0, "front", "back"),
-    bit(1, "upper", "lower"),
-    bit(2, "flip", "noflip"),
-    bit(3, "r-lt180", "r-ge180"),
-    bit(4, "t-lt180", "t-ge180"),
-    bit(5, "s-lt180", "s-ge180"),
-    bit(6, "redundant-front", "redundant-back"),
-    bit(7, "previous-step", "regard-form"),
-];
-
-/// The extended form word, likewise.
-pub(in crate::yerc) const EXTENDED_FORM_BITS: [Bit; 5] = [
-    bit(0, "l-lt180", "l-ge180"),
-    bit(1, "u-lt180", "u-ge180"),
-    bit(2, "b-lt180", "b-ge180"),
-    bit(3, "e-lt180", "e-ge180"),
-    bit(4, "w-lt180", "w-ge180"),
-];
+use crate::yerc::table::{EXTENDED_FORM_BITS, FORM_BITS};
 
 /// What the numbers of a position mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

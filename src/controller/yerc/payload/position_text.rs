@@ -6,11 +6,11 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use super::position::{EXTENDED_FORM_BITS, FORM_BITS};
-use super::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, MAX_AXES, Position, PositionKind};
-use crate::text::integer;
+use super::axes::{Axes, MAX_AXES};
+use super::position::{BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
+use crate::typed::unsigned;
 use crate::units::{self, Unit, UnitError};
-use crate::yerc::table::Bit;
+use crate::yerc::table::{Bit, EXTENDED_FORM_BITS, FORM_BITS};
 
 const PULSE_AXES: [&str; MAX_AXES] = ["s", "l", "u", "r", "b", "t", "e", "8"];
 const CARTESIAN_AXES: [&str; MAX_AXES] = ["x", "y", "z", "rx", "ry", "rz", "re", "8"];
@@ -283,8 +283,7 @@ impl<'a> Parts<'a> {
 
 fn number(key: &'static str, text: Option<&str>) -> Result<u32, PositionTextError> {
     let Some(text) = text else { return Ok(0) };
-    let number = integer(text).filter(|_| text.starts_with(|first: char| first.is_ascii_digit()));
-    number.and_then(|number| u32::try_from(number).ok()).ok_or_else(|| PositionTextError::Value {
+    unsigned(text).ok_or_else(|| PositionTextError::Value {
         key,
         found: text.to_owned(),
         expected: "a whole number".to_owned(),

@@ -1,7 +1,7 @@
 //! Controller status, two words of bits (FS and DX 3.3.3).
 
-use super::{PayloadError, Reader};
-use crate::yerc::table::Bit;
+use super::reader::{PayloadError, Reader, push_u32s};
+use crate::yerc::table::{Bit, DATA_1_BITS, DATA_2_BITS};
 
 /// One condition of the controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -38,52 +38,42 @@ pub enum StatusBit {
 
 use StatusBit as S;
 
-/// Word, bit and name of every condition.
-const BITS: [(StatusBit, usize, u8, &str); 14] = [
-    (S::Step, 0, 0, "step mode"),
-    (S::OneCycle, 0, 1, "one-cycle mode"),
-    (S::Continuous, 0, 2, "continuous mode"),
-    (S::Running, 0, 3, "running"),
-    (S::Guarded, 0, 4, "in-guard safe operation"),
-    (S::Teach, 0, 5, "teach mode"),
-    (S::Play, 0, 6, "play mode"),
-    (S::CommandRemote, 0, 7, "command remote"),
-    (S::HoldPendant, 1, 1, "hold by pendant"),
-    (S::HoldExternal, 1, 2, "hold by external signal"),
-    (S::HoldCommand, 1, 3, "hold by command"),
-    (S::Alarm, 1, 4, "alarm"),
-    (S::Error, 1, 5, "error"),
-    (S::ServoOn, 1, 6, "servo on"),
+/// Every condition, in the order of the bits.
+const ALL: [StatusBit; 14] = [
+    S::Step,
+    S::OneCycle,
+    S::Continuous,
+    S::Running,
+    S::Guarded,
+    S::Teach,
+    S::Play,
+    S::CommandRemote,
+    S::HoldPendant,
+    S::HoldExternal,
+    S::HoldCommand,
+    S::Alarm,
+    S::Error,
+    S::ServoOn,
 ];
-
-/// The bits of word 1 for the table.
-pub(in crate::yerc) const DATA_1_BITS: [Bit; 8] = table_bits::<8>(0);
-/// The bits of word 2 for the table.
-pub(in crate::yerc) const DATA_2_BITS: [Bit; 6] = table_bits::<6>(8);
-
-const fn table_bits<const N: usize>(from: usize) -> [Bit; N] {
-    let mut out = [Bit { bit: 0, clear: "", set: "" }; N];
-    let mut i = 0;
-    while i < N {
-        out[i] = Bit { bit: BITS[from + i].2, clear: "", set: BITS[from + i].3 };
-        i += 1;
-    }
-    out
-}
 
 impl StatusBit {
     /// Every condition, in the order of the manual.
     pub fn all() -> impl Iterator<Item = Self> {
-        BITS.iter().map(|row| row.0)
+        ALL.into_iter()
     }
 
     /// The name, e.g. `servo on`.
     pub fn name(self) -> &'static str {
-        self.row().3
+        self.row().1.set
     }
 
-    fn row(self) -> &'static (Self, usize, u8, &'static str) {
-        &BITS[self as usize]
+    /// Its word and its row of the table.
+    fn row(self) -> (usize, &'static Bit) {
+        let index = self as usize;
+        match index.checked_sub(DATA_1_BITS.len()) {
+            None => (0, &DATA_1_BITS[index]),
+            Some(index) => (1, &DATA_2_BITS[index]),
+        }
     }
 }
 
@@ -126,20 +116,20 @@ impl ControllerStatus {
     /// The 8 bytes.
     pub fn emit(self) -> Vec<u8> {
         let mut out = Vec::with_capacity(8);
-        super::push_u32s(&mut out, self.words);
+        push_u32s(&mut out, self.words);
         out
     }
 
     /// Whether a condition holds.
     pub fn has(self, bit: StatusBit) -> bool {
-        let &(_, word, bit, _) = bit.row();
+        let (word, &Bit { bit, .. }) = bit.row();
         self.words[word] >> bit & 1 == 1
     }
 
     /// Sets or clears a condition.
     #[must_use]
     pub fn with(mut self, bit: StatusBit, on: bool) -> Self {
-        let &(_, word, bit, _) = bit.row();
+        let (word, &Bit { bit, .. }) = bit.row();
         self.words[word] = self.words[word] & !(1 << bit) | u32::from(on) << bit;
         self
     }

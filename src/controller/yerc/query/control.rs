@@ -1,9 +1,9 @@
 //! Orders: reset, hold, servo, cycle, message, job, move (3.3.19 to 3.3.24, 3.3.39, 3.3.40).
 
-use super::{Query, QueryError, checked, in_range, known_task, write_one};
+use super::{QueryError, WriteQuery, checked, in_range, known_task, write_one};
 use crate::yerc::Model;
 use crate::yerc::group::Group;
-use crate::yerc::payload::{CartesianMove, CycleMode, PayloadError, PulseMove, SpeedClass, Text};
+use crate::yerc::payload::{CartesianMove, CycleMode, PulseMove, SpeedClass, Text};
 use crate::yerc::request::Request;
 use crate::yerc::table::service;
 
@@ -28,16 +28,10 @@ macro_rules! order {
             pub $field,
         ))?;
 
-        impl Query for $name {
-            type Answer = ();
-
-            fn request(&self) -> Request {
+        impl WriteQuery for $name {
+            fn write_request(&self) -> Request {
                 let $this = self;
                 $request
-            }
-
-            fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
-                Ok(())
             }
         }
     };
@@ -96,15 +90,9 @@ impl Say {
     }
 }
 
-impl Query for Say {
-    type Answer = ();
-
-    fn request(&self) -> Request {
+impl WriteQuery for Say {
+    fn write_request(&self) -> Request {
         write_one(0x85, 1, self.text.emit())
-    }
-
-    fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
-        Ok(())
     }
 }
 
@@ -146,17 +134,11 @@ impl SelectJob {
     }
 }
 
-impl Query for SelectJob {
-    type Answer = ();
-
-    fn request(&self) -> Request {
+impl WriteQuery for SelectJob {
+    fn write_request(&self) -> Request {
         let mut data = self.name.emit().to_vec();
         data.extend_from_slice(&self.line.to_le_bytes());
         Request { command: 0x87, instance: self.instance, attribute: 0, service: service::SET_ALL, data }
-    }
-
-    fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
-        Ok(())
     }
 }
 
@@ -204,15 +186,9 @@ impl MoveCartesian {
     }
 }
 
-impl Query for MoveCartesian {
-    type Answer = ();
-
-    fn request(&self) -> Request {
+impl WriteQuery for MoveCartesian {
+    fn write_request(&self) -> Request {
         moving(0x8A, self.kind, self.target.emit())
-    }
-
-    fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
-        Ok(())
     }
 }
 
@@ -233,15 +209,9 @@ impl MovePulse {
     }
 }
 
-impl Query for MovePulse {
-    type Answer = ();
-
-    fn request(&self) -> Request {
+impl WriteQuery for MovePulse {
+    fn write_request(&self) -> Request {
         moving(0x8B, self.kind, self.target.emit())
-    }
-
-    fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
-        Ok(())
     }
 }
 

@@ -375,7 +375,7 @@ impl ReadField {
     pub fn new(model: Model, command: u16, instance: u16, attribute: u8) -> Result<Self, QueryError> {
         let request = reading(command, instance, attribute, service::GET_SINGLE);
         request.check(model)?;
-        let size = Row::of(command)
+        let size = Row::from_number(command)
             .and_then(|row| Some(total(row.fields_of(row.service(service::GET_SINGLE)?, attribute))))
             .unwrap_or_default();
         Ok(Self { command, instance, attribute, size })

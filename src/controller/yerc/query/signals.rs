@@ -1,6 +1,6 @@
 //! I/O groups of eight signals, and registers (0x78, 0x79, 0x300, 0x301).
 
-use super::{Query, QueryError, checked, elements, read_plural, reading, write_one, write_plural};
+use super::{Query, QueryError, WriteQuery, checked, elements, read_plural, reading, write_one, write_plural};
 use crate::yerc::Model;
 use crate::yerc::payload::{PayloadError, Reader};
 use crate::yerc::request::Request;
@@ -76,15 +76,9 @@ macro_rules! signals {
             }
         }
 
-        impl Query for $write {
-            type Answer = ();
-
-            fn request(&self) -> Request {
+        impl WriteQuery for $write {
+            fn write_request(&self) -> Request {
                 write_one($single, self.number, self.value.to_le_bytes())
-            }
-
-            fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
-                Ok(())
             }
         }
 
@@ -102,16 +96,10 @@ macro_rules! signals {
             }
         }
 
-        impl Query for $write_many {
-            type Answer = ();
-
-            fn request(&self) -> Request {
+        impl WriteQuery for $write_many {
+            fn write_request(&self) -> Request {
                 let bytes = self.values.iter().flat_map(|value| value.to_le_bytes());
                 write_plural($plural, self.first, self.values.len(), bytes)
-            }
-
-            fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
-                Ok(())
             }
         }
     };

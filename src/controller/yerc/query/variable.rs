@@ -1,11 +1,14 @@
 //! Variables, one or several (0x7A to 0x81, 0x8C, 0x302 to 0x309, 0x30C).
 
-use super::{Query, QueryError, checked, elements, read_all, read_plural, reading, write_one, write_plural};
+use super::{
+    Query, QueryError, WriteQuery, checked, elements, read_all, read_plural, reading, write_one, write_plural,
+};
 use crate::yerc::Model;
 use crate::yerc::payload::PayloadError;
 use crate::yerc::request::Request;
 use crate::yerc::table::service;
-use crate::yerc::variables::{Value, VariableKind};
+use crate::yerc::variables::reference::VariableKind;
+use crate::yerc::variables::value::Value;
 
 /// Reads one variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -80,20 +83,14 @@ impl WriteVariable {
     }
 }
 
-impl Query for WriteVariable {
-    type Answer = ();
-
-    fn request(&self) -> Request {
+impl WriteQuery for WriteVariable {
+    fn write_request(&self) -> Request {
         let (kind, data) = (self.value.kind(), self.value.emit());
         if kind.is_position() {
             Request { command: kind.command(), instance: self.number, attribute: 0, service: service::SET_ALL, data }
         } else {
             write_one(kind.command(), self.number, data)
         }
-    }
-
-    fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
-        Ok(())
     }
 }
 
@@ -116,16 +113,10 @@ impl WriteVariables {
     }
 }
 
-impl Query for WriteVariables {
-    type Answer = ();
-
-    fn request(&self) -> Request {
+impl WriteQuery for WriteVariables {
+    fn write_request(&self) -> Request {
         let bytes = self.values.iter().flat_map(Value::emit);
         write_plural(self.kind.plural_command(), self.first, self.values.len(), bytes)
-    }
-
-    fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
-        Ok(())
     }
 }
 
@@ -145,10 +136,8 @@ impl WriteField {
     }
 }
 
-impl Query for WriteField {
-    type Answer = ();
-
-    fn request(&self) -> Request {
+impl WriteQuery for WriteField {
+    fn write_request(&self) -> Request {
         Request {
             command: self.kind.command(),
             instance: self.number,
@@ -156,9 +145,5 @@ impl Query for WriteField {
             service: service::SET_SINGLE,
             data: self.word.to_vec(),
         }
-    }
-
-    fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
-        Ok(())
     }
 }

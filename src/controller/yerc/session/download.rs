@@ -321,20 +321,11 @@ impl Session for Download {
 #[cfg(test)]
 mod tests {
     use super::super::super::wire::Division;
-    use super::super::testing::{done, hex, ms, sent, under_id};
+    use super::super::testing::{FILE_REQUEST, under_id};
     use super::*;
+    use crate::testing::{done, hex, ms, sent};
 
-    const SAVE: RequestFrame<'static> = RequestFrame {
-        division: Division::File,
-        ack: false,
-        id: 0,
-        block: 0,
-        command: 0,
-        instance: 0,
-        attribute: 0,
-        service: 0x16,
-        data: b"TESTJOB.JBI",
-    };
+    const SAVE: RequestFrame<'static> = RequestFrame { service: 0x16, ..FILE_REQUEST };
     const LIST: RequestFrame<'static> = RequestFrame { service: 0x32, data: b"*.JBI", ..SAVE };
     const LIMIT: u64 = 1 << 20;
 

@@ -161,19 +161,17 @@ impl Session for Exchange {
 #[cfg(test)]
 mod tests {
     use super::super::super::wire::{Division, LAST_BLOCK};
-    use super::super::testing::{done, hex, ms, sent, under_id};
+    use super::super::testing::{FILE_REQUEST, under_id};
     use super::*;
+    use crate::testing::{done, hex, ms, sent};
 
     const READ: RequestFrame<'static> = RequestFrame {
         division: Division::Robot,
-        ack: false,
-        id: 0,
-        block: 0,
         command: 0x72,
         instance: 1,
-        attribute: 0,
         service: 0x01,
         data: &[],
+        ..FILE_REQUEST
     };
     const START: RequestFrame<'static> =
         RequestFrame { command: 0x86, attribute: 1, service: 0x10, data: &[1, 0, 0, 0], ..READ };
@@ -189,14 +187,7 @@ mod tests {
 
     #[test]
     fn delete_as_in_section_3_2_6() {
-        let request = RequestFrame {
-            division: Division::File,
-            command: 0,
-            instance: 0,
-            service: 0x09,
-            data: b"TESTJOB.JBI",
-            ..READ
-        };
+        let request = RequestFrame { service: 0x09, ..FILE_REQUEST };
         let mut session = Exchange::new(&request, false, Policy::default(), &Ids::starting_at(0x0B));
         assert_eq!(
             sent(&mut session, ms(0)),

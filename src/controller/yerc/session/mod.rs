@@ -304,32 +304,20 @@ mod testing {
     //! What the tests of the sessions share.
 
     use super::*;
-    use crate::{Session, Step};
+    use crate::yerc::wire::Division;
 
-    pub(super) fn hex(text: &str) -> Vec<u8> {
-        assert!(text.len().is_multiple_of(2), "half a byte in {text}");
-        (0..text.len()).step_by(2).map(|i| u8::from_str_radix(&text[i..i + 2], 16).unwrap()).collect()
-    }
-
-    pub(super) const fn ms(millis: u64) -> Now {
-        Duration::from_millis(millis)
-    }
-
-    /// The frame a session sends now.
-    pub(super) fn sent<S: Session<Outcome: fmt::Debug>>(session: &mut S, now: Now) -> Vec<u8> {
-        match session.poll(now) {
-            Step::Send(frame) => frame,
-            other => panic!("expected a frame to send at {now:?}, not {other:?}"),
-        }
-    }
-
-    /// How a session has ended by now.
-    pub(super) fn done<S: Session<Outcome: fmt::Debug>>(session: &mut S, now: Now) -> S::Outcome {
-        match session.poll(now) {
-            Step::Done(outcome) => outcome,
-            other => panic!("expected the end at {now:?}, not {other:?}"),
-        }
-    }
+    /// A request to the file server, of no service yet.
+    pub(super) const FILE_REQUEST: RequestFrame<'static> = RequestFrame {
+        division: Division::File,
+        ack: false,
+        id: 0,
+        block: 0,
+        command: 0,
+        instance: 0,
+        attribute: 0,
+        service: 0,
+        data: b"TESTJOB.JBI",
+    };
 
     /// An answer with changed id, for the places where the manual's example raises it within a transfer.
     pub(super) fn under_id(frame: &[u8], id: u8) -> Vec<u8> {
@@ -340,8 +328,8 @@ mod testing {
 
 #[cfg(test)]
 mod tests {
-    use super::testing::ms;
     use super::*;
+    use crate::testing::ms;
 
     #[test]
     fn ids_start_at_0_and_wrap() {

@@ -301,21 +301,12 @@ impl Session for Upload {
 #[cfg(test)]
 mod tests {
     use super::super::super::wire::{AnswerFrame, Division};
-    use super::super::testing::{done, hex, ms, sent, under_id};
+    use super::super::testing::{FILE_REQUEST, under_id};
     use super::super::with_id;
     use super::*;
+    use crate::testing::{done, hex, ms, sent};
 
-    const LOAD: RequestFrame<'static> = RequestFrame {
-        division: Division::File,
-        ack: false,
-        id: 0,
-        block: 0,
-        command: 0,
-        instance: 0,
-        attribute: 0,
-        service: 0x15,
-        data: b"TESTJOB.JBI",
-    };
+    const LOAD: RequestFrame<'static> = RequestFrame { service: 0x15, ..FILE_REQUEST };
 
     fn start(content: &[u8]) -> Upload {
         let mut session = Upload::new(&LOAD, Policy::default(), &Ids::starting_at(5));

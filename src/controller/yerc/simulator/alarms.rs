@@ -27,7 +27,7 @@ pub(super) enum Class {
 
 impl Class {
     /// The class of an alarm number: 0001-3999 stop the controller, 8000 up are raised by jobs and ladder.
-    pub(super) fn of(code: u32) -> Self {
+    pub(super) fn from_code(code: u32) -> Self {
         match code {
             0..=3999 => Self::Major,
             4000..=7999 => Self::Monitor,
@@ -66,7 +66,7 @@ pub(super) struct AlarmLog {
 
 impl AlarmLog {
     pub(super) fn raise(&mut self, alarm: Alarm) {
-        self.record(Class::of(alarm.code), alarm.clone());
+        self.record(Class::from_code(alarm.code), alarm.clone());
         self.active.push_front(alarm);
         self.active.truncate(ACTIVE);
     }
@@ -84,7 +84,7 @@ impl AlarmLog {
 
     /// Whether one is active that only a restart clears.
     pub(super) fn major_is_active(&self) -> bool {
-        self.active.iter().any(|alarm| Class::of(alarm.code) == Class::Major)
+        self.active.iter().any(|alarm| Class::from_code(alarm.code) == Class::Major)
     }
 
     pub(super) fn clear(&mut self) {

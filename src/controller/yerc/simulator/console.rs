@@ -3,6 +3,7 @@
 use super::alarms::Class;
 use super::memory::io_class;
 use super::world::{Mode, World};
+use crate::simulator::console::{self, expected, number, on_off, unknown};
 use crate::yerc::payload::CycleMode;
 
 /// The lines there are, as `help` shows them.
@@ -54,14 +55,14 @@ pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
         ["convert", state] => world.switches.converting = on_off(state)?,
         ["io", signal, state] => return io(world, signal, on_off(state)?),
         ["register", number, value] => return register(world, number, value),
-        _ => return Err(format!("no such line: '{}'", line.trim())),
+        _ => return Err(unknown(line)),
     }
     Ok(summary(world))
 }
 
 fn alarm(world: &mut World, words: &[&str]) -> Result<String, String> {
     let [code, rest @ ..] = words else { return Err("alarm needs a number from 1 to 9999, or 'clear'".into()) };
-    let code = number(code, 1, 9999)?;
+    let code = number(code, 1..=9999)?;
     let (mut numbers, mut name) = ([0, 0], rest);
     for (place, most) in [0xFFFF_FFFF, 0xFF].into_iter().enumerate() {
         let Some((digits, tail)) =
@@ -69,13 +70,13 @@ fn alarm(world: &mut World, words: &[&str]) -> Result<String, String> {
         else {
             break;
         };
-        numbers[place] = number(digits, 0, most)?;
+        numbers[place] = number(digits, 0..=most)?;
         name = tail;
     }
     let [data, kind] = numbers;
     let name = name.join(" ");
     world.raise(code, data, kind, Some(name.as_str()).filter(|name| !name.is_empty()));
-    Ok(format!("alarm {code} raised ({:?})", Class::of(code)).to_lowercase())
+    Ok(format!("alarm {code} raised ({:?})", Class::from_code(code)).to_lowercase())
 }
 
 fn set_mode(world: &mut World, mode: Mode) -> Result<(), String> {
@@ -107,7 +108,7 @@ fn unlocked(world: &World) -> Result<(), String> {
 }
 
 fn io(world: &mut World, signal: &str, on: bool) -> Result<String, String> {
-    let number = number(signal, 0, 99_999)?;
+    let number = number(signal, 0..=99_999)?;
     if world.memory.set_signal(number, on) {
         return Ok(format!("#{number:05} is {}", if on { "on" } else { "off" }));
     }
@@ -119,7 +120,7 @@ fn io(world: &mut World, signal: &str, on: bool) -> Result<String, String> {
 }
 
 fn register(world: &mut World, register: &str, value: &str) -> Result<String, String> {
-    let (register, value) = (number(register, 0, 999)?, number(value, 0, 0xFFFF)?);
+    let (register, value) = (number(register, 0..=999)?, number(value, 0..=0xFFFF)?);
     let fits = u16::try_from(register).ok().zip(u16::try_from(value).ok());
     match fits {
         Some((register, value)) if world.memory.force_register(register, value) => {
@@ -132,7 +133,7 @@ fn register(world: &mut World, register: &str, value: &str) -> Result<String, St
 /// One line about everything that decides what is refused.
 fn summary(world: &World) -> String {
     let switches = &world.switches;
-    let mut parts = vec![
+    let always = [
         match switches.mode {
             Mode::Teach => "teach mode",
             Mode::Play => "play mode",
@@ -158,8 +159,7 @@ fn summary(world: &World) -> String {
         (world.alarms.is_active(), "alarm"),
         (switches.error, "error"),
     ];
-    parts.extend(optional.into_iter().filter_map(|(on, text)| on.then_some(text)));
-    parts.join(", ")
+    console::summary(&always, optional)
 }
 
 /// The summary, then job, alarms, message and positions.
@@ -188,14 +188,6 @@ fn state(world: &World) -> String {
     lines.join("\n")
 }
 
-fn on_off(word: &str) -> Result<bool, String> {
-    match word {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err(expected(word, "on or off")),
-    }
-}
-
 pub(super) fn cycle(word: &str) -> Option<CycleMode> {
     match word {
         "step" => Some(CycleMode::Step),
@@ -203,15 +195,4 @@ pub(super) fn cycle(word: &str) -> Option<CycleMode> {
         "continuous" => Some(CycleMode::Continuous),
         _ => None,
     }
-}
-
-fn number(word: &str, least: u32, most: u32) -> Result<u32, String> {
-    word.parse()
-        .ok()
-        .filter(|value| (least..=most).contains(value))
-        .ok_or_else(|| expected(word, &format!("a number from {least} to {most}")))
-}
-
-fn expected(word: &str, what: &str) -> String {
-    format!("'{word}' is not {what}")
 }

@@ -167,7 +167,7 @@ pub(super) enum Arithmetic {
 
 /// Where a motion goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum MoveTarget {
     /// A position of the job file.
     Taught(u32),
     /// A position variable.
@@ -178,7 +178,7 @@ pub(super) enum Place {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Move {
     pub(super) straight: bool,
-    pub(super) to: Place,
+    pub(super) to: MoveTarget,
     /// Percent for a joint motion, mm/s for a straight one.
     pub(super) speed: f64,
 }
@@ -271,8 +271,8 @@ fn motion(rest: &str, straight: bool, speed_tag: &str) -> Option<Instruction> {
     let mut words = rest.split_whitespace();
     let place = words.next()?;
     let to = match Kind::parse(place) {
-        Some((Kind::P, index)) => Place::Variable(index),
-        _ => Place::Taught(place.strip_prefix('C')?.parse().ok()?),
+        Some((Kind::P, index)) => MoveTarget::Variable(index),
+        _ => MoveTarget::Taught(place.strip_prefix('C')?.parse().ok()?),
     };
     let speed = words.find_map(|word| word.strip_prefix(speed_tag))?.parse().ok().filter(|speed| *speed > 0.0)?;
     Some(Instruction::Move(Move { straight, to, speed }))

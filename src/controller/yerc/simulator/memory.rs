@@ -213,7 +213,7 @@ impl Memory {
 
 /// The class an I/O instance belongs to (DX and FS 3.3.9).
 pub(super) fn io_class(model: Model, instance: u16) -> Option<&'static Span> {
-    Row::of(SINGLE_IO)?.instances.find(model, instance)
+    Row::from_number(SINGLE_IO)?.instances.find(model, instance)
 }
 
 fn signal_place(number: u32) -> Option<(u16, u8)> {

@@ -33,17 +33,15 @@ mod world;
 #[cfg(test)]
 mod tests;
 
-use std::collections::VecDeque;
-use std::time::Duration;
-
 pub use start::{EXAMPLE, Start};
 
 use self::transfer::FileServer;
 use self::world::{Refusal, World, code};
 use super::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, RequestFrame, Status, WireError};
 use crate::Now;
+use crate::simulator::answers::{Answers, Busy};
 
-/// Answers that wait to be fetched; the oldest give way to a flood.
+/// Answers that wait to be fetched.
 const MAX_WAITING: usize = 4096;
 /// Places of the raw request that even a malformed one is answered by.
 const ID_AT: usize = 11;
@@ -65,10 +63,8 @@ pub struct Outgoing {
 pub struct Simulator {
     world: World,
     files: FileServer,
-    random: fastrand::Rng,
-    busy: f64,
-    answer_delay: Duration,
-    waiting: VecDeque<(Now, Outgoing)>,
+    busy: Busy,
+    answers: Answers<Outgoing>,
 }
 
 impl Simulator {
@@ -76,11 +72,9 @@ impl Simulator {
     pub fn new(start: Start) -> Self {
         Self {
             files: FileServer::new(start.backup_time, start.backup_size, start.idle_limit),
-            random: fastrand::Rng::with_seed(start.seed),
-            busy: start.busy,
-            answer_delay: start.answer_delay,
+            busy: Busy::new(start.busy, start.seed),
+            answers: Answers::new(start.answer_delay, MAX_WAITING),
             world: start.world,
-            waiting: VecDeque::new(),
         }
     }
 
@@ -111,15 +105,12 @@ impl Simulator {
     /// The next datagram that is due at `now`, if any.
     pub fn transmit(&mut self, now: Now) -> Option<Outgoing> {
         self.advance(now);
-        if self.waiting.front().is_none_or(|(due, _)| *due > now) {
-            return None;
-        }
-        self.waiting.pop_front().map(|(_, outgoing)| outgoing)
+        self.answers.take(now)
     }
 
     /// When [`Simulator::transmit`] will have something, or the world changes by itself.
     pub fn wake(&self) -> Option<Now> {
-        [self.waiting.front().map(|(due, _)| *due), self.world.wake(), self.files.wake()].into_iter().flatten().min()
+        [self.answers.due(), self.world.wake(), self.files.wake()].into_iter().flatten().min()
     }
 
     /// Carries out one line of the console: `alarm 4315 3 1`, `remote off`, `state`. What to print, or what is wrong.
@@ -145,11 +136,7 @@ impl Simulator {
 
     fn post(&mut self, division: Division, reply: transfer::Reply) {
         let Some((peer, bytes)) = reply else { return };
-        if self.waiting.len() >= MAX_WAITING {
-            self.waiting.pop_front();
-        }
-        let due = self.world.now.saturating_add(self.answer_delay);
-        self.waiting.push_back((due, Outgoing { division, peer, bytes }));
+        self.answers.push(self.world.now, Outgoing { division, peer, bytes });
     }
 
     fn answer_robot(&mut self, request: &RequestFrame<'_>) -> Vec<u8> {
@@ -157,7 +144,7 @@ impl Simulator {
             Err(Refusal::Added(code::ACK))
         } else if request.block != 0 {
             Err(Refusal::Added(code::BLOCK))
-        } else if self.busy > 0.0 && self.random.f64() < self.busy {
+        } else if self.busy.refuses() {
             Err(Refusal::Added(code::BUSY))
         } else {
             robot::answer(&mut self.world, request)

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::job::{Arithmetic, Condition, Instruction, Move, Operand, Place, Program, Target};
+use super::job::{Arithmetic, Condition, Instruction, Move, MoveTarget, Operand, Program, Target};
 use super::memory::Kind;
 use super::motion::{AXES, Family, MAX_LINEAR_MM_S, Pose, Pulses, Speed, inverse};
 use super::world::World;
@@ -263,8 +263,8 @@ impl World {
     fn order_move(&mut self, program: &Program, order: Move) -> Result<(), Fault> {
         let robot = self.arm.find(Family::Robot, 1).ok_or(UNDEFINED_POSITION)?;
         let target = match order.to {
-            Place::Taught(number) => program.positions.get(&number).copied().ok_or(UNDEFINED_POSITION)?,
-            Place::Variable(index) => self.position_variable(index).ok_or(UNDEFINED_POSITION)?,
+            MoveTarget::Taught(number) => program.positions.get(&number).copied().ok_or(UNDEFINED_POSITION)?,
+            MoveTarget::Variable(index) => self.position_variable(index).ok_or(UNDEFINED_POSITION)?,
         };
         let near = self.arm.groups[robot].pulses;
         let pulses = match target {

@@ -27,7 +27,7 @@ const OTHER_AXES: [&str; 7] = ["1", "2", "3", "4", "5", "6", "7"];
 impl World {
     /// All fields of something readable.
     pub(super) fn read(&self, row: &Row, instance: u16) -> Answer {
-        if let Some(store) = Store::of(row.number) {
+        if let Some(store) = Store::from_number(row.number) {
             return self.read_element(store, instance, row.size());
         }
         match row.number {

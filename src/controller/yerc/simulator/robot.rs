@@ -16,7 +16,7 @@ const FS_FULL_SOFTWARE: (u32, u32) = (1, 14);
 
 /// Answers a request of the robot server.
 pub(super) fn answer(world: &mut World, frame: &RequestFrame<'_>) -> Answer {
-    let row = Row::of(frame.command).filter(|row| has(world, row.availability)).ok_or(Refusal::Command)?;
+    let row = Row::from_number(frame.command).filter(|row| has(world, row.availability)).ok_or(Refusal::Command)?;
     let service = row.service(frame.service).ok_or(Refusal::Command)?;
     let instance = frame.instance;
     let span = row.instances.find(world.model, instance).ok_or(Refusal::Instance)?;
@@ -148,7 +148,7 @@ impl Store {
         (0x309, Self::Variable(Kind::Ex)),
     ];
 
-    pub(super) fn of(command: u16) -> Option<Self> {
+    pub(super) fn from_number(command: u16) -> Option<Self> {
         if command == 0x30C {
             return Some(Self::Variable(Kind::S));
         }
@@ -189,7 +189,7 @@ impl World {
 
 /// Count and elements of a plural read.
 fn read_several(world: &World, row: &Row, plural: Plural, first: u16, last: u16, data: &[u8]) -> Answer {
-    let store = Store::of(row.number).ok_or(Refusal::Command)?;
+    let store = Store::from_number(row.number).ok_or(Refusal::Command)?;
     let Ok(count) = <[u8; 4]>::try_from(data) else { return Err(Refusal::Added(code::REQUEST_SIZE)) };
     let count = u32::from_le_bytes(count);
     let range = plural_range(plural, count, first, last, code::ANSWER_SIZE)?;
@@ -202,7 +202,7 @@ fn read_several(world: &World, row: &Row, plural: Plural, first: u16, last: u16,
 
 /// Writes all elements, or none.
 fn write_several(world: &mut World, row: &Row, plural: Plural, first: u16, last: u16, data: &[u8]) -> Answer {
-    let store = Store::of(row.number).ok_or(Refusal::Command)?;
+    let store = Store::from_number(row.number).ok_or(Refusal::Command)?;
     let Some((count, elements)) = data.split_first_chunk::<4>() else {
         return Err(Refusal::Added(code::REQUEST_SIZE));
     };
@@ -245,7 +245,7 @@ fn plural_range(
 }
 
 fn write_one(world: &mut World, row: &Row, service: &Service, frame: &RequestFrame<'_>) -> Answer {
-    let Some(store) = Store::of(row.number) else { return world.operate(row, frame.instance, frame.data) };
+    let Some(store) = Store::from_number(row.number) else { return world.operate(row, frame.instance, frame.data) };
     let (instance, data) = (frame.instance, frame.data);
     let element = match field_index(service, frame.attribute) {
         None => whole_element(row, data)?,

@@ -3,10 +3,8 @@
 //! Everything has a default, so an empty file is a DX200 in play mode with command remote and servo power. What the
 //! file names comes on top of what a fresh controller has in it. Each mistake is told with its line.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
-use jiff::civil::DateTime;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -19,7 +17,8 @@ use super::playback::Player;
 use super::storage::{Content, Storage, check_stored_name};
 use super::world::{Holds, Meters, Mode, Switches, World};
 use crate::Now;
-use crate::entries::{self, At, Event};
+use crate::simulator::start::{self, Event, Source, Table, default_entry, default_text, numbered};
+use crate::simulator::timeline::Timeline;
 use crate::yerc::Model;
 use crate::yerc::payload::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
 
@@ -118,7 +117,7 @@ impl Start {
     ///
     /// The error says what is wrong, and in which line.
     pub fn parse(text: &str, mut read: impl FnMut(&str) -> Result<Vec<u8>, String>) -> Result<Self, String> {
-        build(&entries::parse(text)?, text, &mut read)
+        build(&start::parse(text)?, text, &mut read)
     }
 
     /// The model it describes.
@@ -178,13 +177,13 @@ struct Entries {
     /// The job to execute.
     job: Option<Spanned<String>>,
     ladder_registers: Vec<Spanned<u16>>,
-    variables: BTreeMap<String, Spanned<Value>>,
-    registers: BTreeMap<String, Spanned<u16>>,
-    io: BTreeMap<String, Spanned<bool>>,
+    variables: Table<Value>,
+    registers: Table<u16>,
+    io: Table<bool>,
     /// Pulses by group.
-    positions: BTreeMap<String, Spanned<Vec<i32>>>,
+    positions: Table<Vec<i32>>,
     /// X, Y, Z in mm and a turn about Z in degrees, by number.
-    user_frames: BTreeMap<String, Spanned<[f64; 4]>>,
+    user_frames: Table<[f64; 4]>,
     #[serde(rename = "alarm")]
     alarms: Vec<AlarmEntry>,
     history: Option<Vec<AlarmEntry>>,
@@ -198,27 +197,26 @@ struct Entries {
 
 impl Default for Entries {
     fn default() -> Self {
-        let text = |text: &str| Spanned::new(0..0, text.to_owned());
         Self {
             model: Model::Dx200,
             seed: 0,
             mode: Mode::Play,
             remote: true,
             servo: true,
-            cycle: text("once"),
+            cycle: default_text("once"),
             play_write: true,
-            clock: text("2026/03/14 08:00"),
-            installed: text("2025/10/10 15:49"),
+            clock: default_text("2026/03/14 08:00"),
+            installed: default_text("2025/10/10 15:49"),
             software: None,
             robot_model: None,
             application: None,
             parameter_version: None,
-            groups: ["R1", "B1", "S1"].map(text).to_vec(),
-            robot_axes: Spanned::new(0..0, 6),
+            groups: ["R1", "B1", "S1"].map(default_text).to_vec(),
+            robot_axes: default_entry(6),
             trim_axes: None,
             hours: Hours::default(),
             answer_delay_ms: 0,
-            busy: Spanned::new(0..0, 0.0),
+            busy: default_entry(0.0),
             backup_seconds: 3,
             backup_size: 100_000,
             transfer_timeout_ms: 5_000,
@@ -226,12 +224,12 @@ impl Default for Entries {
             replace_jobs: false,
             plain_last_ack: false,
             job: None,
-            ladder_registers: (540..550).map(|register| Spanned::new(0..0, register)).collect(),
-            variables: BTreeMap::new(),
-            registers: BTreeMap::new(),
-            io: BTreeMap::new(),
-            positions: BTreeMap::new(),
-            user_frames: BTreeMap::from([("1".to_owned(), Spanned::new(0..0, [500.0, 0.0, 0.0, 0.0]))]),
+            ladder_registers: (540..550).map(default_entry).collect(),
+            variables: Table::new(),
+            registers: Table::new(),
+            io: Table::new(),
+            positions: Table::new(),
+            user_frames: Table::from([("1".to_owned(), default_entry([500.0, 0.0, 0.0, 0.0]))]),
             alarms: Vec::new(),
             history: None,
             files: Vec::new(),
@@ -314,46 +312,33 @@ fn build(
     text: &str,
     read: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<Start, String> {
-    let at = At { text };
-    let busy = *entries.busy.get_ref();
-    if !(0.0..=1.0).contains(&busy) {
-        return Err(at.wrong(&entries.busy, "busy is a share from 0 to 1"));
-    }
-    let mut world = bare_world(entries, &at)?;
+    let source = Source { text };
+    let busy = source.share("busy", &entries.busy)?;
+    let mut world = bare_world(entries, source)?;
     if entries.stock {
         defaults::fill(&mut world);
     }
-    for (name, value) in &entries.variables {
-        let (kind, index) = Kind::parse(name).ok_or_else(|| at.wrong(value, format!("'{name}' is no variable")))?;
-        let bytes = element(kind, value.get_ref()).map_err(|what| at.wrong(value, format!("{name}: {what}")))?;
-        world.memory.store(kind, index, &bytes);
-    }
-    for (name, value) in &entries.registers {
-        let written = name.parse().is_ok_and(|number| world.memory.force_register(number, *value.get_ref()));
-        written.then_some(()).ok_or_else(|| at.wrong(value, format!("'{name}' is no register (0 to 999)")))?;
-    }
-    for (name, on) in &entries.io {
-        let written = name.parse().is_ok_and(|number| world.memory.set_signal(number, *on.get_ref()));
-        written.then_some(()).ok_or_else(|| at.wrong(on, format!("'{name}' is no signal of this model")))?;
-    }
-    for (name, pulses) in &entries.positions {
+    memory(&mut world, entries, source)?;
+    source.each_of(&entries.positions, |name, values| {
         let group = world.arm.groups.iter_mut().find(|group| group.name() == *name);
-        let group = group.ok_or_else(|| at.wrong(pulses, format!("group '{name}' is not fitted")))?;
-        let values = pulses.get_ref();
+        let group = group.ok_or_else(|| format!("group '{name}' is not fitted"))?;
         if values.len() != group.axes {
-            return Err(at.wrong(pulses, format!("{name} has {} axes, not {}", group.axes, values.len())));
+            return Err(format!("{name} has {} axes, not {}", group.axes, values.len()));
         }
         group.pulses.iter_mut().zip(values).for_each(|(pulse, value)| *pulse = f64::from(*value));
-    }
-    files(&mut world, &entries.files, &at, read)?;
+        Ok(())
+    })?;
+    source.each(&entries.files, |entry| file(&mut world, entry, read))?;
     alarms(&mut world, entries);
-    if let Some(job) = &entries.job {
-        let name = sjis(job.get_ref());
-        let program = world.files.program(&name);
-        let program = program.ok_or_else(|| at.wrong(job, format!("there is no job '{}'", job.get_ref())))?;
+    source.each(&entries.job, |job| {
+        let name = sjis(job);
+        let program = world.files.program(&name).ok_or_else(|| format!("there is no job '{job}'"))?;
         world.player.select(&name, program, 0);
-    }
-    events(&mut world, &entries.events, &at)?;
+        Ok(())
+    })?;
+    // On a copy: the world is as it begins.
+    let mut copy = world.clone();
+    world.events = source.timeline(&entries.events, |line| console::execute(&mut copy, line))?;
     Ok(Start {
         world,
         seed: entries.seed,
@@ -365,28 +350,44 @@ fn build(
     })
 }
 
+fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
+    source.each_of(&entries.variables, |name, value| {
+        let (kind, index) = Kind::parse(name).ok_or_else(|| format!("'{name}' is no variable"))?;
+        let bytes = element(kind, value).map_err(|what| format!("{name}: {what}"))?;
+        world.memory.store(kind, index, &bytes);
+        Ok(())
+    })?;
+    source.each_of(&entries.registers, |name, value| {
+        let written = name.parse().is_ok_and(|number| world.memory.force_register(number, *value));
+        if written { Ok(()) } else { Err(format!("'{name}' is no register (0 to 999)")) }
+    })?;
+    source.each_of(&entries.io, |name, on| {
+        let written = name.parse().is_ok_and(|number| world.memory.set_signal(number, *on));
+        if written { Ok(()) } else { Err(format!("'{name}' is no signal of this model")) }
+    })
+}
+
 /// The controller with nothing in it.
-fn bare_world(entries: &Entries, at: &At<'_>) -> Result<World, String> {
+fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
     let [software, robot_model, application, parameter_version] = defaults::versions(entries.model);
     let or = |entry: &Option<String>, default: &str| entry.clone().unwrap_or_else(|| default.to_owned());
     let hours = |hours: u32| Duration::from_secs(3600 * u64::from(hours));
     let mut memory = Memory::new(entries.model);
-    for register in &entries.ladder_registers {
-        if memory.register(*register.get_ref()).is_none() {
-            return Err(at.wrong(register, "registers are 0 to 999"));
-        }
-        memory.ladder.push(*register.get_ref());
-    }
+    source.each(&entries.ladder_registers, |register| {
+        memory.register(*register).ok_or("registers are 0 to 999")?;
+        memory.ladder.push(*register);
+        Ok(())
+    })?;
     let mut user_frames = Vec::new();
-    for (name, frame) in &entries.user_frames {
-        let number = name.parse().ok().filter(|number| (1..=63).contains(number));
-        user_frames.push((number.ok_or_else(|| at.wrong(frame, "user frames are 1 to 63"))?, *frame.get_ref()));
-    }
-    let cycle = console::cycle(entries.cycle.get_ref());
-    let time = |entry: &Spanned<String>| {
-        DateTime::strptime("%Y/%m/%d %H:%M", entry.get_ref())
-            .map_err(|_| at.wrong(entry, "a time looks like \"2026/03/14 08:00\""))
-    };
+    source.each_of(&entries.user_frames, |name, frame| {
+        let number = numbered("user frames", name, 1..=63)?;
+        user_frames.push((u32::try_from(number).unwrap_or_default(), *frame));
+        Ok(())
+    })?;
+    let cycle = source.read(&entries.cycle, |name| {
+        console::cycle(name).ok_or_else(|| "cycle is step, once or continuous".to_owned())
+    })?;
+    let time = |entry| source.time(entry, "%Y/%m/%d %H:%M", "2026/03/14 08:00");
     Ok(World {
         model: entries.model,
         software: or(&entries.software, software),
@@ -400,7 +401,7 @@ fn bare_world(entries: &Entries, at: &At<'_>) -> Result<World, String> {
             mode: entries.mode,
             remote: entries.remote,
             servo: entries.servo,
-            cycle: cycle.ok_or_else(|| at.wrong(&entries.cycle, "cycle is step, once or continuous"))?,
+            cycle,
             hold: Holds::default(),
             guard: false,
             hlock: false,
@@ -413,7 +414,7 @@ fn bare_world(entries: &Entries, at: &At<'_>) -> Result<World, String> {
         },
         alarms: AlarmLog::default(),
         memory,
-        arm: Arm::new(groups(entries, at)?),
+        arm: Arm::new(groups(entries, source)?),
         player: Player::default(),
         files: Storage::new(entries.capacity, entries.replace_jobs, entries.plain_last_ack),
         trim_axes: entries.trim_axes,
@@ -424,16 +425,15 @@ fn bare_world(entries: &Entries, at: &At<'_>) -> Result<World, String> {
             motion: hours(entries.hours.motion),
         },
         user_frames,
-        events: std::collections::VecDeque::new(),
+        events: Timeline::default(),
         mode_changes: 0,
     })
 }
 
-fn groups(entries: &Entries, at: &At<'_>) -> Result<Vec<Group>, String> {
-    let axes = *entries.robot_axes.get_ref();
-    if !(6..=7).contains(&axes) {
-        return Err(at.wrong(&entries.robot_axes, "a robot has 6 or 7 axes"));
-    }
+fn groups(entries: &Entries, source: Source<'_>) -> Result<Vec<Group>, String> {
+    let axes = source.read(&entries.robot_axes, |axes| {
+        Some(*axes).filter(|axes| (6..=7).contains(axes)).ok_or_else(|| "a robot has 6 or 7 axes".to_owned())
+    })?;
     let most = |family| match (family, entries.model) {
         (Family::Station, Model::Fs100) => 3,
         (Family::Station, Model::Dx200) => 24,
@@ -441,14 +441,15 @@ fn groups(entries: &Entries, at: &At<'_>) -> Result<Vec<Group>, String> {
         (Family::Robot | Family::Base, Model::Dx200) => 8,
     };
     let mut groups = Vec::<Group>::new();
-    for name in &entries.groups {
-        let group = Group::parse(name.get_ref(), axes).filter(|group| group.number <= most(group.family));
-        let group = group.ok_or_else(|| at.wrong(name, format!("'{}' is no group of this model", name.get_ref())))?;
+    source.each(&entries.groups, |name| {
+        let group = Group::parse(name, axes).filter(|group| group.number <= most(group.family));
+        let group = group.ok_or_else(|| format!("'{name}' is no group of this model"))?;
         if groups.iter().any(|other| other.name() == group.name()) {
-            return Err(at.wrong(name, format!("{} is listed twice", group.name())));
+            return Err(format!("{} is listed twice", group.name()));
         }
         groups.push(group);
-    }
+        Ok(())
+    })?;
     Ok(groups)
 }
 
@@ -514,29 +515,25 @@ fn position(kind: Kind, entry: &PositionEntry) -> Result<Vec<u8>, String> {
     })
 }
 
-fn files(
+fn file(
     world: &mut World,
-    entries: &[Spanned<FileEntry>],
-    at: &At<'_>,
+    entry: &FileEntry,
     read: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<(), String> {
-    for spanned in entries {
-        let entry = spanned.get_ref();
-        let name = sjis(&entry.name);
-        if check_stored_name(&name).is_err() {
-            return Err(at.wrong(spanned, format!("'{}' is no file name a controller has", entry.name)));
-        }
-        let content = match (&entry.text, &entry.path, entry.size) {
-            (Some(text), None, None) => sjis(&text.replace("\r\n", "\n").replace('\n', "\r\n")).into(),
-            (None, Some(path), None) => read(path).map_err(|what| at.wrong(spanned, format!("{path}: {what}")))?.into(),
-            (None, None, Some(size)) => Content::Generated { seed: size ^ name.len() as u64, size },
-            _ => return Err(at.wrong(spanned, "a file has one of text, path and size")),
-        };
-        world.files.install(&name, content);
-        let stem = name.strip_suffix(b".JBI");
-        if stem.is_some_and(|stem| world.files.program(stem).is_none()) {
-            return Err(at.wrong(spanned, format!("'{}' does not hold a job of that name", entry.name)));
-        }
+    let name = sjis(&entry.name);
+    if check_stored_name(&name).is_err() {
+        return Err(format!("'{}' is no file name a controller has", entry.name));
+    }
+    let content = match (&entry.text, &entry.path, entry.size) {
+        (Some(text), None, None) => sjis(&text.replace("\r\n", "\n").replace('\n', "\r\n")).into(),
+        (None, Some(path), None) => read(path).map_err(|what| format!("{path}: {what}"))?.into(),
+        (None, None, Some(size)) => Content::Generated { seed: size ^ name.len() as u64, size },
+        _ => return Err("a file has one of text, path and size".to_owned()),
+    };
+    world.files.install(&name, content);
+    let stem = name.strip_suffix(b".JBI");
+    if stem.is_some_and(|stem| world.files.program(stem).is_none()) {
+        return Err(format!("'{}' does not hold a job of that name", entry.name));
     }
     Ok(())
 }
@@ -550,7 +547,7 @@ fn alarms(world: &mut World, entries: &Entries) {
     if let Some(history) = &entries.history {
         world.alarms = AlarmLog::default();
         for entry in history {
-            world.alarms.record(entry.class.unwrap_or_else(|| Class::of(entry.code)), make(entry));
+            world.alarms.record(entry.class.unwrap_or_else(|| Class::from_code(entry.code)), make(entry));
         }
     }
     for entry in &entries.alarms {
@@ -559,12 +556,4 @@ fn alarms(world: &mut World, entries: &Entries) {
     if !entries.alarms.is_empty() {
         world.switches.servo = false;
     }
-}
-
-fn events(world: &mut World, entries: &[Spanned<Event>], at: &At<'_>) -> Result<(), String> {
-    // On a copy: the world is as it begins.
-    let mut copy = world.clone();
-    let events = at.events(entries, |line| console::execute(&mut copy, line))?;
-    world.events = events.into_iter().map(|(at, line, _)| (at, line)).collect();
-    Ok(())
 }

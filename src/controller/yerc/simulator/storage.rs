@@ -126,7 +126,7 @@ impl Storage {
 
 /// What comes of a request for a list or a file.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Found {
+pub(super) enum FileContent {
     /// These bytes.
     Content(Content),
     /// Nothing, with the added status that says so beside a good status.
@@ -135,21 +135,21 @@ pub(super) enum Found {
 
 impl World {
     /// Service 0x32.
-    pub(super) fn list_files(&self, filter: &[u8]) -> Result<Found, Refusal> {
+    pub(super) fn list_files(&self, filter: &[u8]) -> Result<FileContent, Refusal> {
         let names = self.files.list(filter).ok_or(Refusal::Added(code::PATH))?;
         match (names.is_empty(), self.model) {
-            (false, _) => Ok(Found::Content(names.into())),
-            (true, Model::Dx200) => Ok(Found::Nothing(code::NO_MATCH)),
+            (false, _) => Ok(FileContent::Content(names.into())),
+            (true, Model::Dx200) => Ok(FileContent::Nothing(code::NO_MATCH)),
             (true, Model::Fs100) => Err(Refusal::Added(code::NO_SUCH_FILE)),
         }
     }
 
     /// Service 0x16 for anything but the batch backup.
-    pub(super) fn read_file(&self, name: &[u8]) -> Result<Found, Refusal> {
+    pub(super) fn read_file(&self, name: &[u8]) -> Result<FileContent, Refusal> {
         check_stored_name(name)?;
         match (self.files.get(name), self.model) {
-            (Some(content), _) if content.size() > 0 => Ok(Found::Content(content.clone())),
-            (_, Model::Dx200) => Ok(Found::Nothing(code::NO_DATA)),
+            (Some(content), _) if content.size() > 0 => Ok(FileContent::Content(content.clone())),
+            (_, Model::Dx200) => Ok(FileContent::Nothing(code::NO_DATA)),
             (None, Model::Fs100) if name.ends_with(JOB) => Err(Refusal::Added(code::NO_SUCH_JOB)),
             (_, Model::Fs100) => Err(Refusal::Added(code::NO_SUCH_FILE)),
         }

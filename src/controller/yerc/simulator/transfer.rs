@@ -12,7 +12,7 @@
 use std::time::Duration;
 
 use super::robot::has;
-use super::storage::{Content, Found};
+use super::storage::{Content, FileContent};
 use super::world::{Refusal, World, code};
 use crate::Now;
 use crate::yerc::Model;
@@ -224,8 +224,8 @@ impl FileServer {
                     world.read_file(request.data)?
                 };
                 match found {
-                    Found::Content(content) => Stage::Sending { content, block: 1, is_backup: false },
-                    Found::Nothing(added) => {
+                    FileContent::Content(content) => Stage::Sending { content, block: 1, is_backup: false },
+                    FileContent::Nothing(added) => {
                         let status = Status { code: 0, added_size: 1, added: added.into() };
                         return Ok(frame(number, request.id, LAST_BLOCK, status, &[]));
                     }

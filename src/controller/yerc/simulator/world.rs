@@ -1,7 +1,5 @@
 //! The controller as a machine: switches, power, alarms, what may be done when, and the passing of time.
 
-use std::collections::VecDeque;
-
 use jiff::SignedDuration;
 use jiff::civil::DateTime;
 
@@ -12,6 +10,7 @@ use super::motion::{Arm, End, Family, Group};
 use super::playback::Player;
 use super::storage::Storage;
 use crate::Now;
+use crate::simulator::timeline::Timeline;
 use crate::yerc::Model;
 use crate::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
 use crate::yerc::wire::Status;
@@ -191,8 +190,7 @@ pub(super) struct World {
     pub(super) meters: Meters,
     /// User frames that were taught: number and origin with its turn about Z.
     pub(super) user_frames: Vec<(u32, [f64; 4])>,
-    /// Console lines to carry out at their time, in order.
-    pub(super) events: VecDeque<(Now, String)>,
+    pub(super) events: Timeline,
     /// Counts changes of mode and remote, on which file transfers are dropped.
     pub(super) mode_changes: u64,
 }
@@ -214,7 +212,7 @@ impl World {
 
     /// When something happens by itself.
     pub(super) fn wake(&self) -> Option<Now> {
-        [self.arm.motion_end(), self.player.due(), self.events.front().map(|(at, _)| *at)].into_iter().flatten().min()
+        [self.arm.motion_end(), self.player.due(), self.events.due()].into_iter().flatten().min()
     }
 
     /// Counts the time from `now` to `to`, in which nothing switches.
@@ -249,11 +247,9 @@ impl World {
             Some(End::Stopped) | None => {}
         }
         self.play();
-        while self.events.front().is_some_and(|(at, _)| *at <= self.now) {
-            if let Some((_, line)) = self.events.pop_front() {
-                // Lines were tried when the start state was read; one that is refused by now has no effect, as on a pendant.
-                let _refused = console::execute(self, &line);
-            }
+        while let Some(line) = self.events.take(self.now) {
+            // Lines were tried when the start state was read; one that is refused by now has no effect, as on a pendant.
+            let _refused = console::execute(self, &line);
         }
     }
 

@@ -6,6 +6,8 @@ use std::borrow::Cow;
 
 use thiserror::Error;
 
+use crate::typed;
+
 use super::Model;
 use super::wire::Status;
 
@@ -128,18 +130,15 @@ pub struct NoCode {
 /// the prefix. The result is never empty, and holds two entries only where a short code is in both tables.
 pub fn lookup(text: &str) -> Result<Vec<Explanation>, NoCode> {
     let trimmed = text.trim();
-    let digits = trimmed.strip_prefix("0x").or_else(|| trimmed.strip_prefix("0X")).unwrap_or(trimmed);
-    let plain = !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_hexdigit());
-    let code = u32::from_str_radix(digits, 16).ok().filter(|_| plain);
-    let code = code.ok_or_else(|| NoCode { text: text.to_owned() })?;
+    let code: u32 = typed::code(trimmed).ok_or_else(|| NoCode { text: text.to_owned() })?;
 
     let short = u8::try_from(code).ok();
     let mut found: Vec<Explanation> = short.and_then(status).map(of_status).into_iter().collect();
     found.extend(added(code).map(of_added));
     if found.is_empty() {
         let mut unknown = short.map_or_else(|| unknown_added(code), unknown_status);
-        if let Some(row) = digits.parse().ok().filter(|_| digits == trimmed).and_then(added) {
-            let hint = format!(" If {digits} was meant as a decimal number, it is 0x{:04X}: {}.", row.code, row.name);
+        if let Some(row) = trimmed.parse().ok().and_then(added) {
+            let hint = format!(" If {trimmed} was meant as a decimal number, it is 0x{:04X}: {}.", row.code, row.name);
             unknown.remedy.to_mut().push_str(&hint);
         }
         found.push(unknown);

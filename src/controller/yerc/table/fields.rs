@@ -1,25 +1,7 @@
 //! The data of each command, field by field.
 
+use super::bits::{Bit, DATA_1_BITS, DATA_2_BITS, EXTENDED_FORM_BITS, FORM_BITS};
 use crate::units::{self, Unit};
-use crate::yerc::payload::{DATA_1_BITS, DATA_2_BITS, EXTENDED_FORM_BITS, FORM_BITS};
-
-/// A bit and its words.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Bit {
-    /// Counted from the least significant.
-    pub bit: u8,
-    /// When 0; empty when nothing is to be said.
-    pub clear: &'static str,
-    /// When 1.
-    pub set: &'static str,
-}
-
-impl Bit {
-    /// The word for its state in `value`.
-    pub const fn word(&self, value: u32) -> &'static str {
-        if value >> self.bit & 1 == 1 { self.set } else { self.clear }
-    }
-}
 
 /// What a field holds; fixes its size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,6 +68,37 @@ const fn f(name: &'static str, kind: Kind) -> Field {
     Field { name, kind }
 }
 
+/// Fields of one name and kind, by their numbers.
+macro_rules! numbered {
+    ($name:literal, $axis:pat => $kind:expr; $($number:literal)+) => {
+        [$(f(concat!($name, " ", $number), {
+            let $axis = $number;
+            $kind
+        })),+]
+    };
+}
+
+/// Several rows of fields as one, of `N` fields together.
+const fn join<const N: usize>(parts: &[&[Field]]) -> [Field; N] {
+    let mut out = [f("", Kind::Reserved); N];
+    let (mut part, mut from) = (0, 0);
+    while part < parts.len() {
+        let fields = parts[part];
+        let mut i = 0;
+        while i < fields.len() {
+            out[from + i] = fields[i];
+            i += 1;
+        }
+        from += fields.len();
+        part += 1;
+    }
+    assert!(from == N, "as many fields as are announced");
+    out
+}
+
+/// Pulses of eight axes.
+const PULSES: [Field; 8] = numbered!("axis", _ => Kind::Scaled(units::PULSE); 1 2 3 4 5 6 7 8);
+
 /// How to read the sub-code of an alarm (FS and DX 3.3.1); 7, 13 to 19 and 26 are not defined.
 pub const ALARM_KINDS: &[(u32, &str)] = &[
     (0, "no sub-code"),
@@ -133,16 +146,14 @@ pub(super) const ALARM: &[Field] = &[
     f("time of occurrence", Kind::Text(16)),
     f("alarm name", Kind::Text(32)),
 ];
-pub(super) const ALARM_WITH_TEXTS: &[Field] = &[
-    f("alarm code", Kind::U32),
-    f("alarm data (sub-code)", Kind::U32),
-    f("alarm type", Kind::Choice(ALARM_KINDS)),
-    f("time of occurrence", Kind::Text(16)),
-    f("alarm name", Kind::Text(32)),
-    f("sub-code source", Kind::Text(16)),
-    f("sub-code text", Kind::Text(96)),
-    f("sub-code reverse-video map", Kind::Text(96)),
-];
+pub(super) const ALARM_WITH_TEXTS: &[Field] = &join::<8>(&[
+    ALARM,
+    &[
+        f("sub-code source", Kind::Text(16)),
+        f("sub-code text", Kind::Text(96)),
+        f("sub-code reverse-video map", Kind::Text(96)),
+    ],
+]);
 pub(super) const STATUS: &[Field] = &[f("data 1", Kind::Bits(&DATA_1_BITS)), f("data 2", Kind::Bits(&DATA_2_BITS))];
 pub(super) const JOB: &[Field] = &[
     f("job name", Kind::Text(32)),
@@ -150,74 +161,25 @@ pub(super) const JOB: &[Field] = &[
     f("step number", Kind::U32),
     f("speed override", Kind::Scaled(units::PERCENT)),
 ];
-pub(super) const AXIS_NAMES: &[Field] = &[
-    f("axis name 1", Kind::Text(4)),
-    f("axis name 2", Kind::Text(4)),
-    f("axis name 3", Kind::Text(4)),
-    f("axis name 4", Kind::Text(4)),
-    f("axis name 5", Kind::Text(4)),
-    f("axis name 6", Kind::Text(4)),
-    f("axis name 7", Kind::Text(4)),
-    f("axis name 8", Kind::Text(4)),
-];
-pub(super) const POSITION: &[Field] = &[
-    f("data type", Kind::Choice(POSITION_KINDS)),
-    f("form", Kind::Bits(&FORM_BITS)),
-    f("tool number", Kind::U32),
-    f("user coordinate number", Kind::U32),
-    f("extended form", Kind::Bits(&EXTENDED_FORM_BITS)),
-    f("axis 1", Kind::Axis(0)),
-    f("axis 2", Kind::Axis(1)),
-    f("axis 3", Kind::Axis(2)),
-    f("axis 4", Kind::Axis(3)),
-    f("axis 5", Kind::Axis(4)),
-    f("axis 6", Kind::Axis(5)),
-    f("axis 7", Kind::Axis(6)),
-    f("axis 8", Kind::Axis(7)),
-];
-pub(super) const BASE_POSITION: &[Field] = &[
-    f("data type", Kind::Choice(BASE_KINDS)),
-    f("axis 1", Kind::BaseAxis),
-    f("axis 2", Kind::BaseAxis),
-    f("axis 3", Kind::BaseAxis),
-    f("axis 4", Kind::BaseAxis),
-    f("axis 5", Kind::BaseAxis),
-    f("axis 6", Kind::BaseAxis),
-    f("axis 7", Kind::BaseAxis),
-    f("axis 8", Kind::BaseAxis),
-];
-pub(super) const EXTERNAL_POSITION: &[Field] = &[
-    f("data type", Kind::Choice(PULSE_KIND)),
-    f("axis 1", Kind::Scaled(units::PULSE)),
-    f("axis 2", Kind::Scaled(units::PULSE)),
-    f("axis 3", Kind::Scaled(units::PULSE)),
-    f("axis 4", Kind::Scaled(units::PULSE)),
-    f("axis 5", Kind::Scaled(units::PULSE)),
-    f("axis 6", Kind::Scaled(units::PULSE)),
-    f("axis 7", Kind::Scaled(units::PULSE)),
-    f("axis 8", Kind::Scaled(units::PULSE)),
-];
-pub(super) const POSITION_ERROR: &[Field] = &[
-    f("axis 1", Kind::Scaled(units::PULSE)),
-    f("axis 2", Kind::Scaled(units::PULSE)),
-    f("axis 3", Kind::Scaled(units::PULSE)),
-    f("axis 4", Kind::Scaled(units::PULSE)),
-    f("axis 5", Kind::Scaled(units::PULSE)),
-    f("axis 6", Kind::Scaled(units::PULSE)),
-    f("axis 7", Kind::Scaled(units::PULSE)),
-    f("axis 8", Kind::Scaled(units::PULSE)),
-];
+pub(super) const AXIS_NAMES: &[Field] = &numbered!("axis name", _ => Kind::Text(4); 1 2 3 4 5 6 7 8);
+pub(super) const POSITION: &[Field] = &join::<13>(&[
+    &[
+        f("data type", Kind::Choice(POSITION_KINDS)),
+        f("form", Kind::Bits(&FORM_BITS)),
+        f("tool number", Kind::U32),
+        f("user coordinate number", Kind::U32),
+        f("extended form", Kind::Bits(&EXTENDED_FORM_BITS)),
+    ],
+    &numbered!("axis", axis => Kind::Axis(axis - 1); 1 2 3 4 5 6 7 8),
+]);
+pub(super) const BASE_POSITION: &[Field] = &join::<9>(&[
+    &[f("data type", Kind::Choice(BASE_KINDS))],
+    &numbered!("axis", _ => Kind::BaseAxis; 1 2 3 4 5 6 7 8),
+]);
+pub(super) const EXTERNAL_POSITION: &[Field] = &join::<9>(&[&[f("data type", Kind::Choice(PULSE_KIND))], &PULSES]);
+pub(super) const POSITION_ERROR: &[Field] = &PULSES;
 /// The unit of torque is not printed.
-pub(super) const TORQUE: &[Field] = &[
-    f("axis 1", Kind::I32),
-    f("axis 2", Kind::I32),
-    f("axis 3", Kind::I32),
-    f("axis 4", Kind::I32),
-    f("axis 5", Kind::I32),
-    f("axis 6", Kind::I32),
-    f("axis 7", Kind::I32),
-    f("axis 8", Kind::I32),
-];
+pub(super) const TORQUE: &[Field] = &numbered!("axis", _ => Kind::I32; 1 2 3 4 5 6 7 8);
 pub(super) const IO: &[Field] = &[f("signals", Kind::Signals)];
 pub(super) const REGISTER: &[Field] = &[f("register", Kind::U16)];
 pub(super) const B: &[Field] = &[f("value", Kind::U8)];
@@ -240,11 +202,13 @@ pub(super) const SYSTEM: &[Field] = &[
 pub(super) const FILE_NAME: &[Field] = &[f("file name", Kind::FileName)];
 pub(super) const FILE_FILTER: &[Field] = &[f("filter", Kind::Filter)];
 
-const MOVE_HEAD: [Field; 11] = [
+const SPEED: [Field; 4] = [
     f("control group (robot)", Kind::U32),
     f("control group (station)", Kind::U32),
     f("speed class", Kind::Choice(SPEED_CLASS)),
     f("speed", Kind::Speed),
+];
+const TARGET: [Field; 7] = [
     f("coordinate", Kind::Choice(COORDINATE)),
     f("X", Kind::Scaled(units::MILLIMETRE)),
     f("Y", Kind::Scaled(units::MILLIMETRE)),
@@ -253,63 +217,25 @@ const MOVE_HEAD: [Field; 11] = [
     f("Ty", Kind::Scaled(units::DEGREE)),
     f("Tz", Kind::Scaled(units::DEGREE)),
 ];
-const MOVE_TAIL: [Field; 13] = [
+const FORM: [Field; 4] = [
     f("form", Kind::Bits(&FORM_BITS)),
     f("extended form", Kind::Bits(&EXTENDED_FORM_BITS)),
     f("tool number", Kind::U32),
     f("user coordinate number", Kind::U32),
-    f("base axis 1", Kind::Scaled(units::MILLIMETRE)),
-    f("base axis 2", Kind::Scaled(units::MILLIMETRE)),
-    f("base axis 3", Kind::Scaled(units::MILLIMETRE)),
-    f("station axis 1", Kind::Scaled(units::PULSE)),
-    f("station axis 2", Kind::Scaled(units::PULSE)),
-    f("station axis 3", Kind::Scaled(units::PULSE)),
-    f("station axis 4", Kind::Scaled(units::PULSE)),
-    f("station axis 5", Kind::Scaled(units::PULSE)),
-    f("station axis 6", Kind::Scaled(units::PULSE)),
 ];
-
-/// Head, reserved words, tail.
-const fn move_fields<const N: usize>() -> [Field; N] {
-    let mut out = [f("reserved", Kind::Reserved); N];
-    let mut i = 0;
-    while i < MOVE_HEAD.len() {
-        out[i] = MOVE_HEAD[i];
-        i += 1;
-    }
-    i = 0;
-    while i < MOVE_TAIL.len() {
-        out[N - MOVE_TAIL.len() + i] = MOVE_TAIL[i];
-        i += 1;
-    }
-    out
-}
+const BASE_MM: [Field; 3] = numbered!("base axis", _ => Kind::Scaled(units::MILLIMETRE); 1 2 3);
+const BASE_PULSES: [Field; 3] = numbered!("base axis", _ => Kind::Scaled(units::PULSE); 1 2 3);
+const STATION: [Field; 6] = numbered!("station axis", _ => Kind::Scaled(units::PULSE); 1 2 3 4 5 6);
+const RESERVED: Field = f("reserved", Kind::Reserved);
 
 /// DX 3.3.39: two reserved words.
-pub(super) const MOVE_26: &[Field] = &move_fields::<26>();
+pub(super) const MOVE_26: &[Field] = &join::<26>(&[&SPEED, &TARGET, &[RESERVED, RESERVED], &FORM, &BASE_MM, &STATION]);
 /// FS 3.3.39: one reserved word.
-pub(super) const MOVE_25: &[Field] = &move_fields::<25>();
-pub(super) const PULSE_MOVE: &[Field] = &[
-    f("control group (robot)", Kind::U32),
-    f("control group (station)", Kind::U32),
-    f("speed class", Kind::Choice(SPEED_CLASS)),
-    f("speed", Kind::Speed),
-    f("robot axis 1", Kind::Scaled(units::PULSE)),
-    f("robot axis 2", Kind::Scaled(units::PULSE)),
-    f("robot axis 3", Kind::Scaled(units::PULSE)),
-    f("robot axis 4", Kind::Scaled(units::PULSE)),
-    f("robot axis 5", Kind::Scaled(units::PULSE)),
-    f("robot axis 6", Kind::Scaled(units::PULSE)),
-    f("robot axis 7", Kind::Scaled(units::PULSE)),
-    f("robot axis 8", Kind::Scaled(units::PULSE)),
-    f("tool number", Kind::U32),
-    f("base axis 1", Kind::Scaled(units::PULSE)),
-    f("base axis 2", Kind::Scaled(units::PULSE)),
-    f("base axis 3", Kind::Scaled(units::PULSE)),
-    f("station axis 1", Kind::Scaled(units::PULSE)),
-    f("station axis 2", Kind::Scaled(units::PULSE)),
-    f("station axis 3", Kind::Scaled(units::PULSE)),
-    f("station axis 4", Kind::Scaled(units::PULSE)),
-    f("station axis 5", Kind::Scaled(units::PULSE)),
-    f("station axis 6", Kind::Scaled(units::PULSE)),
-];
+pub(super) const MOVE_25: &[Field] = &join::<25>(&[&SPEED, &TARGET, &[RESERVED], &FORM, &BASE_MM, &STATION]);
+pub(super) const PULSE_MOVE: &[Field] = &join::<22>(&[
+    &SPEED,
+    &numbered!("robot axis", _ => Kind::Scaled(units::PULSE); 1 2 3 4 5 6 7 8),
+    &[f("tool number", Kind::U32)],
+    &BASE_PULSES,
+    &STATION,
+]);

@@ -52,7 +52,7 @@ pub struct Instances {
 
 impl Instances {
     /// The spans of a model.
-    pub const fn of(&self, model: Model) -> &'static [Span] {
+    pub const fn for_model(&self, model: Model) -> &'static [Span] {
         match model {
             Model::Fs100 => self.fs100,
             Model::Dx200 => self.dx200,
@@ -61,12 +61,12 @@ impl Instances {
 
     /// The span that holds an instance.
     pub fn find(&self, model: Model, instance: u16) -> Option<&'static Span> {
-        self.of(model).iter().find(|span| span.contains(instance))
+        self.for_model(model).iter().find(|span| span.contains(instance))
     }
 
     /// The last number of the unbroken run of spans that holds an instance.
     pub fn reach(&self, model: Model, instance: u16, only_writable: bool) -> Option<u16> {
-        let mut spans = self.of(model).iter().filter(|span| span.writable || !only_writable);
+        let mut spans = self.for_model(model).iter().filter(|span| span.writable || !only_writable);
         let mut last = spans.find(|span| span.contains(instance))?.last;
         for span in spans {
             if last.checked_add(1) != Some(span.first) {
@@ -80,7 +80,7 @@ impl Instances {
     /// The numbers in words, e.g. `1-2, 11-12`.
     pub fn ranges(&self, model: Model, only_writable: bool) -> String {
         let mut ranges: Vec<(u16, u16)> = Vec::new();
-        for span in self.of(model).iter().filter(|span| span.writable || !only_writable) {
+        for span in self.for_model(model).iter().filter(|span| span.writable || !only_writable) {
             match ranges.last_mut() {
                 Some((_, last)) if last.checked_add(1) == Some(span.first) => *last = span.last,
                 _ => ranges.push((span.first, span.last)),

@@ -6,12 +6,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::hash::Hash;
 
-use super::{Reference, Value, VariableKind};
+use super::reference::{Reference, VariableKind};
+use super::value::Value;
 use crate::yerc::Model;
 use crate::yerc::payload::PayloadError;
 use crate::yerc::query::{
     Query, QueryError, ReadIo, ReadIoGroups, ReadRegister, ReadRegisters, ReadVariable, ReadVariables, WriteIo,
-    WriteIoGroups, WriteRegister, WriteRegisters, WriteVariable, WriteVariables,
+    WriteIoGroups, WriteQuery, WriteRegister, WriteRegisters, WriteVariable, WriteVariables,
 };
 use crate::yerc::request::Request;
 use crate::yerc::table::{Plural, Row};
@@ -127,15 +128,9 @@ macro_rules! write_step {
             }
         }
 
-        impl Query for $name {
-            type Answer = ();
-
-            fn request(&self) -> Request {
+        impl WriteQuery for $name {
+            fn write_request(&self) -> Request {
                 self.query.request()
-            }
-
-            fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
-                Ok(())
             }
         }
     };
@@ -334,12 +329,12 @@ fn numbered(first: u16, count: usize) -> Vec<u16> {
 }
 
 fn limits(command: u16) -> Plural {
-    Row::of(command).and_then(|row| row.plural).expect("registers and I/O groups have a plural command")
+    Row::from_number(command).and_then(|row| row.plural).expect("registers and I/O groups have a plural command")
 }
 
 /// The unbroken run of instances around one; only itself where it does not exist.
 fn run_of(command: u16, model: Model, number: u16) -> (u16, u16) {
-    let spans = Row::of(command).map_or(&[][..], |row| row.instances.of(model));
+    let spans = Row::from_number(command).map_or(&[][..], |row| row.instances.for_model(model));
     let Some(at) = spans.iter().position(|span| span.contains(number)) else { return (number, number) };
     let joined = |lower: usize| spans[lower].last.checked_add(1) == Some(spans[lower + 1].first);
     let first = (0..at).rev().take_while(|&lower| joined(lower)).last().unwrap_or(at);

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use crate::text::integer;
+use crate::typed::{self, RangeError, unsigned};
 use crate::yerc::Model;
 use crate::yerc::table::{Plural, Row};
 
@@ -74,7 +74,7 @@ impl VariableKind {
     /// The limits of the plural command.
     #[expect(clippy::missing_panics_doc, reason = "a property of the table, held by a test")]
     pub fn plural(self) -> Plural {
-        Row::of(self.plural_command()).and_then(|row| row.plural).expect("every variable has a plural command")
+        Row::from_number(self.plural_command()).and_then(|row| row.plural).expect("every variable has a plural command")
     }
 
     /// The last number of a controller as delivered: 99, or 127 for positions.
@@ -100,7 +100,7 @@ impl VariableKind {
     }
 
     fn row(self) -> &'static Row {
-        Row::of(self.command()).expect("every variable has a command")
+        Row::from_number(self.command()).expect("every variable has a command")
     }
 }
 
@@ -134,6 +134,9 @@ pub enum ReferenceError {
         /// What was given.
         found: String,
     },
+    /// A range whose last end comes first.
+    #[error(transparent)]
+    Backwards(#[from] RangeError),
 }
 
 impl Reference {
@@ -168,34 +171,25 @@ impl FromStr for Reference {
 
 /// Reads `B0`, `B0..B99` or `B0..99`; both ends belong to the range.
 pub fn parse_references(text: &str) -> Result<Vec<Reference>, ReferenceError> {
-    let Some((first, last)) = text.split_once("..") else { return Ok(vec![text.parse()?]) };
-    let wrong = || ReferenceError::Range { found: text.to_owned() };
-    let first: Reference = first.parse()?;
-    let last = if last.starts_with(|c: char| c.is_ascii_digit()) {
-        Reference::new(first.kind, parse_number(last, text)?)
-    } else {
-        last.parse()?
-    };
-    if last.kind != first.kind || last.number < first.number {
-        return Err(wrong());
-    }
-    Ok((first.number..=last.number).map(|number| Reference::new(first.kind, number)).collect())
+    let first: Reference = text.split(['.', '-']).next().unwrap_or_default().parse()?;
+    let numbers = typed::range(text, |end| {
+        if end.starts_with(|c: char| c.is_ascii_digit()) {
+            return parse_number(end, text);
+        }
+        let end: Reference = end.parse()?;
+        let same_kind = Some(end.number).filter(|_| end.kind == first.kind);
+        same_kind.ok_or_else(|| ReferenceError::Range { found: text.to_owned() })
+    })?;
+    Ok(numbers.map(|number| Reference::new(first.kind, number)).collect())
 }
 
 /// Reads `5` or `5..20` for registers and I/O groups; both ends belong to the range.
 pub fn parse_numbers(text: &str) -> Result<Vec<u16>, ReferenceError> {
-    let (first, last) = text.split_once("..").unwrap_or((text, text));
-    let (first, last) = (parse_number(first, text)?, parse_number(last, text)?);
-    if last < first {
-        return Err(ReferenceError::Range { found: text.to_owned() });
-    }
-    Ok((first..=last).collect())
+    typed::range(text, |end| parse_number(end, text)).map(Iterator::collect)
 }
 
 fn parse_number(digits: &str, whole: &str) -> Result<u16, ReferenceError> {
-    let number = integer(digits).filter(|_| digits.starts_with(|first: char| first.is_ascii_digit()));
-    let number = number.and_then(|number| u16::try_from(number).ok());
-    number.ok_or_else(|| ReferenceError::Number { found: whole.to_owned() })
+    unsigned(digits).ok_or_else(|| ReferenceError::Number { found: whole.to_owned() })
 }
 
 #[cfg(test)]
@@ -206,7 +200,7 @@ mod tests {
     fn kinds_stand_at_their_row() {
         for (index, kind) in VariableKind::all().enumerate() {
             assert_eq!(kind as usize, index);
-            assert_eq!(kind.row().size(), Row::of(kind.plural_command()).unwrap().size());
+            assert_eq!(kind.row().size(), Row::from_number(kind.plural_command()).unwrap().size());
         }
         assert_eq!(VariableKind::P.last_standard(), 127);
         assert_eq!(VariableKind::S16.last_standard(), 99);

@@ -2,8 +2,8 @@
 
 use thiserror::Error;
 
-use super::VariableKind;
-use crate::text::integer;
+use super::reference::VariableKind;
+use crate::typed::integer;
 use crate::yerc::payload::{
     BasePosition, ExternalPosition, PayloadError, Position, PositionTextError, Reader, Text, TextError,
 };

@@ -1,14 +1,11 @@
 //! Procedures with a small controller that answers as the timing charts show, in virtual time.
 
 use super::*;
+use crate::testing::ms;
 use crate::yrcx::image::DEDICATED_WORD;
 use crate::yrcx::signal::{Side, input, output, resting};
 
 const RPI: u64 = 20;
-
-fn ms(ms: u64) -> Duration {
-    Duration::from_millis(ms)
-}
 
 /// A controller that answers dedicated inputs after 30 ms, as the timing charts show.
 struct World {

@@ -38,7 +38,7 @@ pub enum Ended {
     /// The controller answered, be it with an alarm.
     Answered(Answer),
     /// The command was not sent. Nothing was done.
-    NotSent(Hindrance),
+    NotSent(NotSentReason),
     /// Continuous output was ended as asked.
     Stopped,
     /// No answer to a command that may be repeated without harm.
@@ -49,7 +49,7 @@ pub enum Ended {
 
 /// Why a command was not sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hindrance {
+pub enum NotSentReason {
     /// No image came.
     NoImage,
     /// The link went down, or sends nothing.
@@ -114,7 +114,7 @@ impl Exchange {
     pub fn new(order: Order, policy: Policy) -> Self {
         let outcome = Outcome {
             row: order.row(),
-            ended: Ended::NotSent(Hindrance::NoImage),
+            ended: Ended::NotSent(NotSentReason::NoImage),
             words: None,
             elapsed: Duration::ZERO,
             leftover: None,
@@ -178,7 +178,7 @@ impl Exchange {
     }
 
     fn status(&self) -> Option<Status> {
-        self.input.map(|image| Status::of(image.0[0]))
+        self.input.map(|image| Status::from_word(image.0[0]))
     }
 
     /// Shows the data words beside the status reset, and the command word once the controller is ready and has them.
@@ -187,10 +187,10 @@ impl Exchange {
         words[0] = Status::Ready.word();
         output.next.set_command(&words);
         if self.interrupted.is_some() {
-            return self.finish(now, output, Ended::NotSent(Hindrance::Interrupted));
+            return self.finish(now, output, Ended::NotSent(NotSentReason::Interrupted));
         }
         if !self.linked {
-            return self.finish(now, output, Ended::NotSent(Hindrance::LinkLost));
+            return self.finish(now, output, Ended::NotSent(NotSentReason::LinkLost));
         }
         let data_sent = output.last_sent().is_some_and(|sent| sent.command() == words);
         match self.status() {
@@ -209,8 +209,8 @@ impl Exchange {
         }
         if now >= self.started_or(now).saturating_add(self.policy.ready) {
             let hindrance = match self.status() {
-                Some(Status::Ready) | None => Hindrance::NoImage,
-                Some(status) => Hindrance::NotReady(status),
+                Some(Status::Ready) | None => NotSentReason::NoImage,
+                Some(status) => NotSentReason::NotReady(status),
             };
             self.finish(now, output, Ended::NotSent(hindrance));
         }
@@ -234,7 +234,7 @@ impl Exchange {
                 self.phase = Phase::Prepare;
                 self.prepare(now, output);
             } else if now >= self.deadline() {
-                self.finish(now, output, Ended::NotSent(Hindrance::LinkLost));
+                self.finish(now, output, Ended::NotSent(NotSentReason::LinkLost));
             }
             return;
         }

@@ -45,7 +45,7 @@ pub(super) const HISTORY: usize = 500;
 
 /// Where an alarm came up (4.7.7).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum AlarmSource {
     /// The controller as a whole.
     Controller,
     /// The option slot of the fieldbus.
@@ -58,7 +58,7 @@ pub(super) enum Place {
     Task(u8),
 }
 
-impl Place {
+impl AlarmSource {
     /// The two words of additional information.
     pub(super) fn words(self) -> [u16; 2] {
         let small = |number: usize| u16::try_from(number).unwrap_or_default() & 0xFF;
@@ -72,7 +72,7 @@ impl Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for AlarmSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Controller => f.write_str("C1"),
@@ -88,26 +88,26 @@ impl fmt::Display for Place {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Fault {
     pub(super) alarm: Alarm,
-    pub(super) place: Place,
+    pub(super) place: AlarmSource,
     /// For whoever wants to know more than the number says.
     pub(super) why: String,
 }
 
 impl Fault {
-    pub(super) fn new(alarm: Alarm, place: Place, why: impl Into<String>) -> Self {
+    pub(super) fn new(alarm: Alarm, place: AlarmSource, why: impl Into<String>) -> Self {
         Self { alarm, place, why: why.into() }
     }
 
     pub(super) fn of_words(why: impl Into<String>) -> Self {
-        Self::new(INPUT_FORMAT, Place::Slot, why)
+        Self::new(INPUT_FORMAT, AlarmSource::Slot, why)
     }
 
     pub(super) fn stopped() -> Self {
-        Self::new(STOP_INPUT, Place::Slot, "SI(06) is off")
+        Self::new(STOP_INPUT, AlarmSource::Slot, "SI(06) is off")
     }
 
     pub(super) fn emergency() -> Self {
-        Self::new(EMERGENCY_STOP, Place::Controller, "the controller is in emergency stop")
+        Self::new(EMERGENCY_STOP, AlarmSource::Controller, "the controller is in emergency stop")
     }
 }
 
@@ -118,7 +118,7 @@ impl fmt::Display for Fault {
 }
 
 /// An alarm and where it came up.
-pub(super) type Entry = (Alarm, Place);
+pub(super) type Entry = (Alarm, AlarmSource);
 
 /// What is active, and what was.
 #[derive(Debug, Clone, Default)]
@@ -133,7 +133,7 @@ pub(super) struct AlarmLog {
 
 impl AlarmLog {
     /// A serious alarm.
-    pub(super) fn raise(&mut self, alarm: Alarm, place: Place, fatal: bool) {
+    pub(super) fn raise(&mut self, alarm: Alarm, place: AlarmSource, fatal: bool) {
         if self.active.iter().any(|(known, _)| *known == alarm) {
             return;
         }
@@ -142,7 +142,7 @@ impl AlarmLog {
     }
 
     /// Something that went wrong and is over.
-    pub(super) fn record(&mut self, alarm: Alarm, place: Place) {
+    pub(super) fn record(&mut self, alarm: Alarm, place: AlarmSource) {
         self.history.push_front((alarm, place));
         self.history.truncate(HISTORY);
     }

@@ -1,6 +1,6 @@
 //! What a remote command does, by its row of the table.
 
-use super::alarms::{Fault, NOT_ENABLED, Place, UNKNOWN_COMMAND};
+use super::alarms::{AlarmSource, Fault, NOT_ENABLED, UNKNOWN_COMMAND};
 use super::request::Request;
 use super::world::{Action, World};
 use super::{motions, operate, reads, records};
@@ -46,7 +46,7 @@ pub(super) fn begin(world: &mut World, request: &Request) -> Result<Work, Fault>
 
 /// A command that came to the wrong part of the simulator.
 pub(super) fn not_here(request: &Request) -> Fault {
-    Fault::new(UNKNOWN_COMMAND, Place::Slot, format!("the simulator does not know {}", request.row.id))
+    Fault::new(UNKNOWN_COMMAND, AlarmSource::Slot, format!("the simulator does not know {}", request.row.id))
 }
 
 fn done((): ()) -> Work {
@@ -57,10 +57,10 @@ fn done((): ()) -> Work {
 fn enabled(world: &World, request: &Request) -> Result<(), Fault> {
     if !world.switches.inputs {
         let why = "a safety setting disables the dedicated inputs";
-        return Err(Fault::new(NOT_ENABLED, Place::Slot, why));
+        return Err(Fault::new(NOT_ENABLED, AlarmSource::Slot, why));
     }
     if world.switches.boxed && !UNDER_THE_BOX.contains(&request.row.code) {
-        return Err(Fault::new(NOT_ENABLED, Place::Slot, "the programming box has control"));
+        return Err(Fault::new(NOT_ENABLED, AlarmSource::Slot, "the programming box has control"));
     }
     Ok(())
 }

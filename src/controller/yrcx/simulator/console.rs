@@ -1,13 +1,12 @@
 //! What somebody at the machine can do: one line, one action.
 
-use std::fmt::Write as _;
-
-use super::alarms::{Fault, NOT_AUTO, Place};
+use super::alarms::{AlarmSource, Fault, NOT_AUTO};
 use super::geometry::whole;
 use super::memory::{PORT_NAMES, SI};
 use super::program::assigned;
 use super::robot::{Axis, Servo};
 use super::world::{Mode, World};
+use crate::simulator::console::{self, on_off, unknown};
 use crate::yrcx::alarm::Alarm;
 
 /// The lines there are, as `help` shows them.
@@ -47,7 +46,7 @@ pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
             find_axis(world, axis)?.load = load.ok_or("a load is -100 to 100 %")?;
         }
         [port] if port.contains('=') => return set_port(world, port),
-        _ => return Err(format!("no such line: '{}'", line.trim())),
+        _ => return Err(unknown(line)),
     }
     Ok(summary(world))
 }
@@ -56,23 +55,20 @@ pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
 fn set_mode(world: &mut World, mode: Mode) {
     if world.switches.mode != mode {
         world.switches.mode = mode;
-        world.stop(&Fault::new(NOT_AUTO, Place::Controller, "the mode was changed"));
+        world.stop(&Fault::new(NOT_AUTO, AlarmSource::Controller, "the mode was changed"));
     }
 }
 
 fn raise(world: &mut World, number: &str, fatal: bool) -> Result<(), String> {
     let alarm = number.parse::<Alarm>().map_err(|error| error.to_string())?;
-    world.raise(&Fault::new(alarm, Place::Controller, "raised at the console"), fatal);
+    world.raise(&Fault::new(alarm, AlarmSource::Controller, "raised at the console"), fatal);
     Ok(())
 }
 
 fn set_port(world: &mut World, text: &str) -> Result<String, String> {
     let found = assigned(text).filter(|(port, _)| port.kind != SI);
     let (port, value) = found.ok_or_else(|| format!("'{text}' sets no port; the master has SI"))?;
-    match port.bit {
-        Some(bit) => world.memory.set_bit(port.kind, port.port, bit, value == 1),
-        None => world.memory.set_port(port.kind, port.port, value),
-    }
+    world.memory.set_output(port, value);
     world.restless = true;
     let byte = world.memory.port(port.kind, port.port);
     Ok(format!("{}{}() is {byte}", PORT_NAMES[port.kind], port.port))
@@ -88,34 +84,18 @@ fn find_axis<'a>(world: &'a mut World, text: &str) -> Result<&'a mut Axis, Strin
         .ok_or_else(|| format!("'{text}' is no axis such as R1A3"))
 }
 
-fn on_off(text: &str) -> Result<bool, String> {
-    match text {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err(format!("'{text}' is not on or off")),
-    }
-}
-
 fn summary(world: &World) -> String {
-    let mode = if world.switches.mode == Mode::Auto { "auto" } else { "manual" };
-    let mut text = format!("mode {mode}, motor power {}", if world.motor { "on" } else { "off" });
-    for (on, what) in [
+    let mode = if world.switches.mode == Mode::Auto { "mode auto" } else { "mode manual" };
+    let power = if world.motor { "motor power on" } else { "motor power off" };
+    let optional = [
         (world.emergency(), "emergency stop"),
         (world.switches.boxed, "the programming box has control"),
         (!world.switches.inputs, "dedicated inputs disabled"),
         (world.is_running(), "a program runs"),
         (world.switches.warning, "warning"),
-    ] {
-        if on {
-            text.push_str(", ");
-            text.push_str(what);
-        }
-    }
-    for alarm in world.alarms.all_active() {
-        // Writing to a text does not fail.
-        let _ = write!(text, ", alarm {alarm}");
-    }
-    text
+    ];
+    let alarms = world.alarms.all_active().map(|alarm| format!(", alarm {alarm}"));
+    console::summary(&[mode, power], optional) + &alarms.collect::<String>()
 }
 
 fn state(world: &World) -> String {

@@ -29,7 +29,7 @@ pub(super) enum Arm {
 
 impl Arm {
     /// 0 right, 1 left (4.2.19).
-    pub(super) fn of(code: i32) -> Self {
+    pub(super) fn from_code(code: i32) -> Self {
         if code == 1 { Self::Left } else { Self::Right }
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::alarms::{ARITHMETIC, Fault, NO_AXIS, NO_PALLET, NO_POINT, POINT_UNIT, Place};
+use super::alarms::{ARITHMETIC, AlarmSource, Fault, NO_AXIS, NO_PALLET, NO_POINT, POINT_UNIT};
 use super::geometry::{Four, STEPS, whole};
 use super::robot::AXES;
 
@@ -33,7 +33,7 @@ pub(super) enum PointUnit {
 }
 
 impl PointUnit {
-    pub(super) fn of(code: i32) -> Self {
+    pub(super) fn from_code(code: i32) -> Self {
         if code == 1 { Self::Mm } else { Self::Pulse }
     }
 
@@ -102,6 +102,14 @@ pub(super) enum Operation {
     Divide,
 }
 
+/// A port, or a signal of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct PortRef {
+    pub(super) kind: usize,
+    pub(super) port: usize,
+    pub(super) bit: Option<u8>,
+}
+
 /// All of it.
 #[derive(Debug, Clone)]
 pub(super) struct Memory {
@@ -163,7 +171,7 @@ impl Memory {
         if point.unit != unit {
             return Err(unit_differs("the point"));
         }
-        let no_axis = || Fault::new(NO_AXIS, Place::Controller, format!("a point has no element {}", at + 1));
+        let no_axis = || Fault::new(NO_AXIS, AlarmSource::Controller, format!("a point has no element {}", at + 1));
         *point.values.get_mut(at).ok_or_else(no_axis)? = value;
         self.set_point(number, point);
         Ok(())
@@ -172,7 +180,7 @@ impl Memory {
     /// A pallet that is defined.
     pub(super) fn pallet(&self, number: usize) -> Result<Pallet, Fault> {
         let pallet = self.pallets.get(number).copied().flatten();
-        pallet.ok_or_else(|| Fault::new(NO_PALLET, Place::Controller, format!("pallet {number} is not defined")))
+        pallet.ok_or_else(|| Fault::new(NO_PALLET, AlarmSource::Controller, format!("pallet {number} is not defined")))
     }
 
     /// A place on a pallet, 1 the first: X counts fastest, then Y, then Z.
@@ -181,7 +189,7 @@ impl Memory {
         let [nx, ny, nz] = pallet.counts;
         if i64::from(place) > i64::from(nx) * i64::from(ny) * i64::from(nz) {
             let why = format!("pallet {number} has {nx} x {ny} x {nz} places, not {place}");
-            return Err(Fault::new(NO_PALLET, Place::Controller, why));
+            return Err(Fault::new(NO_PALLET, AlarmSource::Controller, why));
         }
         let corner = |offset: u16| {
             let point = self.point(usize::from(pallet.first) + usize::from(offset))?;
@@ -247,6 +255,14 @@ impl Memory {
         let old = self.port(kind, number);
         self.set_port(kind, number, if on { old | mask } else { old & !mask });
     }
+
+    /// Sets what a program or a line names: a port or one of its signals.
+    pub(super) fn set_output(&mut self, port: PortRef, value: u8) {
+        match port.bit {
+            Some(bit) => self.set_bit(port.kind, port.port, bit, value == 1),
+            None => self.set_port(port.kind, port.port, value),
+        }
+    }
 }
 
 /// Two numbers and what to do with them.
@@ -257,7 +273,7 @@ pub(super) fn calculate(operation: Operation, first: Number, second: Number) -> 
         Operation::Add => Ok(a + b),
         Operation::Subtract => Ok(a - b),
         Operation::Multiply => Ok(a * b),
-        Operation::Divide if b == 0.0 => Err(Fault::new(ARITHMETIC, Place::Controller, "division by zero")),
+        Operation::Divide if b == 0.0 => Err(Fault::new(ARITHMETIC, AlarmSource::Controller, "division by zero")),
         Operation::Divide => Ok(a / b),
     }
 }
@@ -283,15 +299,15 @@ pub(super) fn is_port(kind: usize, number: usize) -> bool {
 }
 
 fn no_point(number: usize) -> Fault {
-    Fault::new(NO_POINT, Place::Controller, format!("point {number} is not defined"))
+    Fault::new(NO_POINT, AlarmSource::Controller, format!("point {number} is not defined"))
 }
 
 fn unit_differs(what: &str) -> Fault {
-    Fault::new(POINT_UNIT, Place::Controller, format!("{what} must be in the unit of this command"))
+    Fault::new(POINT_UNIT, AlarmSource::Controller, format!("{what} must be in the unit of this command"))
 }
 
 fn too_large() -> Fault {
-    Fault::new(ARITHMETIC, Place::Controller, "the result does not fit")
+    Fault::new(ARITHMETIC, AlarmSource::Controller, "the result does not fit")
 }
 
 #[expect(

@@ -7,7 +7,7 @@ use super::memory::PointUnit;
 use super::motion::{End, Leg, Owner};
 use super::moves::{Frame, Homing, Rate, Speed};
 use super::request::Request;
-use super::robot::{ALL, Kept, Method, RESET_PITCH};
+use super::robot::{ALL, Method, RESET_PITCH, ResumableMotion};
 use super::world::World;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Values};
@@ -94,7 +94,7 @@ fn travel(world: &mut World, request: &Request) -> Result<(), Fault> {
     let legs = legs(world, request, &target)?;
     world.begin(robot, Owner::Remote, legs, End::Arrived)?;
     if request.row.keeps_target() {
-        world.robot_mut(robot)?.kept = Some(Kept { words: request.words, target });
+        world.robot_mut(robot)?.kept = Some(ResumableMotion { words: request.words, target });
     }
     Ok(())
 }
@@ -172,7 +172,7 @@ fn legs(world: &World, request: &Request, target: &Four) -> Result<Vec<Leg>, Fau
             let over = usize::try_from(request.int(Key::ArchAxis).trailing_zeros()).unwrap_or_default();
             world.has_axes(robot, 1 << over)?;
             let height = f64::from(request.int(Key::ArchPosition));
-            let height = match PointUnit::of(request.int(Key::ArchUnit)) {
+            let height = match PointUnit::from_code(request.int(Key::ArchUnit)) {
                 PointUnit::Pulse => height,
                 PointUnit::Mm => height / STEPS * world.geometry(robot)?.per_unit[over],
             };

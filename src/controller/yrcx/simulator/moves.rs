@@ -1,6 +1,6 @@
 //! Where motions go and how fast: the targets and ways of commands and programs.
 
-use super::alarms::{Fault, NO_ABSOLUTE_RESET, NO_PATH, OUT_OF_REACH, POINT_UNIT, Place};
+use super::alarms::{AlarmSource, Fault, NO_ABSOLUTE_RESET, NO_PATH, OUT_OF_REACH, POINT_UNIT};
 use super::geometry::{Arm, Four, Geometry, STEPS, along_tool, from_shift, to_shift};
 use super::memory::{Point, PointUnit};
 use super::motion::{End, Leg, Motion, Owner, Path};
@@ -149,7 +149,9 @@ impl World {
     pub(super) fn tool_way(point: &Point) -> Result<Four, Fault> {
         match point.unit {
             PointUnit::Mm => Ok(point.numbers()),
-            PointUnit::Pulse => Err(Fault::new(POINT_UNIT, Place::Controller, "tool coordinates need a point in mm")),
+            PointUnit::Pulse => {
+                Err(Fault::new(POINT_UNIT, AlarmSource::Controller, "tool coordinates need a point in mm"))
+            }
         }
     }
 
@@ -204,7 +206,7 @@ impl World {
         robot.check_limits(number, to)?;
         let arm = geometry.arm(&from);
         if arm != geometry.arm(to) {
-            return Err(Fault::new(NO_PATH, Place::Robot(number), "the hand system cannot change on a line"));
+            return Err(Fault::new(NO_PATH, AlarmSource::Robot(number), "the hand system cannot change on a line"));
         }
         let (start, end) = (geometry.pose(&from), geometry.pose(to));
         let way = start.iter().zip(&end).take(3).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
@@ -225,7 +227,7 @@ impl World {
         let arc = Path::arc(&start, &geometry.pose(&via), &end, arm.unwrap_or(robot.arm));
         let (path, way) = arc
             .filter(|_| arm == geometry.arm(&to))
-            .ok_or_else(|| Fault::new(NO_PATH, Place::Robot(number), "there is no arc over these points"))?;
+            .ok_or_else(|| Fault::new(NO_PATH, AlarmSource::Robot(number), "there is no arc over these points"))?;
         self.tool_leg(number, path, way, end[3] - start[3], speed)
     }
 
@@ -349,7 +351,7 @@ impl World {
                 }
                 if axis.method == Method::Mark && !axis.origin {
                     let why = format!("axis {} needs an absolute reset first", at + 1);
-                    return Err(Fault::new(NO_ABSOLUTE_RESET, Place::Axis(number, at), why));
+                    return Err(Fault::new(NO_ABSOLUTE_RESET, AlarmSource::Axis(number, at), why));
                 }
                 to[at] = 0.0;
                 homing |= 1 << at;
@@ -420,5 +422,5 @@ fn sum(a: &Four, b: &Four) -> Four {
 }
 
 fn out_of_reach(number: usize) -> Fault {
-    Fault::new(OUT_OF_REACH, Place::Robot(number), "no position of the axes puts the tool there")
+    Fault::new(OUT_OF_REACH, AlarmSource::Robot(number), "no position of the axes puts the tool there")
 }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use jiff::civil::{Date, Time};
 
-use super::alarms::{Fault, NO_ABSOLUTE_RESET, NO_HAND, NO_PROGRAM, NO_TASK, Place};
+use super::alarms::{AlarmSource, Fault, NO_ABSOLUTE_RESET, NO_HAND, NO_PROGRAM, NO_TASK};
 use super::commands::{Work, not_here};
 use super::geometry::{Arm, STEPS, whole};
 use super::memory::{Point, PointUnit};
@@ -58,13 +58,13 @@ pub(super) fn change(world: &mut World, request: &Request) -> Result<(), Fault> 
         Command::SpeedAuto => world.robot_mut(number)?.auto_speed = percent,
         Command::SpeedProgram => world.robot_mut(number)?.program_speed = percent,
         Command::ShiftSelect => world.robot_mut(number)?.shift = request.index(Key::Shift),
-        Command::ArmSelect => world.robot_mut(number)?.arm = Arm::of(request.int(Key::Arm)),
+        Command::ArmSelect => world.robot_mut(number)?.arm = Arm::from_code(request.int(Key::Arm)),
         Command::HandSelect => {
             let hand = request.index(Key::Hand);
             let owner = world.memory.hands.get(hand).copied().flatten().map(|hand| hand.owner);
             if owner != Some(number) {
                 let why = format!("hand {hand} is not defined for robot {}", number + 1);
-                return Err(Fault::new(NO_HAND, Place::Robot(number), why));
+                return Err(Fault::new(NO_HAND, AlarmSource::Robot(number), why));
             }
             world.robot_mut(number)?.hand = Some(hand);
         }
@@ -80,7 +80,7 @@ pub(super) fn change(world: &mut World, request: &Request) -> Result<(), Fault> 
 /// Stores where the robot is (4.2.9).
 fn teach(world: &mut World, request: &Request) -> Result<(), Fault> {
     let number = request.robot();
-    let (robot, unit) = (world.robot(number)?, PointUnit::of(request.int(Key::Unit)));
+    let (robot, unit) = (world.robot(number)?, PointUnit::from_code(request.int(Key::Unit)));
     let arm = world.geometry(number)?.arm(&robot.pulses());
     let point = match unit {
         PointUnit::Pulse => Point { unit, hand_system: 0, values: robot.pulses().map(whole) },
@@ -105,7 +105,7 @@ fn absolute_reset(world: &mut World, request: &Request) -> Result<(), Fault> {
     let turns = axis.pulses / RESET_PITCH;
     if (turns - turns.round()).abs() * RESET_PITCH > 1.0 {
         let why = format!("axis {} is not where an absolute reset is possible", at + 1);
-        return Err(Fault::new(NO_ABSOLUTE_RESET, Place::Axis(number, at), why));
+        return Err(Fault::new(NO_ABSOLUTE_RESET, AlarmSource::Axis(number, at), why));
     }
     axis.origin = true;
     Ok(())
@@ -114,7 +114,7 @@ fn absolute_reset(world: &mut World, request: &Request) -> Result<(), Fault> {
 /// An axis without marks.
 pub(super) fn no_mark(number: usize, at: usize) -> Fault {
     let why = format!("axis {} is not of the mark type", at + 1);
-    Fault::new(NO_ABSOLUTE_RESET, Place::Axis(number, at), why)
+    Fault::new(NO_ABSOLUTE_RESET, AlarmSource::Axis(number, at), why)
 }
 
 /// Programs (4.6).
@@ -155,7 +155,7 @@ impl Chosen {
             Self::Program(program) => task.program == program,
             Self::Task(number) => task.number == number,
         });
-        at.ok_or_else(|| Fault::new(NO_TASK, Place::Controller, "it is not registered in a task"))
+        at.ok_or_else(|| Fault::new(NO_TASK, AlarmSource::Controller, "it is not registered in a task"))
     }
 }
 
@@ -168,7 +168,7 @@ fn chosen(world: &World, request: &Request) -> Result<Chosen, Fault> {
         // The whole name, or the lowest number among those that begin so where all 16 characters are given.
         _ => world.programs.iter().find(|(_, program)| program.short_name() == name).map(|(number, _)| *number),
     };
-    let none = || Fault::new(NO_PROGRAM, Place::Controller, "there is no such program");
+    let none = || Fault::new(NO_PROGRAM, AlarmSource::Controller, "there is no such program");
     found.map(Chosen::Program).ok_or_else(none)
 }
 
@@ -180,11 +180,11 @@ fn register(world: &mut World, request: &Request, program: u8) -> Result<(), Fau
         0 => (1..=TASKS).find(|number| taken(*number).is_none()),
         number => Some(number),
     };
-    let full = || Fault::new(NO_TASK, Place::Controller, "every task has a program");
+    let full = || Fault::new(NO_TASK, AlarmSource::Controller, "every task has a program");
     let number = number.ok_or_else(full)?;
     if world.tasks.iter().any(|task| (task.number == number || task.program == program) && task.state == State::Running)
     {
-        return Err(Fault::new(super::alarms::RUNNING, Place::Task(number), "the task or the program runs"));
+        return Err(Fault::new(super::alarms::RUNNING, AlarmSource::Task(number), "the task or the program runs"));
     }
     // A program is in one task at a time, so that its number tells which.
     world.tasks.retain(|task| task.number != number && task.program != program);
@@ -194,10 +194,10 @@ fn register(world: &mut World, request: &Request, program: u8) -> Result<(), Fau
 
 /// What a program does; only while it does not run (4.6.4).
 fn show(world: &World, at: usize) -> Result<Values, Fault> {
-    let none = || Fault::new(NO_TASK, Place::Controller, "it is not registered in a task");
+    let none = || Fault::new(NO_TASK, AlarmSource::Controller, "it is not registered in a task");
     let task = world.tasks.get(at).ok_or_else(none)?;
     if task.state == State::Running {
-        return Err(Fault::new(super::alarms::RUNNING, Place::Task(task.number), "the program runs"));
+        return Err(Fault::new(super::alarms::RUNNING, AlarmSource::Task(task.number), "the program runs"));
     }
     let name = world.programs.get(&task.program).map_or("", |program| program.short_name());
     let mut values = Values::default();

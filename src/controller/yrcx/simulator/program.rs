@@ -3,19 +3,11 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use super::memory::{Number, Operation, POINTS, is_port, port_kind};
+use super::memory::{Number, Operation, POINTS, PortRef, is_port, port_kind};
 use super::request::ROBOTS;
 
 /// Lines of a program at most; the line of COMMON is told from 10000 on (4.6.4).
 const MAX_LINES: usize = 9999;
-
-/// A port, or a signal of it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct PortRef {
-    pub(super) kind: usize,
-    pub(super) port: usize,
-    pub(super) bit: Option<u8>,
-}
 
 /// A number in a program.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +19,7 @@ pub(super) enum Operand {
 
 /// One line.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Line {
+pub(super) enum Statement {
     /// Empty, a comment, a label.
     Nothing,
     Move {
@@ -55,7 +47,7 @@ pub(super) enum Line {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Program {
     pub(super) name: String,
-    pub(super) lines: Vec<Line>,
+    pub(super) lines: Vec<Statement>,
     pub(super) labels: BTreeMap<String, usize>,
 }
 
@@ -71,7 +63,7 @@ impl Program {
             let line = line.split('\'').next().unwrap_or_default().trim();
             if let Some(label) = line.strip_prefix('*').and_then(|label| label.strip_suffix(':')) {
                 program.labels.insert(label.to_owned(), number);
-                program.lines.push(Line::Nothing);
+                program.lines.push(Statement::Nothing);
                 continue;
             }
             let parsed = statement(line).ok_or_else(|| format!("line {} of {name}: '{line}'", number + 1))?;
@@ -89,27 +81,27 @@ impl Program {
     }
 }
 
-fn statement(line: &str) -> Option<Line> {
+fn statement(line: &str) -> Option<Statement> {
     let (word, rest) = line.split_once(' ').map_or((line, ""), |(word, rest)| (word, rest.trim()));
     let label = || rest.strip_prefix('*').map(str::to_owned);
     match word {
-        "" | "REM" => Some(Line::Nothing),
-        "DELAY" => Some(Line::Delay(Duration::from_millis(rest.parse().ok()?))),
-        "WAIT" => assigned(rest).map(|(port, value)| Line::Wait(port, value)),
-        "GOTO" => label().map(Line::Goto),
-        "GOSUB" => label().map(Line::Gosub),
-        "RETURN" => Some(Line::Return),
-        "HALT" => Some(Line::Halt),
+        "" | "REM" => Some(Statement::Nothing),
+        "DELAY" => Some(Statement::Delay(Duration::from_millis(rest.parse().ok()?))),
+        "WAIT" => assigned(rest).map(|(port, value)| Statement::Wait(port, value)),
+        "GOTO" => label().map(Statement::Goto),
+        "GOSUB" => label().map(Statement::Gosub),
+        "RETURN" => Some(Statement::Return),
+        "HALT" => Some(Statement::Halt),
         _ if word.starts_with("MOVE") => motion(word, rest),
         _ if word.starts_with("SG") => assignment(line),
         _ => assigned(line)
             .filter(|(port, _)| !matches!(port.kind, 0 | super::memory::SI))
-            .map(|(port, value)| Line::Output(port, value)),
+            .map(|(port, value)| Statement::Output(port, value)),
     }
 }
 
 /// `MOVE P,P19`, `MOVE[2] L,P20`, `MOVEI P,P3`.
-fn motion(word: &str, rest: &str) -> Option<Line> {
+fn motion(word: &str, rest: &str) -> Option<Statement> {
     let (word, robot) = match word.split_once('[') {
         Some((word, robot)) => (word, robot.strip_suffix(']')?.parse::<usize>().ok()?),
         None => (word, 1),
@@ -127,7 +119,7 @@ fn motion(word: &str, rest: &str) -> Option<Line> {
         _ => return None,
     };
     let robot = robot.checked_sub(1).filter(|robot| *robot < ROBOTS)?;
-    Some(Line::Move { robot, linear, relative, point: point.into() })
+    Some(Statement::Move { robot, linear, relative, point: point.into() })
 }
 
 /// `DO(20)=1` for a signal, `DO2()=255` for a port.
@@ -149,7 +141,7 @@ pub(super) fn assigned(text: &str) -> Option<(PortRef, u8)> {
 }
 
 /// `SGI1=5`, `SGI1=SGI1+1`, `SGR0=SGI2/2.5`.
-fn assignment(line: &str) -> Option<Line> {
+fn assignment(line: &str) -> Option<Statement> {
     let (variable, value) = line.split_once('=')?;
     let Operand::Variable(variable) = operand(variable.trim())? else { return None };
     let value = value.trim();
@@ -160,8 +152,8 @@ fn assignment(line: &str) -> Option<Line> {
         Some((operation, operand(value[..at].trim())?, operand(value[at + 1..].trim())?))
     });
     Some(match split {
-        Some((operation, first, second)) => Line::Assign { variable, first, then: Some((operation, second)) },
-        None => Line::Assign { variable, first: operand(value)?, then: None },
+        Some((operation, first, second)) => Statement::Assign { variable, first, then: Some((operation, second)) },
+        None => Statement::Assign { variable, first: operand(value)?, then: None },
     })
 }
 
@@ -188,16 +180,16 @@ mod tests {
                     SGI1=SGI1+1\nSGR0=SGI2/2.5\nSGI3=-5\nGOSUB *SUB\nGOTO *START\nRETURN\nHALT\n";
         let program = Program::parse("PG1", text).unwrap();
         assert_eq!(program.labels.get("START"), Some(&0));
-        assert_eq!(program.lines[1], Line::Move { robot: 0, linear: false, relative: false, point: 19 });
-        assert_eq!(program.lines[2], Line::Move { robot: 1, linear: true, relative: true, point: 3 });
-        assert_eq!(program.lines[4], Line::Output(PortRef { kind: 1, port: 12, bit: Some(7) }, 1));
-        assert_eq!(program.lines[5], Line::Output(PortRef { kind: 2, port: 3, bit: None }, 255));
-        assert_eq!(program.lines[6], Line::Wait(PortRef { kind: 5, port: 2, bit: Some(0) }, 0));
+        assert_eq!(program.lines[1], Statement::Move { robot: 0, linear: false, relative: false, point: 19 });
+        assert_eq!(program.lines[2], Statement::Move { robot: 1, linear: true, relative: true, point: 3 });
+        assert_eq!(program.lines[4], Statement::Output(PortRef { kind: 1, port: 12, bit: Some(7) }, 1));
+        assert_eq!(program.lines[5], Statement::Output(PortRef { kind: 2, port: 3, bit: None }, 255));
+        assert_eq!(program.lines[6], Statement::Wait(PortRef { kind: 5, port: 2, bit: Some(0) }, 0));
         let half = (Operation::Divide, Operand::Number(Number::Real(2.5)));
         let first = Operand::Variable(2);
-        assert_eq!(program.lines[8], Line::Assign { variable: 256, first, then: Some(half) });
+        assert_eq!(program.lines[8], Statement::Assign { variable: 256, first, then: Some(half) });
         let first = Operand::Number(Number::Whole(-5));
-        assert_eq!(program.lines[9], Line::Assign { variable: 3, first, then: None });
+        assert_eq!(program.lines[9], Statement::Assign { variable: 3, first, then: None });
     }
 
     #[test]

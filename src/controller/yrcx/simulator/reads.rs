@@ -1,6 +1,6 @@
 //! Remote commands that look at the controller (4.7). A robot that is not there has no axes, which is an answer.
 
-use super::alarms::{Entry, Fault, NO_CONTROLLER, Place};
+use super::alarms::{AlarmSource, Entry, Fault, NO_CONTROLLER};
 use super::commands::not_here;
 use super::geometry::{Arm, STEPS, whole};
 use super::moves::Homing;
@@ -88,7 +88,8 @@ pub(super) fn answer(world: &World, request: &Request) -> Result<Values, Fault> 
         }
         Command::Slots => {
             let controller = u8::try_from(request.int(Key::Controller)).unwrap_or_default();
-            let none = || Fault::new(NO_CONTROLLER, Place::Controller, format!("there is no controller {controller}"));
+            let none =
+                || Fault::new(NO_CONTROLLER, AlarmSource::Controller, format!("there is no controller {controller}"));
             let slots = world.slots.get(&controller).ok_or_else(none)?;
             [Key::Slot1, Key::Slot2, Key::Slot3, Key::Slot4].into_iter().zip(*slots).collect()
         }

@@ -1,6 +1,6 @@
 //! Remote commands that store and compute (4.3, 4.4, 4.5), and those that read it back.
 
-use super::alarms::{Fault, NO_HAND, PAYLOAD, Place};
+use super::alarms::{AlarmSource, Fault, NO_HAND, PAYLOAD};
 use super::commands::not_here;
 use super::memory::{Hand, Number, Operation, Pallet, Point, PointUnit};
 use super::motions::axis;
@@ -39,7 +39,7 @@ fn point(world: &mut World, request: &Request) -> Result<Values, Fault> {
     let mut values = Values::default();
     match request.row.command {
         Command::PointSet => {
-            let unit = PointUnit::of(request.int(Key::Unit));
+            let unit = PointUnit::from_code(request.int(Key::Unit));
             let point = Point { unit, hand_system: request.int(Key::HandSystem), values: request.axes() };
             world.memory.set_point(number, point);
         }
@@ -86,7 +86,7 @@ fn frame(world: &mut World, request: &Request) -> Result<Values, Fault> {
             world.memory.hands[hand] = Some(Hand { owner, data });
         }
         Command::HandGet => {
-            let none = || Fault::new(NO_HAND, Place::Controller, format!("hand {hand} is not defined"));
+            let none = || Fault::new(NO_HAND, AlarmSource::Controller, format!("hand {hand} is not defined"));
             let Hand { owner, data } = memory.hands[hand].ok_or_else(none)?;
             values = [Key::Data1, Key::Data2, Key::Data3, Key::Data4].into_iter().zip(data).collect();
             values.set(Key::Owner, i32::try_from(owner + 1).unwrap_or_default());
@@ -128,7 +128,7 @@ fn set_parameter(world: &mut World, request: &Request) -> Result<(), Fault> {
     let grams = if parameter == WEIGHT_G { value } else { value.saturating_mul(GRAMS) };
     if matches!(parameter, WEIGHT | WEIGHT_G | AXIS_WEIGHT) && grams > most {
         let why = format!("robot {} carries {most} g at most", number + 1);
-        return Err(Fault::new(PAYLOAD, Place::Robot(number), why));
+        return Err(Fault::new(PAYLOAD, AlarmSource::Robot(number), why));
     }
     if request.int(Key::Axes) == 0 {
         world.robot_mut(number)?.payload_g = grams;

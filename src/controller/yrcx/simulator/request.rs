@@ -1,7 +1,7 @@
 //! The words of a command, read by the table but checked here: more strictly than a real controller is known to, and not
 //! by the checks of the client.
 
-use super::alarms::{Fault, Place, UNKNOWN_COMMAND};
+use super::alarms::{AlarmSource, Fault, UNKNOWN_COMMAND};
 use crate::yrcx::answer::Status;
 use crate::yrcx::image::{COMMAND_WORDS, Words};
 use crate::yrcx::table::parameter::Parameter;
@@ -22,8 +22,9 @@ pub(super) struct Request {
 impl Request {
     /// Reads WI0 to WI15.
     pub(super) fn read(words: &Words) -> Result<Self, Fault> {
-        let row = Row::of(words[0])
-            .ok_or_else(|| Fault::new(UNKNOWN_COMMAND, Place::Slot, format!("WI0: {:#06X} is no command", words[0])))?;
+        let row = Row::from_word(words[0]).ok_or_else(|| {
+            Fault::new(UNKNOWN_COMMAND, AlarmSource::Slot, format!("WI0: {:#06X} is no command", words[0]))
+        })?;
         let mut values = Values::default();
         let mut used: Words = [0; COMMAND_WORDS];
         for field in row.request().filter(|field| counts(field, |key| raw(row, key, words))) {
@@ -103,7 +104,7 @@ impl Request {
                 Err(Fault::of_words(format!("a pallet of {places} places")))
             }
             Command::ParamSet | Command::ParamGet => {
-                let parameter = Parameter::of(self.int(Key::Parameter));
+                let parameter = Parameter::from_number(self.int(Key::Parameter));
                 let parameter = parameter.ok_or_else(|| Fault::of_words("WI2: no such parameter"))?;
                 if parameter.per_axis != (self.int(Key::Axes) != 0) {
                     return Err(Fault::of_words(format!("WI3: {} and this axis", parameter.name)));

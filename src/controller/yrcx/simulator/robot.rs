@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::alarms::{Fault, Place, SOFT_LIMIT};
+use super::alarms::{AlarmSource, Fault, SOFT_LIMIT};
 use super::geometry::{Arm, Four, Geometry, Kind};
 use super::motion::{End, Motion, Owner};
 use crate::Now;
@@ -95,7 +95,7 @@ impl Axis {
 
 /// A motion that was broken off, to be carried on by the same command (4.2.2, 4.2.4).
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Kept {
+pub(super) struct ResumableMotion {
     pub(super) words: Words,
     pub(super) target: Four,
 }
@@ -123,7 +123,7 @@ pub(super) struct Robot {
     pub(super) pushing: Option<(usize, i32)>,
     /// Axes that know their origin when the motion arrives, as bits.
     pub(super) homing: u8,
-    pub(super) kept: Option<Kept>,
+    pub(super) kept: Option<ResumableMotion>,
 }
 
 impl Robot {
@@ -223,5 +223,5 @@ impl Robot {
 /// The alarm of an axis at its limit.
 pub(super) fn over_limit(robot: usize, axis: usize) -> Fault {
     let why = format!("axis {} would be outside its soft limits", axis + 1);
-    Fault::new(SOFT_LIMIT, Place::Axis(robot, axis), why)
+    Fault::new(SOFT_LIMIT, AlarmSource::Axis(robot, axis), why)
 }

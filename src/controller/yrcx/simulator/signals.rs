@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::alarms::{Fault, NOT_ENABLED, Place};
+use super::alarms::{AlarmSource, Fault, NOT_ENABLED};
 use super::memory::{SI, SO};
 use super::motion::Owner;
 use super::moves::Homing;
@@ -156,7 +156,7 @@ fn has(word: u16, signal: Signal) -> bool {
 }
 
 fn ignored(signal: Signal, why: &str) -> Fault {
-    Fault::new(NOT_ENABLED, Place::Slot, format!("{signal} was ignored: {why}"))
+    Fault::new(NOT_ENABLED, AlarmSource::Slot, format!("{signal} was ignored: {why}"))
 }
 
 /// Ports have octal numbers.

@@ -6,7 +6,7 @@
 
 mod fill;
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use jiff::civil::DateTime;
@@ -20,7 +20,8 @@ use super::memory::Memory;
 use super::robot::{Method, Motor};
 use super::world::{Link, Mode, Switches, World};
 use crate::Now;
-use crate::entries::{self, At, Event};
+use crate::simulator::start::{self, Event, Source, Table, numbered};
+use crate::simulator::timeline::Timeline;
 use crate::yrcx::signal::resting;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Value};
@@ -133,7 +134,7 @@ impl Default for Start {
 impl Start {
     /// Reads a start state. The error says what is wrong, and in which line.
     pub fn parse(text: &str) -> Result<Self, String> {
-        build(&entries::parse(text)?, text)
+        build(&start::parse(text)?, text)
     }
 
     /// Another seed for everything random.
@@ -180,9 +181,6 @@ struct Entries {
     #[serde(rename = "event")]
     events: Vec<Spanned<Event>>,
 }
-
-/// Entries by number or name.
-type Table<T> = BTreeMap<String, Spanned<T>>;
 
 impl Default for Entries {
     fn default() -> Self {
@@ -400,38 +398,41 @@ struct AlarmEntry {
 }
 
 fn build(entries: &Entries, text: &str) -> Result<Start, String> {
-    let at = At { text };
-    let stock: Entries = entries::parse(STOCK)?;
-    let mut world = bare_world(entries, &at)?;
-    let (robots, its) =
-        if entries.robots.is_empty() { (&stock.robots, At { text: STOCK }) } else { (&entries.robots, At { text }) };
-    fill::robots(&mut world, robots, entries.servo, &its)?;
-    if entries.stock {
-        fill::memory(&mut world, &stock, &At { text: STOCK })?;
+    let source = Source { text };
+    let (stock, stock_source): (Entries, _) = (start::parse(STOCK)?, Source { text: STOCK });
+    let mut world = bare_world(entries, source)?;
+    if entries.robots.is_empty() {
+        fill::robots(&mut world, &stock.robots, entries.servo, stock_source)?;
+    } else {
+        fill::robots(&mut world, &entries.robots, entries.servo, source)?;
     }
-    fill::memory(&mut world, entries, &at)?;
-    fill::check(&world, entries, &at)?;
-    events(&mut world, &entries.events, &at)?;
+    if entries.stock {
+        fill::memory(&mut world, &stock, stock_source)?;
+    }
+    fill::memory(&mut world, entries, source)?;
+    fill::check(&world, entries, source)?;
+    // On a copy: the world is as it begins.
+    let mut copy = world.clone();
+    world.events = source.timeline(&entries.events, |line| console::execute(&mut copy, line))?;
     Ok(Start { world, run_scans: entries.run_scans, seed: entries.seed })
 }
 
 /// The controller with nothing in it.
-fn bare_world(entries: &Entries, at: &At<'_>) -> Result<World, String> {
+fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
     let clock = match &entries.clock {
-        Some(entry) => DateTime::strptime("%Y/%m/%d %H:%M:%S", entry.get_ref())
-            .map_err(|_| at.wrong(entry, "a time looks like \"2026/03/14 08:00:00\""))?,
+        Some(entry) => source.time(entry, "%Y/%m/%d %H:%M:%S", "2026/03/14 08:00:00")?,
         None => DateTime::constant(2026, 3, 14, 8, 0, 0, 0),
     };
     let mut slots = BTreeMap::from([(1, defaults::SLOTS)]);
-    for (name, entry) in &entries.slots {
-        let controller = name.parse().ok().filter(|number| (1..=4).contains(number));
-        let controller = controller.ok_or_else(|| at.wrong(entry, "controllers are 1 to 4"))?;
+    source.each_of(&entries.slots, |controller, names| {
+        let controller = numbered("controllers", controller, 1..=4)?;
         let mut modules = [0; 4];
-        for (module, name) in modules.iter_mut().zip(entry.get_ref()) {
-            *module = word(Command::Slots, Key::Slot1, name).map_err(|what| at.wrong(entry, what))?;
+        for (module, name) in modules.iter_mut().zip(names) {
+            *module = word(Command::Slots, Key::Slot1, name)?;
         }
-        slots.insert(controller, modules);
-    }
+        slots.insert(u8::try_from(controller).unwrap_or_default(), modules);
+        Ok(())
+    })?;
     Ok(World {
         now: Now::ZERO,
         switches: Switches {
@@ -455,33 +456,33 @@ fn bare_world(entries: &Entries, at: &At<'_>) -> Result<World, String> {
         tasks: Vec::new(),
         reset_done: false,
         clock: (clock, Now::ZERO),
-        versions: versions(&entries.versions, at)?,
+        versions: versions(&entries.versions, source)?,
         slots,
         delayed: Vec::new(),
-        events: VecDeque::new(),
+        events: Timeline::default(),
         why: None,
         restless: false,
     })
 }
 
-fn versions(entry: &Versions, at: &At<'_>) -> Result<[u16; 7], String> {
+fn versions(entry: &Versions, source: Source<'_>) -> Result<[u16; 7], String> {
     let mut words = defaults::VERSIONS;
-    let read =
-        |key, text: &Spanned<String>| word(Command::Versions, key, text.get_ref()).map_err(|what| at.wrong(text, what));
+    let version = |key| move |text: &String| word(Command::Versions, key, text);
     if let Some(text) = &entry.host {
-        words[0] = read(Key::HostVersion, text)?;
+        words[0] = source.read(text, version(Key::HostVersion))?;
     }
     if let Some(revision) = &entry.revision {
         words[1] = *revision.get_ref();
     }
     if let Some(text) = &entry.fpga {
-        words[2] = read(Key::FpgaVersion, text)?;
+        words[2] = source.read(text, version(Key::FpgaVersion))?;
     }
-    if let Some(texts) = &entry.drivers {
-        for (driver, text) in words[3..].iter_mut().zip(texts.get_ref()) {
-            *driver = word(Command::Versions, Key::DriverVersion1, text).map_err(|what| at.wrong(texts, what))?;
-        }
-    }
+    source.each(&entry.drivers, |texts| {
+        words[3..].iter_mut().zip(texts).try_for_each(|(driver, text)| {
+            *driver = version(Key::DriverVersion1)(text)?;
+            Ok(())
+        })
+    })?;
     Ok(words)
 }
 
@@ -493,12 +494,4 @@ fn word(command: Command, key: Key, text: &str) -> Result<u16, String> {
         Some(Err(what)) => Err(what),
         _ => Err(format!("'{text}' is no value")),
     }
-}
-
-fn events(world: &mut World, entries: &[Spanned<Event>], at: &At<'_>) -> Result<(), String> {
-    // On a copy: the world is as it begins.
-    let mut copy = world.clone();
-    let events = at.events(entries, |line| console::execute(&mut copy, line))?;
-    world.events = events.into_iter().map(|(at, line, _)| (at, line)).collect();
-    Ok(())
 }

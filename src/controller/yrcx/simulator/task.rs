@@ -1,11 +1,12 @@
 //! Tasks that run programs, a line a scan.
 
-use super::alarms::{CALLS, Fault, NO_TASK, Place, RUNNING};
+use super::alarms::{AlarmSource, CALLS, Fault, NO_TASK, RUNNING};
 use super::geometry::Four;
+use super::memory::PortRef;
 use super::memory::calculate;
 use super::motion::{End, Owner};
 use super::moves::Speed;
-use super::program::{Line, Operand, PortRef};
+use super::program::{Operand, Statement};
 use super::world::World;
 use crate::Now;
 
@@ -248,7 +249,7 @@ impl World {
             Err(fault) => {
                 // An error of one program stops all of them.
                 self.stop_tasks();
-                self.note(Fault { place: Place::Task(number), ..fault });
+                self.note(Fault { place: AlarmSource::Task(number), ..fault });
             }
         }
     }
@@ -287,23 +288,23 @@ impl World {
         let code = self.programs.get(&program).and_then(|program| program.lines.get(line)).cloned();
         let Some(code) = code else { return Ok(Flow::Over) };
         match code {
-            Line::Nothing => {}
-            Line::Halt => return Ok(Flow::Over),
-            Line::Delay(time) => {
+            Statement::Nothing => {}
+            Statement::Halt => return Ok(Flow::Over),
+            Statement::Delay(time) => {
                 self.set_doing(at, Doing::Delay(self.now.saturating_add(time)));
                 return Ok(Flow::Stay);
             }
-            Line::Move { robot, linear, relative, point } => {
+            Statement::Move { robot, linear, relative, point } => {
                 return self.program_move(at, robot, linear, relative, point);
             }
-            Line::Output(port, value) => self.output(port, value),
-            Line::Wait(port, value) => {
+            Statement::Output(port, value) => self.memory.set_output(port, value),
+            Statement::Wait(port, value) => {
                 if self.signal(port) != value {
                     self.set_doing(at, Doing::Waiting);
                     return Ok(Flow::Stay);
                 }
             }
-            Line::Assign { variable, first, then } => {
+            Statement::Assign { variable, first, then } => {
                 let operand = |world: &Self, operand| match operand {
                     Operand::Number(number) => number,
                     Operand::Variable(number) => world.memory.variable(number),
@@ -315,19 +316,19 @@ impl World {
                 };
                 self.memory.assign(variable, value)?;
             }
-            Line::Goto(label) => return self.label(program, &label).map(Flow::To),
-            Line::Gosub(label) => {
+            Statement::Goto(label) => return self.label(program, &label).map(Flow::To),
+            Statement::Gosub(label) => {
                 let spot = self.label(program, &label)?;
                 let task = self.tasks.get_mut(at).ok_or_else(no_task)?;
                 if task.calls.len() >= MAX_CALLS {
-                    return Err(Fault::new(CALLS, Place::Controller, "too many calls within each other"));
+                    return Err(Fault::new(CALLS, AlarmSource::Controller, "too many calls within each other"));
                 }
                 task.calls.push((program, line + 1));
                 return Ok(Flow::To(spot));
             }
-            Line::Return => {
+            Statement::Return => {
                 let call = self.tasks.get_mut(at).and_then(|task| task.calls.pop());
-                let none = || Fault::new(CALLS, Place::Controller, "RETURN without GOSUB");
+                let none = || Fault::new(CALLS, AlarmSource::Controller, "RETURN without GOSUB");
                 return call.map(Flow::To).ok_or_else(none);
             }
         }
@@ -376,15 +377,8 @@ impl World {
             let (number, found) = self.programs.iter().find(|(_, program)| program.name == COMMON)?;
             found.labels.get(label).map(|line| (*number, *line))
         };
-        let missing = || Fault::new(CALLS, Place::Controller, format!("there is no label *{label}"));
+        let missing = || Fault::new(CALLS, AlarmSource::Controller, format!("there is no label *{label}"));
         own.or_else(common).ok_or_else(missing)
-    }
-
-    fn output(&mut self, port: PortRef, value: u8) {
-        match port.bit {
-            Some(bit) => self.memory.set_bit(port.kind, port.port, bit, value == 1),
-            None => self.memory.set_port(port.kind, port.port, value),
-        }
     }
 
     fn signal(&self, port: PortRef) -> u8 {
@@ -394,9 +388,9 @@ impl World {
 }
 
 fn no_task() -> Fault {
-    Fault::new(NO_TASK, Place::Controller, "no such program is registered in a task")
+    Fault::new(NO_TASK, AlarmSource::Controller, "no such program is registered in a task")
 }
 
 fn running() -> Fault {
-    Fault::new(RUNNING, Place::Controller, "a program runs")
+    Fault::new(RUNNING, AlarmSource::Controller, "a program runs")
 }

@@ -1,6 +1,6 @@
 //! The controller as a machine: switches, power, alarms, what may be done when, and the passing of time.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use jiff::SignedDuration;
@@ -9,7 +9,7 @@ use jiff::civil::DateTime;
 use super::alarms::{
     AlarmLog, EMERGENCY_STOP, Fault, LINK, LINK_TOO_LATE, MOVING, NO_AXIS, NO_ORIGIN, NO_POWER, NO_ROBOT,
 };
-use super::alarms::{NOT_AUTO, Place};
+use super::alarms::{AlarmSource, NOT_AUTO};
 use super::console;
 use super::memory::Memory;
 use super::motion::{End, Motion, Owner};
@@ -17,6 +17,7 @@ use super::program::Program;
 use super::robot::{ALL, Robot, Servo};
 use super::task::Task;
 use crate::Now;
+use crate::simulator::timeline::Timeline;
 use crate::yrcx::alarm::Alarm;
 use crate::yrcx::image::Image;
 use crate::yrcx::signal::input;
@@ -102,8 +103,7 @@ pub(super) struct World {
     /// Modules by controller and slot (4.7.15).
     pub(super) slots: BTreeMap<u8, [u16; 4]>,
     pub(super) delayed: Vec<(Now, Action)>,
-    /// Console lines to carry out at their time, in order.
-    pub(super) events: VecDeque<(Now, String)>,
+    pub(super) events: Timeline,
     /// What was wrong with the last thing that was refused or broken off.
     pub(super) why: Option<Fault>,
     /// Something changed that others may wait for: there is another scan.
@@ -117,9 +117,8 @@ impl World {
         let motions = self.robots.iter().filter_map(|robot| robot.motion.as_ref()).map(Motion::due);
         let tasks = self.tasks.iter().filter_map(|task| task.due(self.now));
         let delayed = self.delayed.iter().map(|(at, _)| *at);
-        let events = self.events.front().map(|(at, _)| *at);
         let restless = self.restless.then_some(self.now);
-        motions.chain(tasks).chain(delayed).chain(events).chain(link).chain(restless).min()
+        motions.chain(tasks).chain(delayed).chain(self.events.due()).chain(link).chain(restless).min()
     }
 
     /// Lets what moves reach `now`.
@@ -143,13 +142,11 @@ impl World {
         if self.link == Link::Waiting && self.link_within.is_some_and(|within| within <= now) {
             self.link = Link::Down;
             self.inputs = Image::default();
-            self.raise(&Fault::new(LINK_TOO_LATE, Place::Slot, "no master came in time"), false);
+            self.raise(&Fault::new(LINK_TOO_LATE, AlarmSource::Slot, "no master came in time"), false);
         }
-        while self.events.front().is_some_and(|(at, _)| *at <= now) {
-            if let Some((_, line)) = self.events.pop_front() {
-                // Lines were tried when the start state was read; one that is refused by now has no effect.
-                let _refused = console::execute(self, &line);
-            }
+        while let Some(line) = self.events.take(now) {
+            // Lines were tried when the start state was read; one that is refused by now has no effect.
+            let _refused = console::execute(self, &line);
         }
         for at in (0..self.delayed.len()).rev() {
             if self.delayed.get(at).is_some_and(|(due, _)| *due <= now) {
@@ -172,7 +169,7 @@ impl World {
                     self.set_servos(Servo::On);
                 }
             }
-            Action::MotorOff => self.power_off(&Fault::new(NO_POWER, Place::Controller, "motor power went off")),
+            Action::MotorOff => self.power_off(&Fault::new(NO_POWER, AlarmSource::Controller, "motor power went off")),
             Action::PowerLoss => self.power_off(&Fault::emergency()),
             Action::Servo(robot, axes, state) => self.set_servo(robot, axes, state)?,
             Action::AlarmReset => {
@@ -246,7 +243,7 @@ impl World {
         if self.link != Link::Down {
             self.link = Link::Down;
             self.inputs = Image::default();
-            self.raise(&Fault::new(LINK, Place::Slot, "the master is gone"), false);
+            self.raise(&Fault::new(LINK, AlarmSource::Slot, "the master is gone"), false);
         }
     }
 
@@ -273,7 +270,11 @@ impl World {
             return Err(Fault::stopped());
         }
         if self.switches.mode != Mode::Auto || self.switches.boxed {
-            return Err(Fault::new(NOT_AUTO, Place::Controller, "AUTO mode is not selected, or the box has control"));
+            return Err(Fault::new(
+                NOT_AUTO,
+                AlarmSource::Controller,
+                "AUTO mode is not selected, or the box has control",
+            ));
         }
         Ok(())
     }
@@ -290,12 +291,12 @@ impl World {
         if let Some(axis) = off.or((!self.motor).then_some(0)) {
             return Err(Fault::new(
                 NO_POWER,
-                Place::Axis(number, axis),
+                AlarmSource::Axis(number, axis),
                 format!("axis {} has no servo power", axis + 1),
             ));
         }
         if robot.motion.is_some() {
-            return Err(Fault::new(MOVING, Place::Robot(number), format!("robot {} moves already", number + 1)));
+            return Err(Fault::new(MOVING, AlarmSource::Robot(number), format!("robot {} moves already", number + 1)));
         }
         Ok(())
     }
@@ -306,7 +307,7 @@ impl World {
         match unknown {
             Some(axis) => {
                 let why = format!("axis {} has not returned to origin", axis + 1);
-                Err(Fault::new(NO_ORIGIN, Place::Axis(number, axis), why))
+                Err(Fault::new(NO_ORIGIN, AlarmSource::Axis(number, axis), why))
             }
             None => Ok(()),
         }
@@ -329,7 +330,7 @@ impl World {
             return Ok(());
         }
         let why = format!("robot {} has no axis {}", number + 1, missing.trailing_zeros() + 1);
-        Err(Fault::new(NO_AXIS, Place::Robot(number), why))
+        Err(Fault::new(NO_AXIS, AlarmSource::Robot(number), why))
     }
 
     /// Date and time.
@@ -342,7 +343,7 @@ impl World {
     pub(super) fn power_cycle(&mut self) {
         self.stop_tasks();
         self.delayed.clear();
-        self.power_off(&Fault::new(NO_POWER, Place::Controller, "the controller was switched off"));
+        self.power_off(&Fault::new(NO_POWER, AlarmSource::Controller, "the controller was switched off"));
         self.alarms.clear();
         self.why = None;
         for axis in self.robots.iter_mut().flat_map(|robot| &mut robot.axes) {
@@ -371,12 +372,12 @@ impl World {
         if state == Servo::On {
             self.may_power()?;
             if !self.motor {
-                return Err(Fault::new(NO_POWER, Place::Robot(number), "motor power is off"));
+                return Err(Fault::new(NO_POWER, AlarmSource::Robot(number), "motor power is off"));
             }
         }
         let robot = self.robot_mut(number)?;
         if state != Servo::On {
-            robot.halt(&Fault::new(NO_POWER, Place::Robot(number), "a servo went off"));
+            robot.halt(&Fault::new(NO_POWER, AlarmSource::Robot(number), "a servo went off"));
         }
         let chosen = robot.axes.iter_mut().enumerate().filter(|(at, _)| axes == 0 || axes >> at & 1 == 1);
         for (_, axis) in chosen {
@@ -388,9 +389,9 @@ impl World {
 
 /// The refusal while an alarm is active.
 fn active(alarm: Alarm) -> Fault {
-    Fault::new(alarm, Place::Controller, "an alarm is active; reset it")
+    Fault::new(alarm, AlarmSource::Controller, "an alarm is active; reset it")
 }
 
 fn no_robot(number: usize) -> Fault {
-    Fault::new(NO_ROBOT, Place::Controller, format!("there is no robot {}", number + 1))
+    Fault::new(NO_ROBOT, AlarmSource::Controller, format!("there is no robot {}", number + 1))
 }

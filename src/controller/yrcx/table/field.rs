@@ -19,12 +19,12 @@ pub struct Field {
     /// What another field must be for this one to count; its words are 0 otherwise.
     pub when: Option<When>,
     /// Whether it may be left out; 0 is sent then.
-    pub need: Need,
+    pub need: Presence,
 }
 
 /// Whether a field may be left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Need {
+pub enum Presence {
     /// It must be given.
     Required,
     /// It may be left out.
@@ -130,7 +130,7 @@ const VARIABLES: [(&str, i32); 2] = [("SGI", 0), ("SGR", 0x100)];
 
 impl Field {
     const fn new(key: Key, name: &'static str, word: usize, form: Form) -> Self {
-        Self { key, name, word, form, spans: &[], when: None, need: Need::Required }
+        Self { key, name, word, form, spans: &[], when: None, need: Presence::Required }
     }
 
     /// Bits of a word with a meaning.
@@ -192,14 +192,14 @@ impl Field {
     /// May be left out.
     #[must_use]
     pub const fn optional(mut self) -> Self {
-        self.need = Need::Optional;
+        self.need = Presence::Optional;
         self
     }
 
     /// May be left out if the axis does not move.
     #[must_use]
     pub const fn of_axis(mut self, axis: u8) -> Self {
-        self.need = Need::OfAxis(axis);
+        self.need = Presence::OfAxis(axis);
         self
     }
 

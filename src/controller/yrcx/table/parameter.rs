@@ -19,7 +19,7 @@ pub struct Parameter {
 
 impl Parameter {
     /// The parameter of a number.
-    pub fn of(number: i32) -> Option<&'static Self> {
+    pub fn from_number(number: i32) -> Option<&'static Self> {
         PARAMETERS.iter().find(|parameter| i32::from(parameter.number) == number)
     }
 }

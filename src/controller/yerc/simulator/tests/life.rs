@@ -180,7 +180,7 @@ fn a_start_state_from_text() {
         do = "servo on"
         "#,
     );
-    bench.simulator.answer_delay = Duration::ZERO;
+    bench.simulator.answers = Answers::new(Duration::ZERO, MAX_WAITING);
     assert_eq!(bench.ask(0x7A, 0, 1, 0x0E, &[]).1, [9]);
     assert_eq!(bench.ask(0x7E, 1, 1, 0x0E, &[]).1[..6], *b"\x83e\x83X\x83g");
     assert_eq!(bench.ask(0x78, 2501, 1, 0x0E, &[]).1, [1]);

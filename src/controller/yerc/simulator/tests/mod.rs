@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use super::*;
+use crate::testing::hex;
 use crate::yerc::Model;
 use crate::yerc::payload::{
     AxisNames, CartesianMove, ControllerStatus, JobInfo, MoveLayout, Position, PulseMove, StatusBit,
@@ -163,10 +164,6 @@ impl Bench {
         }
         panic!("an empty file has no blocks");
     }
-}
-
-fn hex(text: &str) -> Vec<u8> {
-    (0..text.len()).step_by(2).map(|i| u8::from_str_radix(&text[i..i + 2], 16).unwrap()).collect()
 }
 
 fn refused(added: u16) -> Status {

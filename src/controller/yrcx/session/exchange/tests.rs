@@ -1,9 +1,8 @@
 //! Exchanges with a small scripted controller, in virtual time: the master sends every 20 ms, the controller scans every
 //! 5 ms and shows its image every 20 ms.
 
-use std::time::Duration;
-
 use super::*;
+use crate::testing::ms;
 use crate::yrcx::alarm::{Alarm, STOP_INPUT};
 use crate::yrcx::signal::{Side, Signal, resting};
 use crate::yrcx::table::Command;
@@ -11,10 +10,6 @@ use crate::yrcx::value::{Key, Values};
 
 const STEP: u64 = 5;
 const RPI: u64 = 20;
-
-fn ms(ms: u64) -> Duration {
-    Duration::from_millis(ms)
-}
 
 /// What the controller does with the next command.
 #[derive(Debug, Clone)]
@@ -128,7 +123,7 @@ impl World {
 
     fn scan(&mut self, image: &Image) {
         let wi0 = image.0[0];
-        let status = Status::of(self.shown.0[0]);
+        let status = Status::from_word(self.shown.0[0]);
         let mut show = |status: Status, words: &Words| {
             let mut words = *words;
             words[0] = status.word();
@@ -157,7 +152,7 @@ impl World {
                 }
                 if self.script.runs.is_some_and(|runs| self.now >= started + runs) {
                     let answer = self.script.answer;
-                    show(Status::of(answer[0]), &answer);
+                    show(Status::from_word(answer[0]), &answer);
                     self.started = None;
                     self.script.takes = !self.script.once;
                 }
@@ -269,7 +264,7 @@ fn a_status_reset_waits_for_the_ready_status() {
     let mut world = World::new(reset(), Script { runs: None, ..Script::default() });
     world.shown.0[0] = Status::Running.word();
     world.started = Some(0);
-    assert_eq!(world.run().ended, Ended::NotSent(Hindrance::NotReady(Status::Running)));
+    assert_eq!(world.run().ended, Ended::NotSent(NotSentReason::NotReady(Status::Running)));
 }
 
 #[test]
@@ -278,7 +273,7 @@ fn a_running_command_of_another_master_is_left_alone() {
     world.shown.0[0] = Status::Running.word();
     world.started = Some(0);
     let outcome = world.run();
-    assert_eq!(outcome.ended, Ended::NotSent(Hindrance::NotReady(Status::Running)));
+    assert_eq!(outcome.ended, Ended::NotSent(NotSentReason::NotReady(Status::Running)));
     assert!(world.commands().iter().all(|(wi0, _)| *wi0 == 0));
     assert_eq!(world.now, 3000);
 }
@@ -307,7 +302,7 @@ fn a_lost_link_is_told_by_what_was_sent() {
         world.cut = Some(cut);
         world.run().ended
     };
-    assert_eq!(before(5, move_to_19()), Ended::NotSent(Hindrance::LinkLost));
+    assert_eq!(before(5, move_to_19()), Ended::NotSent(NotSentReason::LinkLost));
     assert_eq!(before(200, move_to_19()), Ended::OutcomeUnknown(Silence::LinkLost));
     assert_eq!(before(200, servo_status()), Ended::NoAnswer(Silence::LinkLost));
 }
@@ -391,7 +386,7 @@ fn an_interrupt_before_the_command_is_sent_leaves_no_trace() {
     world.shown.0[0] = Status::Running.word();
     world.started = Some(0);
     world.interrupt = Some(50);
-    assert_eq!(world.run().ended, Ended::NotSent(Hindrance::Interrupted));
+    assert_eq!(world.run().ended, Ended::NotSent(NotSentReason::Interrupted));
     assert_eq!(world.stop_edges().len(), 1);
 }
 

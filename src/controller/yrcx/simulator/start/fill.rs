@@ -4,9 +4,12 @@ use std::collections::BTreeMap;
 
 use toml::Spanned;
 
-use super::{AlarmEntry, ArmEntry, At, Entries, KindEntry, Number, PointEntry, RobotEntry, ServoEntry, StateEntry};
+use super::{
+    AlarmEntry, ArmEntry, Entries, KindEntry, Number, PalletEntry, PointEntry, RobotEntry, ServoEntry, StateEntry,
+};
+use crate::simulator::start::{Source, numbered};
 use crate::yrcx::alarm::Alarm;
-use crate::yrcx::simulator::alarms::{Entry, Place};
+use crate::yrcx::simulator::alarms::{AlarmSource, Entry};
 use crate::yrcx::simulator::defaults::{CARTESIAN, PARAMETERS, SCARA};
 use crate::yrcx::simulator::geometry::{Arm, Kind, STEPS, whole};
 use crate::yrcx::simulator::memory::{HANDS, Hand, POINTS, Pallet, Point, PointUnit, SHIFTS};
@@ -24,16 +27,15 @@ pub(super) fn robots(
     world: &mut World,
     entries: &[Spanned<RobotEntry>],
     power: bool,
-    at: &At<'_>,
+    source: Source<'_>,
 ) -> Result<(), String> {
-    for entry in entries {
+    source.each(entries, |entry| {
         if world.robots.len() >= ROBOTS {
-            return Err(at.wrong(entry, format!("there are {ROBOTS} robots at most")));
+            return Err(format!("there are {ROBOTS} robots at most"));
         }
-        let robot = robot(entry.get_ref(), power).map_err(|what| at.wrong(entry, what))?;
-        world.robots.push(robot);
-    }
-    Ok(())
+        world.robots.push(robot(entry, power)?);
+        Ok(())
+    })
 }
 
 fn robot(entry: &RobotEntry, power: bool) -> Result<Robot, String> {
@@ -135,83 +137,80 @@ fn arm(entry: ArmEntry) -> Arm {
 }
 
 /// Puts everything else there, on top of what is.
-pub(super) fn memory(world: &mut World, entries: &Entries, at: &At<'_>) -> Result<(), String> {
-    for (name, entry) in &entries.points {
-        let number = number(name, POINTS.into()).ok_or_else(|| at.wrong(entry, "points are 0 to 29999"))?;
-        let point = point(entry.get_ref()).map_err(|what| at.wrong(entry, what))?;
-        world.memory.set_point(number, point);
-    }
-    for (name, entry) in &entries.comments {
-        let number = number(name, POINTS.into()).and_then(|number| u16::try_from(number).ok());
-        let number = number.ok_or_else(|| at.wrong(entry, "points are 0 to 29999"))?;
+pub(super) fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
+    let last_point = usize::from(POINTS) - 1;
+    source.each_of(&entries.points, |number, entry| {
+        let number = numbered("points", number, 0..=last_point)?;
+        world.memory.set_point(number, point(entry)?);
+        Ok(())
+    })?;
+    source.each_of(&entries.comments, |number, comment| {
+        let number = numbered("points", number, 0..=last_point)?;
         let field = Field::text(Key::Comment, "comment", 4, Charset::Comment);
-        field.accept(&Value::from(entry.get_ref().as_str())).map_err(|what| at.wrong(entry, what))?;
-        world.memory.comments.insert(number, entry.get_ref().clone());
-    }
-    for (name, entry) in &entries.pallets {
-        let number = number(name, SHIFTS).ok_or_else(|| at.wrong(entry, "pallets are 0 to 39"))?;
-        let pallet = entry.get_ref();
-        let places: i64 = pallet.counts.iter().map(|count| i64::from(*count)).product();
-        if pallet.counts.iter().any(|count| *count < 1) || places > 32_767 || pallet.first > POINTS - 5 {
-            return Err(at.wrong(entry, "a pallet has 1 to 32767 places, and its points end at 29999"));
+        field.accept(&Value::from(comment.as_str()))?;
+        world.memory.comments.insert(u16::try_from(number).unwrap_or(u16::MAX), comment.clone());
+        Ok(())
+    })?;
+    source.each_of(&entries.pallets, |number, &PalletEntry { counts, first }| {
+        let number = numbered("pallets", number, 0..=SHIFTS - 1)?;
+        let places: i64 = counts.iter().map(|count| i64::from(*count)).product();
+        if counts.iter().any(|count| *count < 1) || places > 32_767 || first > POINTS - 5 {
+            return Err("a pallet has 1 to 32767 places, and its points end at 29999".to_owned());
         }
-        world.memory.pallets[number] = Some(Pallet { counts: pallet.counts, first: pallet.first });
-    }
-    for (name, entry) in &entries.shifts {
-        let number = number(name, SHIFTS).ok_or_else(|| at.wrong(entry, "shifts are 0 to 39"))?;
-        world.memory.shifts[number] = entry.get_ref().map(|place| whole(place * STEPS));
-    }
-    for (name, entry) in &entries.hands {
-        let number = number(name, HANDS).ok_or_else(|| at.wrong(entry, "hands are 0 to 31"))?;
-        let hand = entry.get_ref();
+        world.memory.pallets[number] = Some(Pallet { counts, first });
+        Ok(())
+    })?;
+    source.each_of(&entries.shifts, |number, shift| {
+        world.memory.shifts[numbered("shifts", number, 0..=SHIFTS - 1)?] = shift.map(|place| whole(place * STEPS));
+        Ok(())
+    })?;
+    source.each_of(&entries.hands, |number, hand| {
+        let number = numbered("hands", number, 0..=HANDS - 1)?;
         let owner = hand.robot.checked_sub(1).filter(|owner| *owner < ROBOTS);
-        let owner = owner.ok_or_else(|| at.wrong(entry, "robots are 1 to 4"))?;
+        let owner = owner.ok_or("robots are 1 to 4")?;
         world.memory.hands[number] = Some(Hand { owner, data: hand.data });
-    }
-    for (name, entry) in &entries.variables {
-        let variable = variable(name).ok_or_else(|| at.wrong(entry, format!("'{name}' is no variable")))?;
-        let value = match *entry.get_ref() {
+        Ok(())
+    })?;
+    source.each_of(&entries.variables, |name, number| {
+        let variable = variable(name).ok_or_else(|| format!("'{name}' is no variable"))?;
+        let value = match *number {
             Number::Whole(value) => value.into(),
             Number::Real(value) => value,
         };
-        world.memory.assign(variable, value).map_err(|fault| at.wrong(entry, fault.why))?;
-    }
-    for (name, entry) in &entries.ports {
-        let found = assigned(&format!("{name}={}", entry.get_ref()));
-        let (port, value) = found.ok_or_else(|| at.wrong(entry, format!("'{name}' is no port or signal")))?;
-        match port.bit {
-            Some(bit) => world.memory.set_bit(port.kind, port.port, bit, value == 1),
-            None => world.memory.set_port(port.kind, port.port, value),
-        }
-    }
-    programs(world, entries, at)?;
-    for entry in &entries.history {
-        let alarm = alarm(entry.get_ref()).map_err(|what| at.wrong(entry, what))?;
-        world.alarms.fill(alarm);
-    }
-    if let Some(entry) = &entries.latest_remote {
-        let alarm = alarm(entry.get_ref()).map_err(|what| at.wrong(entry, what))?;
-        world.alarms.set_latest_remote(alarm);
-    }
-    Ok(())
+        world.memory.assign(variable, value).map_err(|fault| fault.why)
+    })?;
+    source.each_of(&entries.ports, |name, value| {
+        let assigned = assigned(&format!("{name}={value}"));
+        let (port, value) = assigned.ok_or_else(|| format!("'{name}' is no port or signal"))?;
+        world.memory.set_output(port, value);
+        Ok(())
+    })?;
+    programs(world, entries, source)?;
+    source.each(&entries.history, |entry| {
+        world.alarms.fill(alarm(entry)?);
+        Ok(())
+    })?;
+    source.each(&entries.latest_remote, |entry| {
+        world.alarms.set_latest_remote(alarm(entry)?);
+        Ok(())
+    })
 }
 
-fn programs(world: &mut World, entries: &Entries, at: &At<'_>) -> Result<(), String> {
-    for entry in &entries.programs {
-        let program = entry.get_ref();
+fn programs(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
+    source.each(&entries.programs, |program| {
         if !(1..=100).contains(&program.number) {
-            return Err(at.wrong(entry, "programs are 1 to 100"));
+            return Err("programs are 1 to 100".to_owned());
         }
-        let parsed = Program::parse(&program.name, program.text.trim_end()).map_err(|what| at.wrong(entry, what))?;
+        let parsed = Program::parse(&program.name, program.text.trim_end())?;
         world.programs.insert(program.number, parsed);
-    }
-    for entry in &entries.tasks {
-        let task = entry.get_ref();
+        Ok(())
+    })?;
+    source.each(&entries.tasks, |task| {
         let program = world.programs.get(&task.program);
-        let program = program.ok_or_else(|| at.wrong(entry, format!("there is no program {}", task.program)))?;
+        let program = program.ok_or_else(|| format!("there is no program {}", task.program))?;
         let fits = (1..=TASKS).contains(&task.number) && (1..=64).contains(&task.priority);
         if !fits || !(1..=program.lines.len()).contains(&task.line) {
-            return Err(at.wrong(entry, "tasks are 1 to 16, priorities 1 to 64, lines those of the program"));
+            return Err("tasks are 1 to 16, priorities 1 to 64, lines those of the program".to_owned());
         }
         let mut new = Task::new(task.number, task.program, task.priority);
         new.set_line(task.line - 1);
@@ -222,20 +221,19 @@ fn programs(world: &mut World, entries: &Entries, at: &At<'_>) -> Result<(), Str
         };
         world.tasks.retain(|other| other.number != task.number && other.program != task.program);
         world.tasks.push(new);
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 /// What depends on several entries.
-pub(super) fn check(world: &World, entries: &Entries, at: &At<'_>) -> Result<(), String> {
-    for (number, entry) in entries.robots.iter().enumerate() {
-        let Some(hand) = entry.get_ref().hand else { continue };
-        let owner = world.memory.hands.get(hand).copied().flatten().map(|hand| hand.owner);
-        if owner != Some(number) {
-            return Err(at.wrong(entry, format!("hand {hand} is not defined for robot {}", number + 1)));
-        }
-    }
-    Ok(())
+pub(super) fn check(world: &World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
+    let mut number = 0;
+    source.each(&entries.robots, |robot| {
+        number += 1;
+        let Some(hand) = robot.hand else { return Ok(()) };
+        let owner = world.memory.hands.get(hand).copied().flatten().map(|hand| hand.owner + 1);
+        if owner == Some(number) { Ok(()) } else { Err(format!("hand {hand} is not defined for robot {number}")) }
+    })
 }
 
 fn point(entry: &PointEntry) -> Result<Point, String> {
@@ -249,32 +247,28 @@ fn point(entry: &PointEntry) -> Result<Point, String> {
     }
 }
 
-fn number(name: &str, count: usize) -> Option<usize> {
-    name.parse().ok().filter(|number| *number < count)
-}
-
 fn variable(name: &str) -> Option<usize> {
-    let index = |prefix| number(name.strip_prefix(prefix)?, 32);
+    let index = |prefix| name.strip_prefix(prefix)?.parse().ok().filter(|index: &usize| *index < 32);
     index("SGI").or_else(|| index("SGR").map(|index| index + 256))
 }
 
 fn alarm(entry: &AlarmEntry) -> Result<Entry, String> {
     let alarm: Alarm = entry.alarm.parse().map_err(|error: crate::yrcx::alarm::AlarmError| error.to_string())?;
     let place = match entry.place.as_str() {
-        "" | "C1" => Some(Place::Controller),
-        "C1O1" => Some(Place::Slot),
+        "" | "C1" => Some(AlarmSource::Controller),
+        "C1O1" => Some(AlarmSource::Slot),
         other => other_place(other),
     };
     Ok((alarm, place.ok_or_else(|| format!("'{}' is no place such as C1O1 or R1A3", entry.place))?))
 }
 
-fn other_place(text: &str) -> Option<Place> {
+fn other_place(text: &str) -> Option<AlarmSource> {
     let index = |digits: &str, most| digits.parse::<usize>().ok()?.checked_sub(1).filter(|index| *index < most);
     if let Some(task) = text.strip_prefix('T') {
-        return task.parse().ok().filter(|task| (1..=TASKS).contains(task)).map(Place::Task);
+        return task.parse().ok().filter(|task| (1..=TASKS).contains(task)).map(AlarmSource::Task);
     }
     match text.strip_prefix('R')?.split_once('A') {
-        Some((robot, axis)) => Some(Place::Axis(index(robot, ROBOTS)?, index(axis, AXES)?)),
-        None => index(text.strip_prefix('R')?, ROBOTS).map(Place::Robot),
+        Some((robot, axis)) => Some(AlarmSource::Axis(index(robot, ROBOTS)?, index(axis, AXES)?)),
+        None => index(text.strip_prefix('R')?, ROBOTS).map(AlarmSource::Robot),
     }
 }

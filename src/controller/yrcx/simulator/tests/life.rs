@@ -9,10 +9,9 @@ fn under_the_programming_box_only_references_are_taken() {
     bench.wait(5);
     assert!(!bench.is_on(output::AUTO_MODE));
     for row in crate::yrcx::table::ROWS.iter().filter(|row| row.command != Command::StatusReset) {
-        let Some((_, request, _)) = examples::examples()
-            .into_iter()
-            .find(|(_, words, _)| crate::yrcx::table::Row::of(words[0]).is_some_and(|of| of.command == row.command))
-        else {
+        let Some((_, request, _)) = examples::examples().into_iter().find(|(_, words, _)| {
+            crate::yrcx::table::Row::from_word(words[0]).is_some_and(|of| of.command == row.command)
+        }) else {
             continue;
         };
         let answer = bench.send(&request);

@@ -83,7 +83,7 @@ impl Bench {
     /// Waits for the end of a command, and resets the status.
     fn end(&mut self) -> Words {
         for _ in 0..200_000 {
-            if Status::of(self.words()[0]).is_end() {
+            if Status::from_word(self.words()[0]).is_end() {
                 let words = self.words();
                 self.image.set_command(&[0; 16]);
                 self.wait(5);

@@ -11,7 +11,7 @@ use crate::yrcx::table::{ROWS, Row};
 fn sendable() -> Vec<Words> {
     let mut all: Vec<Words> = examples::examples().into_iter().map(|(_, words, _)| words).collect();
     for row in ROWS {
-        let of = |words: &&Words| Row::of(words[0]).unwrap();
+        let of = |words: &&Words| Row::from_word(words[0]).unwrap();
         let alike = |words: &&Words| of(words).request == row.request && of(words).rules == row.rules;
         let like = all.iter().find(alike).or_else(|| all.iter().find(|words| of(words).section == row.section));
         let mut words = *like.unwrap_or_else(|| panic!("no example is like {}", row.id));
@@ -25,7 +25,7 @@ fn sendable() -> Vec<Words> {
 fn every_command_is_answered() {
     let mut seen = 0;
     for words in sendable().iter().filter(|words| words[0] != 0) {
-        let row = Row::of(words[0]).unwrap();
+        let row = Row::from_word(words[0]).unwrap();
         let mut bench = Bench::default();
         bench.begin(words);
         if row.pace == crate::yrcx::table::Pace::Jog {

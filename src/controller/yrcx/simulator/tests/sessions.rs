@@ -2,16 +2,17 @@
 //! image every 20 ms.
 
 use super::*;
+use crate::testing::ms;
 use crate::yrcx::image::Output;
 use crate::yrcx::order::Order;
 use crate::yrcx::procedure::Procedure;
 use crate::yrcx::sequence::{self, Sequence};
-use crate::yrcx::session::{Ended, Exchange, Hindrance, ImageSession, Next, Outcome, Policy, Silence};
+use crate::yrcx::session::{Ended, Exchange, ImageSession, Next, NotSentReason, Outcome, Policy, Silence};
 
 const RPI: u64 = 20;
 
 /// A master on a link.
-struct Line {
+struct MasterLink {
     simulator: Simulator,
     output: Output,
     now: u64,
@@ -20,11 +21,7 @@ struct Line {
     linked: bool,
 }
 
-fn ms(ms: u64) -> Duration {
-    Duration::from_millis(ms)
-}
-
-impl Line {
+impl MasterLink {
     fn new(start: &str) -> Self {
         let mut simulator = Simulator::new(Start::parse(start).unwrap());
         let mut output = Output::new(resting());
@@ -97,7 +94,7 @@ fn order(draft: Draft) -> Order {
 
 #[test]
 fn a_motion_and_a_read() {
-    let mut line = Line::new("");
+    let mut line = MasterLink::new("");
     let outcome = line.exchange(by_300());
     let Ended::Answered(Answer::Done(values)) = outcome.ended else { panic!("{outcome:?}") };
     assert_eq!(values.axes(), Some([300_000, 0, 0, 0]));
@@ -116,14 +113,15 @@ fn every_answer_is_understood() {
         if order.row().pace == crate::yrcx::table::Pace::Jog {
             continue;
         }
-        let outcome = Line::new("run_scans = 9").run_with(&mut Exchange::new(order, Policy::default()), |_, _| {});
+        let outcome =
+            MasterLink::new("run_scans = 9").run_with(&mut Exchange::new(order, Policy::default()), |_, _| {});
         assert!(matches!(outcome.ended, Ended::Answered(Answer::Done(_))), "{id} {outcome:?}");
     }
 }
 
 #[test]
 fn a_refusal_is_an_answer() {
-    let mut line = Line::new("");
+    let mut line = MasterLink::new("");
     let outcome = line.exchange(Command::MovePulse.order().with(Key::Axes, "1").with(Key::Axis1, i32::MAX));
     let Ended::Answered(Answer::Refused { alarm, .. }) = outcome.ended else { panic!("{outcome:?}") };
     assert_eq!(alarm.to_string(), "2.334");
@@ -132,8 +130,8 @@ fn a_refusal_is_an_answer() {
 
 #[test]
 fn what_another_master_left_is_reset_or_waited_for() {
-    let mut line = Line::new("");
-    let left = |line: &mut Line, order: &Order| {
+    let mut line = MasterLink::new("");
+    let left = |line: &mut MasterLink, order: &Order| {
         line.output.next.set_command(order.words());
         line.simulator.input(ms(line.now), Some(&line.output.next));
         line.now += 10;
@@ -150,7 +148,7 @@ fn what_another_master_left_is_reset_or_waited_for() {
     assert!(matches!(outcome.ended, Ended::Answered(Answer::Done(_))));
     left(&mut line, &order(by_300().with(Key::SpeedPercent, 1)));
     let outcome = line.exchange(Command::ServoStatus.order());
-    assert_eq!(outcome.ended, Ended::NotSent(Hindrance::NotReady(Status::Running)));
+    assert_eq!(outcome.ended, Ended::NotSent(NotSentReason::NotReady(Status::Running)));
     assert_eq!(line.place(), 900_000);
 }
 
@@ -158,13 +156,13 @@ fn what_another_master_left_is_reset_or_waited_for() {
 fn a_link_lost_at_any_moment_neither_loses_nor_doubles_a_motion() {
     let mut seen = [0; 3];
     for cut in (500..1300).step_by(5) {
-        let mut line = Line::new("");
+        let mut line = MasterLink::new("");
         line.cut = Some(cut);
         let outcome = line.exchange(by_300());
         let place = line.place();
         match outcome.ended {
             Ended::NotSent(hindrance) => {
-                assert_eq!((hindrance, place), (Hindrance::LinkLost, 0), "{cut}");
+                assert_eq!((hindrance, place), (NotSentReason::LinkLost, 0), "{cut}");
                 seen[0] += 1;
             }
             Ended::OutcomeUnknown(silence) => {
@@ -189,7 +187,7 @@ fn a_link_lost_at_any_moment_neither_loses_nor_doubles_a_motion() {
 fn an_interrupt_at_any_moment_leaves_a_robot_at_rest() {
     let mut seen = [0; 3];
     for at in (500..1400).step_by(15) {
-        let mut line = Line::new("");
+        let mut line = MasterLink::new("");
         let mut exchange = Exchange::new(order(by_300()), Policy::default());
         let outcome = line.run_with(&mut exchange, |now, exchange| {
             if now == at {
@@ -198,7 +196,7 @@ fn an_interrupt_at_any_moment_leaves_a_robot_at_rest() {
         });
         let place = line.place();
         match outcome.ended {
-            Ended::NotSent(Hindrance::Interrupted) => {
+            Ended::NotSent(NotSentReason::Interrupted) => {
                 assert_eq!(place, 0);
                 seen[0] += 1;
             }
@@ -221,7 +219,7 @@ fn an_interrupt_at_any_moment_leaves_a_robot_at_rest() {
 
 #[test]
 fn a_jog_is_stopped_and_tells_where() {
-    let mut line = Line::new("");
+    let mut line = MasterLink::new("");
     let jog = Command::JogPulse.order().with(Key::Axes, "1").with(Key::Direction, "+").with(Key::Report, "pulse");
     let mut exchange = Exchange::new(order(jog), Policy::default());
     let outcome = line.run_with(&mut exchange, |now, exchange| {
@@ -237,7 +235,7 @@ fn a_jog_is_stopped_and_tells_where() {
 
 #[test]
 fn continuous_output_until_it_is_ended() {
-    let mut line = Line::new("");
+    let mut line = MasterLink::new("");
     let draft = Command::PositionPulse.order().with(Key::Robot, 2).with(Key::Continuous, "on");
     let mut exchange = Exchange::new(order(draft), Policy::default());
     let mut shown = None;
@@ -255,7 +253,7 @@ fn continuous_output_until_it_is_ended() {
 
 #[test]
 fn the_procedures_of_the_timing_charts() {
-    let mut line = Line::new("servo = false");
+    let mut line = MasterLink::new("servo = false");
     assert_eq!(line.procedure(Procedure::power_on()), sequence::Outcome::Done);
     assert!(line.is_on(output::SERVO_ON));
     assert_eq!(line.procedure(Procedure::auto_mode()), sequence::Outcome::Done);
@@ -273,7 +271,7 @@ fn the_procedures_of_the_timing_charts() {
 
 #[test]
 fn procedures_tell_what_keeps_them() {
-    let mut line = Line::new("mode = \"manual\"");
+    let mut line = MasterLink::new("mode = \"manual\"");
     let timed_out = sequence::Outcome::TimedOut { signal: output::AUTO_MODE, on: true };
     assert_eq!(line.procedure(Procedure::auto_mode()), timed_out);
     line.simulator.console(ms(line.now), "estop on").unwrap();
@@ -291,7 +289,7 @@ fn procedures_tell_what_keeps_them() {
 
 #[test]
 fn a_recovery_after_a_lost_link() {
-    let mut line = Line::new("");
+    let mut line = MasterLink::new("");
     line.cut = Some(1000);
     assert_eq!(line.exchange(by_300()).ended, Ended::OutcomeUnknown(Silence::LinkLost));
     line.cut = None;

@@ -1,0 +1,106 @@
+//! The layers of a node for `armctl robots check`: from the adapter to what the controller shows.
+
+use super::board::{Board, MAKER};
+use crate::command::face::layers::Layers;
+use crate::controller::yrcx::image::Image;
+use crate::failure::Kind;
+use crate::transport::devicenet::can::BusState;
+
+/// In the order in which they are looked at.
+pub(super) const LAYERS: &[&str] = &["name", "adapter", "bus", "MAC ID", "owner", "identity", "sizes", "inputs"];
+
+/// Looks at them; what the controller shows, where it could be read.
+pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
+    let node = board.node().clone();
+    layers.ok("name", format!("MAC {} behind {}", node.mac, node.place));
+    let network = match board.network().await {
+        Err(failure) => {
+            layers.fail("adapter", &failure);
+            return None;
+        }
+        Ok(network) => network,
+    };
+    layers.ok("adapter", format!("{} at {}", node.place, node.bitrate));
+    let nodes = match board.nodes().await {
+        Err(failure) => {
+            layers.fail("bus", &failure);
+            return None;
+        }
+        Ok(nodes) => nodes,
+    };
+    let (health, frames) = network.health();
+    let advice = "check the bit rate, the 24 V of the bus, its plugs and both terminators (121 ohm)";
+    match health.state {
+        BusState::Off => layers.wrong("bus", "the adapter is bus-off", advice),
+        BusState::Passive => layers.wrong("bus", "nobody acknowledges what is sent (adapter error passive)", advice),
+        _ if nodes.is_empty() && frames == 0 => layers.wrong("bus", "not a frame was heard", advice),
+        _ => layers.ok("bus", count(nodes.len())),
+    }
+    if !nodes.iter().any(|found| found.mac == node.mac.number()) {
+        layers.fail("MAC ID", &board.absent(&nodes));
+        return None;
+    }
+    layers.ok("MAC ID", format!("MAC {} is on line", node.mac));
+    let identity = match board.identity().await {
+        Err(failure) if failure.kind == Kind::Refused => {
+            layers.warn("owner", "another master, such as a PLC or a session, has its connections", OWNED);
+            return overheard(board, layers).await;
+        }
+        Err(failure) => {
+            layers.fail("owner", &failure);
+            return None;
+        }
+        Ok(identity) => identity,
+    };
+    layers.ok("owner", "no master commands it");
+    let name = identity.name.as_deref().unwrap_or("without a name");
+    let vendor = identity.vendor.map_or_else(|| "?".to_owned(), |vendor| vendor.to_string());
+    let told = format!("{name}, vendor {vendor}");
+    layers.judge("identity", identity.vendor == Some(MAKER), (&told, &told), "not the maker's number, which is 636");
+    match board.sizes().await {
+        Err(failure) => layers.fail("sizes", &failure),
+        Ok(sizes) => match profile(sizes) {
+            Some(name) => layers.ok("sizes", name),
+            None => layers.wrong("sizes", format!("{sizes:?} bytes"), "set the unit's I/O size to Normal or Compact"),
+        },
+    }
+    let image = board.image().await;
+    board.release().await;
+    match image {
+        Err(failure) => layers.fail("inputs", &failure),
+        Ok(None) => layers.warn("inputs", "shown in polls only", "`armctl session open` polls it"),
+        Ok(Some(image)) => {
+            layers.ok("inputs", "they can be read");
+            return Some(image);
+        }
+    }
+    None
+}
+
+const OWNED: &str = "commands want its scan stopped first; what only looks works beside it";
+
+/// Beside another master there is only what passes.
+async fn overheard(board: &mut Board, layers: &mut Layers) -> Option<Image> {
+    match board.overheard().await {
+        Err(failure) => layers.fail("inputs", &failure),
+        Ok(None) => layers.warn("inputs", "its master does not poll it", "look at the PLC"),
+        Ok(Some(image)) => {
+            layers.ok("inputs", "heard in the answers to its master");
+            return Some(image);
+        }
+    }
+    None
+}
+
+/// The name of a size.
+pub(super) fn profile(sizes: (Option<u16>, Option<u16>)) -> Option<&'static str> {
+    match sizes {
+        (Some(48), Some(48)) => Some("Normal: 48 bytes each way"),
+        (Some(4), Some(4)) => Some("Compact: 4 bytes each way, without remote commands"),
+        _ => None,
+    }
+}
+
+fn count(nodes: usize) -> String {
+    if nodes == 1 { "1 node answers".to_owned() } else { format!("{nodes} nodes answer") }
+}

@@ -1,0 +1,82 @@
+//! Links over DeviceNet, as a URL wants them.
+
+use std::time::Duration;
+
+use crate::command::yrcx::fieldbus::{At, Purpose};
+use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::signal::resting;
+use crate::settings::target::devicenet::DeviceNet;
+use crate::transport::devicenet::link::{Listened, Polled, Reading};
+use crate::transport::devicenet::network::{Adapter, Network};
+use crate::transport::devicenet::scanner::Identity;
+use crate::transport::devicenet::settings::{Images, Profile, Purpose as For, Settings};
+use crate::transport::image::{Cause, ImageLink, LinkError};
+
+/// How long to wait for the images of another master: its polls may be slow.
+const LISTEN: Duration = Duration::from_secs(1);
+/// Silence after which another master's polls have ended.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// Least pause between two looks by messages.
+const PAUSE: Duration = Duration::from_millis(100);
+/// Vendors have numbers from the ODVA; this program's maker has none.
+const UNREGISTERED_VENDOR: u16 = 0xFFFF;
+
+/// The sizes of images that a controller may be set to.
+pub(super) fn profiles() -> Vec<Profile> {
+    [("Normal", Image::BYTES), ("Compact", Image::SIGNAL_BYTES)]
+        .map(|(name, size)| Profile { name, resting: resting().to_link(size) })
+        .to_vec()
+}
+
+/// Opens a link.
+pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
+    let node = options(&at)?;
+    if purpose == Purpose::Look {
+        return look(&at, node).await;
+    }
+    let network = Network::open(&adapter(node), at.tap.clone()).await?;
+    let images = Images { profiles: profiles(), cycle: node.cycle.max(at.bus.calm), rate: node.rate };
+    let rate = images.rate.max(images.cycle);
+    let settings =
+        Settings { slave: node.mac, purpose: For::Images(Images { rate, ..images }), timeout: request_timeout(&at) };
+    Ok(ImageLink::over(Polled::open(&network, settings).await?))
+}
+
+/// Sees what the controller shows without owning it: what passes between it and its master; where it has none, by messages,
+/// which begin no polls.
+async fn look(at: &At<'_>, node: &DeviceNet) -> Result<ImageLink, LinkError> {
+    let silent = Network::open(&Adapter { identity: None, ..adapter(node) }, at.tap.clone()).await?;
+    if let Some(listened) = Listened::open(silent.clone(), node.mac, LISTEN, PATIENCE).await {
+        return Ok(ImageLink::over(listened));
+    }
+    drop(silent);
+    let network = Network::open(&adapter(node), at.tap.clone()).await?;
+    let reading = Reading::open(&network, node.mac, request_timeout(at), PAUSE.max(at.bus.calm)).await;
+    match reading {
+        Ok(reading) => Ok(ImageLink::over(reading)),
+        Err(error) => Err(match LinkError::from(error) {
+            LinkError::Refused(cause) => LinkError::Refused(cause.advice(NOT_SHOWN)),
+            error => error,
+        }),
+    }
+}
+
+const NOT_SHOWN: &str = "nobody polls the controller, and it shows its signals to nobody who only looks: open a session, \
+     `armctl session open`, and look through that";
+
+/// The adapter, with this program as its master.
+pub(super) fn adapter(node: &DeviceNet) -> Adapter {
+    let serial = 0x4152_0000 | std::process::id() & 0xFFFF;
+    let identity = Identity { mac: node.master, vendor: UNREGISTERED_VENDOR, serial };
+    Adapter { place: node.place.clone(), bitrate: node.bitrate, identity: Some(identity) }
+}
+
+/// What the URL says.
+pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a DeviceNet, LinkError> {
+    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is no URL of DeviceNet", at.bus))))
+}
+
+/// A request leaves twice before its silence is told.
+pub(super) fn request_timeout(at: &At<'_>) -> Duration {
+    (at.robot.timeout.value / 2).clamp(Duration::from_millis(100), Duration::from_secs(1))
+}

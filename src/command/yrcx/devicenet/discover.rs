@@ -1,0 +1,71 @@
+//! Which nodes of DeviceNet answer behind an adapter.
+
+use std::time::Duration;
+
+use clap::Args;
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+
+use super::board::{MAKER, Node};
+use super::connect::adapter;
+use crate::command::yrcx::fieldbus::{self, Found, Scope, bus_of, fields};
+use crate::command::yrcx::link_error::not_open;
+use crate::failure::Failure;
+use crate::settings::target::Bus;
+use crate::settings::target::devicenet::DeviceNet;
+use crate::transport::devicenet::network::Network;
+use crate::transport::image::LinkError;
+use crate::transport::image::tap::Tap;
+
+/// Behind which adapter to look.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub struct Search {
+    /// Ask the nodes of DeviceNet behind this adapter: slcan:///dev/ttyACM0, slcan://HOST:PORT, can://can0 (repeatable)
+    #[arg(long = "devicenet", value_name = "URL", value_parser = wired)]
+    adapters: Vec<(String, Bus)>,
+}
+
+/// The URL of an adapter; a MAC ID is put behind it to make it that of a node.
+fn wired(text: &str) -> Result<(String, Bus), String> {
+    let sign = if text.contains('?') { '&' } else { '?' };
+    let bus = bus_of(&format!("{text}{sign}mac=63")).map_err(|failure| failure.message)?;
+    if bus.options::<DeviceNet>().is_none() {
+        return Err(format!("'{text}' is not a CAN adapter, as in slcan:///dev/ttyACM0"));
+    }
+    Ok((text.to_owned(), bus))
+}
+
+impl fieldbus::Search for Search {
+    fn scope(&self) -> Scope {
+        if self.adapters.is_empty() { Scope::Nothing } else { Scope::Network }
+    }
+
+    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Found>, Failure>> {
+        async move {
+            let mut all = Vec::new();
+            for (url, bus) in &self.adapters {
+                let Some(node) = bus.options::<DeviceNet>() else { continue };
+                let failed = |error| not_open(url, bus.scheme, &LinkError::from(error));
+                let network = Network::open(&adapter(node), tap.clone()).await.map_err(failed)?;
+                let found = network.find().await.map_err(failed)?;
+                for node in found.into_iter().map(Node::from) {
+                    all.push(found_node(url, &node)?);
+                }
+            }
+            Ok(all)
+        }
+        .boxed_local()
+    }
+}
+
+fn found_node(url: &str, node: &Node) -> Result<Found, Failure> {
+    let sign = if url.contains('?') { '&' } else { '?' };
+    Ok(Found {
+        address: format!("{url} MAC {}", node.mac),
+        target: format!("{url}{sign}mac={}", node.mac),
+        is_yrcx: node.vendor == MAKER,
+        device: format!("MAC {}, vendor {}, {}", node.mac, node.vendor, node.serial),
+        identity: fields(node)?,
+    })
+}

@@ -1,0 +1,45 @@
+//! `yrcx devicenet identity`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::board;
+use super::{NO_UNIT, board_of};
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
+use crate::failure::Failure;
+use crate::output::view::{Section, View};
+
+/// Asks the node who it is. Its connections are allocated for that, and released; nothing is polled.
+#[derive(Debug, Args)]
+pub struct Identify {}
+
+impl Command for Identify {
+    type Family = Yrcx;
+    type Report = Identified;
+    const ID: &'static str = "yrcx.devicenet.identity";
+
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Identified, Failure> {
+        context.link.no_unit(NO_UNIT)?;
+        context.link.then("messages that ask the node who it is");
+        Ok(Identified { identity: board_of(context.link)?.identity().await? })
+    }
+}
+
+/// Who answers.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Identified {
+    #[serde(flatten)]
+    identity: board::Identity,
+}
+
+impl Report for Identified {
+    fn view(&self) -> View {
+        View::default().and(Section::Fields(self.identity.fields()))
+    }
+}

@@ -1,0 +1,77 @@
+//! `yrcx devicenet probe`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::board::Identity;
+use super::check::profile;
+use super::{NO_UNIT, board_of};
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Section, View};
+
+/// Asks the node for the sizes of its images, which tell how its unit is set. Its connections are allocated for that, and
+/// released; nothing is polled.
+#[derive(Debug, Args)]
+pub struct Probe {}
+
+impl Command for Probe {
+    type Family = Yrcx;
+    type Report = Probed;
+    const ID: &'static str = "yrcx.devicenet.probe";
+
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Probed, Failure> {
+        context.link.no_unit(NO_UNIT)?;
+        context.link.then("messages that ask the node who it is, and for the sizes of its images");
+        let board = board_of(context.link)?;
+        let identity = match board.identity().await {
+            Ok(identity) => Some(identity),
+            Err(failure) if failure.kind == Kind::Refused => None,
+            Err(failure) => return Err(failure),
+        };
+        let owned = identity.is_none();
+        let sizes = if owned { (None, None) } else { board.sizes().await? };
+        let profile = profile(sizes);
+        Ok(Probed { identity, owned, in_size: sizes.0, out_size: sizes.1, profile })
+    }
+}
+
+/// What a node has.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Probed {
+    /// Null where another master has its connections, beside which nothing can be asked.
+    identity: Option<Identity>,
+    /// Whether another master has its connections.
+    owned: bool,
+    /// Bytes from the controller.
+    in_size: Option<u16>,
+    /// Bytes to the controller.
+    out_size: Option<u16>,
+    /// What the sizes mean.
+    profile: Option<&'static str>,
+}
+
+impl Report for Probed {
+    fn view(&self) -> View {
+        let mut fields = self.identity.as_ref().map(Identity::fields).unwrap_or_default();
+        let owner = if self.owned { "another master, at present" } else { "free" };
+        fields.push(("owner", owner.into()));
+        fields.push(("from the controller", Cell::maybe(self.in_size.map(|size| format!("{size} bytes")))));
+        fields.push(("to the controller", Cell::maybe(self.out_size.map(|size| format!("{size} bytes")))));
+        fields.push(("I/O size", Cell::maybe(self.profile)));
+        View::default().and(Section::Fields(fields))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        (!self.owned && self.profile.is_none()).then(|| {
+            Failure::new(Kind::ConditionNotMet, "these are not the sizes of a YRCX")
+                .hint("set the I/O size of the controller's unit to Normal (48 bytes) or Compact (4)")
+        })
+    }
+}

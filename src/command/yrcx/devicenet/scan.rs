@@ -1,0 +1,57 @@
+//! `yrcx devicenet scan`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::board::Node;
+use super::{NO_UNIT, board_of};
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Section, Table, View};
+
+/// Lists the nodes of the bus: each is asked whether its MAC ID is free, and says that it is not. Nobody is owned.
+#[derive(Debug, Args)]
+pub struct Scan {}
+
+impl Command for Scan {
+    type Family = Yrcx;
+    type Report = Scanned;
+    const ID: &'static str = "yrcx.devicenet.scan";
+
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Scanned, Failure> {
+        context.link.no_unit(NO_UNIT)?;
+        context.link.then("the question to every MAC ID whether it is free");
+        Ok(Scanned { nodes: board_of(context.link)?.nodes().await? })
+    }
+}
+
+/// Who answers.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Scanned {
+    /// By MAC ID.
+    nodes: Vec<Node>,
+}
+
+impl Report for Scanned {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["MAC ID", "vendor", "serial", "state"], "no node answers");
+        for node in &self.nodes {
+            let state = if node.on_line { "on line" } else { "going on line" };
+            table.row([u32::from(node.mac).into(), node.vendor.into(), node.serial.as_str().into(), state.into()]);
+        }
+        View::default().and(Section::Table(table))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.nodes.is_empty().then(|| {
+            Failure::new(Kind::NoAnswer, "no node answers on the bus")
+                .hint("check the bit rate, the 24 V of the bus, its plugs and both terminators (121 ohm)")
+        })
+    }
+}

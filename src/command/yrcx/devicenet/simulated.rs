@@ -1,0 +1,121 @@
+//! The simulated controller as a slave of DeviceNet.
+
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::time::Duration;
+
+use crate::command::yrcx::simulated::{Simulated, start};
+use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::simulator::{Simulator, Start};
+use crate::failure::Failure;
+use crate::settings::target::Sim;
+use crate::settings::target::devicenet::SLCAN;
+use crate::transport::devicenet::can::Bitrate;
+use crate::transport::devicenet::device::{Application, Device, DeviceFault, Setup};
+use crate::transport::devicenet::hub::{Hub, Listen};
+use crate::transport::devicenet::wire::Mac;
+use crate::transport::fault::{FaultSpec, Faults};
+use crate::transport::image::ImagePeer;
+
+/// What `bus=` and `--bus` call the size of four bytes.
+const COMPACT: &str = "devicenet-compact";
+/// The MAC ID of a simulated controller, unless another is given.
+pub(super) const MAC: u8 = 5;
+
+/// A simulator behind an SLCAN adapter on the loopback, with what the URL wants to go wrong.
+pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
+    let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
+    let faults = sim.fault.as_deref().map(faults).transpose().map_err(|why| wrong(format!("fault: {why}")))?;
+    let fault = sim.mischief.as_deref().map(fault).transpose().map_err(|why| wrong(format!("mischief: {why}")))?;
+    let setup = setup(Mac::new(MAC).unwrap_or_default(), size(sim.bus), Bitrate::K500);
+    let listen = Listen::Tcp(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
+    serve(start(sim.state.as_deref())?, setup, &[listen], faults, fault)
+        .map_err(|error| Failure::io("the simulator on the loopback", &error))
+}
+
+/// The URL of a simulated controller behind that adapter.
+pub fn target(place: &str) -> String {
+    format!("{}://{place}?mac={MAC}", SLCAN.name)
+}
+
+/// Bytes of the images of a simulator of this name.
+pub fn size(simulator: Option<&str>) -> usize {
+    if simulator == Some(COMPACT) { Image::SIGNAL_BYTES } else { Image::BYTES }
+}
+
+/// Serves a controller as a slave.
+///
+/// # Errors
+/// When the ports cannot be had.
+pub fn serve(
+    start: Start,
+    setup: Setup,
+    listen: &[Listen],
+    faults: Option<FaultSpec>,
+    fault: Option<DeviceFault>,
+) -> io::Result<Hub<Controller>> {
+    let bitrate = setup.bitrate;
+    let mut device = Device::on_line(setup, Controller(Simulated(Simulator::new(start))));
+    device.misbehave(fault);
+    Hub::start(bitrate, Some(device), listen, faults.map(Faults::pair))
+}
+
+/// Identity of an older controller of the maker, as its EDS file has it.
+pub fn setup(mac: Mac, size: usize, bitrate: Bitrate) -> Setup {
+    Setup {
+        mac,
+        bitrate,
+        vendor: 636,
+        device_type: 0,
+        product: 1,
+        revision: (1, 1),
+        serial: 1,
+        name: "YRCX simulator of armctl".to_owned(),
+        size: u16::try_from(size).unwrap_or_default(),
+    }
+}
+
+/// Faults of frames on their way.
+pub fn faults(text: &str) -> Result<FaultSpec, String> {
+    let spec: FaultSpec = text.parse().map_err(|error| format!("{error}"))?;
+    if spec.busy.per_10_000() > 0 {
+        return Err("busy is not for yrcx".to_owned());
+    }
+    // A damaged frame is not one that arrives damaged: its checksum has it sent again.
+    if spec.corrupt.per_10_000() > 0 {
+        Err("corrupt is not for CAN, whose frames have a checksum".to_owned())
+    } else {
+        Ok(spec)
+    }
+}
+
+/// What a slave does wrong, by its name.
+pub fn fault(text: &str) -> Result<DeviceFault, String> {
+    let found = DeviceFault::ALL.iter().find(|(name, _)| *name == text);
+    found.map(|(_, fault)| *fault).ok_or_else(|| {
+        let names = DeviceFault::ALL.map(|(name, _)| name).join(", ");
+        format!("there are {names}")
+    })
+}
+
+/// A simulated controller behind its node.
+#[derive(Debug)]
+pub struct Controller(pub Simulated);
+
+impl Application for Controller {
+    fn image_out(&mut self, now: Duration, image: &[u8]) {
+        self.0.input(now, Some(image));
+    }
+
+    fn image_in(&mut self, now: Duration, image: &mut [u8]) {
+        self.0.0.advance(now);
+        let shown = self.0.0.output().to_link(image.len());
+        for (byte, shown) in image.iter_mut().zip(shown) {
+            *byte = shown;
+        }
+    }
+
+    fn master_gone(&mut self, now: Duration) {
+        self.0.input(now, None);
+    }
+}

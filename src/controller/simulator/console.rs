@@ -1,0 +1,38 @@
+//! Lines of a console: words that all families read alike, and what they answer.
+
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+
+/// `on` or `off`.
+pub(crate) fn on_off(word: &str) -> Result<bool, String> {
+    match word {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err(expected(word, "on or off")),
+    }
+}
+
+/// A whole number of a range.
+pub(crate) fn number<T: FromStr + PartialOrd + std::fmt::Display>(
+    word: &str,
+    range: RangeInclusive<T>,
+) -> Result<T, String> {
+    let number = word.parse().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| expected(word, &format!("a number from {} to {}", range.start(), range.end())))
+}
+
+/// What a word should be.
+pub(crate) fn expected(word: &str, what: &str) -> String {
+    format!("'{word}' is not {what}")
+}
+
+/// A line that no console has.
+pub(crate) fn unknown(line: &str) -> String {
+    format!("no such line: '{}'", line.trim())
+}
+
+/// One line from what always holds and what holds now.
+pub(crate) fn summary<'a>(always: &[&'a str], now: impl IntoIterator<Item = (bool, &'a str)>) -> String {
+    let now = now.into_iter().filter_map(|(holds, text)| holds.then_some(text));
+    always.iter().copied().chain(now).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,118 @@
+//! Start states as TOML: reading entries, and errors that name the line.
+
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+
+use jiff::civil::DateTime;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use toml::Spanned;
+
+use super::timeline::Timeline;
+
+/// Entries by number or name.
+pub(crate) type Table<T> = BTreeMap<String, Spanned<T>>;
+
+/// A line for the console of the simulator, at a time from its start.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Event {
+    at_ms: u64,
+    #[serde(rename = "do")]
+    line: String,
+}
+
+/// Reads entries. The error says what is wrong, and in which line.
+pub(crate) fn parse<T: DeserializeOwned>(text: &str) -> Result<T, String> {
+    toml::from_str(text).map_err(|error| {
+        let start = error.span().map_or(0, |span| span.start);
+        format!("line {}: {}", line_number(text, start), error.message())
+    })
+}
+
+/// An entry that nobody wrote.
+pub(crate) fn default_entry<T>(value: T) -> Spanned<T> {
+    Spanned::new(0..0, value)
+}
+
+/// The same for a text.
+pub(crate) fn default_text(text: &str) -> Spanned<String> {
+    default_entry(text.to_owned())
+}
+
+/// The text that entries are from, for errors.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Source<'a> {
+    pub(crate) text: &'a str,
+}
+
+impl Source<'_> {
+    /// What is wrong with an entry, with its line.
+    pub(crate) fn error<T>(&self, entry: &Spanned<T>, what: impl Display) -> String {
+        format!("line {}: {what}", line_number(self.text, entry.span().start))
+    }
+
+    /// What `read` makes of an entry.
+    pub(crate) fn read<'e, T, R>(
+        &self,
+        entry: &'e Spanned<T>,
+        read: impl FnOnce(&'e T) -> Result<R, String>,
+    ) -> Result<R, String> {
+        read(entry.get_ref()).map_err(|what| self.error(entry, what))
+    }
+
+    /// Takes every entry of a list.
+    pub(crate) fn each<'e, T: 'e>(
+        &self,
+        entries: impl IntoIterator<Item = &'e Spanned<T>>,
+        mut take: impl FnMut(&'e T) -> Result<(), String>,
+    ) -> Result<(), String> {
+        entries.into_iter().try_for_each(|entry| self.read(entry, &mut take))
+    }
+
+    /// Takes every entry of a table with its key.
+    pub(crate) fn each_of<'e, T>(
+        &self,
+        entries: &'e Table<T>,
+        mut take: impl FnMut(&'e str, &'e T) -> Result<(), String>,
+    ) -> Result<(), String> {
+        entries.iter().try_for_each(|(key, entry)| self.read(entry, |value| take(key, value)))
+    }
+
+    /// A share from 0 to 1.
+    pub(crate) fn share(&self, name: &str, entry: &Spanned<f64>) -> Result<f64, String> {
+        self.read(entry, |share| {
+            let share = Some(*share).filter(|share| (0.0..=1.0).contains(share));
+            share.ok_or_else(|| format!("{name} is a share from 0 to 1"))
+        })
+    }
+
+    /// Date and time, in a form as `strptime` has it.
+    pub(crate) fn time(&self, entry: &Spanned<String>, form: &str, example: &str) -> Result<DateTime, String> {
+        let wrong = |_| format!("a time looks like \"{example}\"");
+        self.read(entry, |text| DateTime::strptime(form, text).map_err(wrong))
+    }
+
+    /// Events in the order of their times. `check` reads the lines in the order of the text, so that a mistake shows now
+    /// and not in the middle of a run.
+    pub(crate) fn timeline<R>(
+        &self,
+        entries: &[Spanned<Event>],
+        mut check: impl FnMut(&str) -> Result<R, String>,
+    ) -> Result<Timeline, String> {
+        self.each(entries, |event| check(&event.line).map(drop))?;
+        Ok(entries.iter().map(Spanned::get_ref).map(|event| (event.at_ms, event.line.clone())).collect())
+    }
+}
+
+/// A key that is a number; `things` are what it counts.
+pub(crate) fn numbered(things: &str, key: &str, range: RangeInclusive<usize>) -> Result<usize, String> {
+    let number = key.parse().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| format!("{things} are {} to {}", range.start(), range.end()))
+}
+
+/// The line, from 1, in which a byte stands.
+fn line_number(text: &str, byte: usize) -> usize {
+    1 + text.bytes().take(byte).filter(|&byte| byte == b'\n').count()
+}

@@ -1,0 +1,47 @@
+//! Console lines that are carried out at their time.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use crate::Now;
+
+/// Lines that are still to come, in the order of their times.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Timeline(VecDeque<(Now, String)>);
+
+impl Timeline {
+    /// When the next line is due.
+    pub(crate) fn due(&self) -> Option<Now> {
+        self.0.front().map(|(at, _)| *at)
+    }
+
+    /// The next line that is due at `now`.
+    pub(crate) fn take(&mut self, now: Now) -> Option<String> {
+        self.due().filter(|at| *at <= now)?;
+        self.0.pop_front().map(|(_, line)| line)
+    }
+}
+
+/// From lines with their milliseconds from the start, in any order.
+impl FromIterator<(u64, String)> for Timeline {
+    fn from_iter<I: IntoIterator<Item = (u64, String)>>(lines: I) -> Self {
+        let mut lines: Vec<_> = lines.into_iter().map(|(ms, line)| (Duration::from_millis(ms), line)).collect();
+        lines.sort_by_key(|(at, _)| *at);
+        Self(lines.into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_come_at_their_time_and_once() {
+        let lines = [(20, "b"), (10, "a"), (20, "c")].map(|(ms, line)| (ms, line.to_owned()));
+        let mut timeline = Timeline::from_iter(lines);
+        let at = Duration::from_millis;
+        assert_eq!((timeline.due(), timeline.take(at(9))), (Some(at(10)), None));
+        let taken: Vec<String> = std::iter::from_fn(|| timeline.take(at(20))).collect();
+        assert_eq!((taken, timeline.due()), (vec!["a".to_owned(), "b".to_owned(), "c".to_owned()], None));
+    }
+}

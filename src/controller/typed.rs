@@ -1,0 +1,174 @@
+//! Numbers, ranges and settings as people type them: `0x1F`, `1..5`, `B0=7`, `on`. All families and commands read them
+//! here, and object in the same words.
+
+use std::collections::HashSet;
+use std::fmt::Display;
+use std::hash::Hash;
+use std::ops::RangeInclusive;
+
+use thiserror::Error;
+
+/// A range whose last end comes first.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("the range ends before it begins; did you mean {meant}?")]
+pub struct RangeError {
+    /// The same the other way round.
+    pub meant: String,
+}
+
+impl From<RangeError> for String {
+    fn from(error: RangeError) -> Self {
+        error.to_string()
+    }
+}
+
+/// A whole number: decimal digits, or hexadecimal ones after `0x`, with a sign before them or without.
+pub fn integer(text: &str) -> Option<i64> {
+    let (is_negative, digits) = match text.as_bytes() {
+        [b'-', ..] => (true, &text[1..]),
+        [b'+', ..] => (false, &text[1..]),
+        _ => (false, text),
+    };
+    let (digits, radix) = match after_0x(digits) {
+        Some(digits) => (digits, 16),
+        None => (digits, 10),
+    };
+    if digits.is_empty() || !digits.chars().all(|digit| digit.is_digit(radix)) {
+        return None;
+    }
+    let magnitude = i64::from_str_radix(digits, radix).ok()?;
+    Some(if is_negative { -magnitude } else { magnitude })
+}
+
+/// The same without a sign, as far as the type holds it.
+pub fn unsigned<T: TryFrom<i64>>(text: &str) -> Option<T> {
+    let starts_with_digit = text.starts_with(|first: char| first.is_ascii_digit());
+    integer(text).filter(|_| starts_with_digit).and_then(|number| T::try_from(number).ok())
+}
+
+/// A code in hexadecimal digits, after `0x` or without.
+pub fn code<T: TryFrom<u32>>(text: &str) -> Option<T> {
+    let digits = after_0x(text).unwrap_or(text);
+    let is_hex = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+    u32::from_str_radix(digits, 16).ok().filter(|_| is_hex).and_then(|number| T::try_from(number).ok())
+}
+
+fn after_0x(text: &str) -> Option<&str> {
+    text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"))
+}
+
+/// One of a kind, or a range with both its ends: `5`, `1..5`, `1-5`.
+///
+/// # Errors
+/// What `read` says of an end, or that the last one comes first.
+pub fn range<T: PartialOrd, E: From<RangeError>>(
+    text: &str,
+    read: impl Fn(&str) -> Result<T, E>,
+) -> Result<RangeInclusive<T>, E> {
+    let separators = ["..", "-"];
+    let ends = separators.into_iter().find_map(|separator| Some((separator, text.split_once(separator)?)));
+    let Some((separator, (first_text, last_text))) = ends else { return Ok(read(text)?..=read(text)?) };
+    let (first, last) = (read(first_text)?, read(last_text)?);
+    if first > last {
+        return Err(RangeError { meant: format!("{last_text}{separator}{first_text}") }.into());
+    }
+    Ok(first..=last)
+}
+
+/// What was given, each once and in that order.
+pub fn once<T: Copy + Eq + Hash>(given: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut seen = HashSet::new();
+    given.into_iter().filter(|item| seen.insert(*item)).collect()
+}
+
+/// Numbers in the order given, those that follow each other as a range: `7, 2..5`.
+pub fn runs<T: Copy + Display + Into<i64>>(numbers: &[T], separator: &str) -> String {
+    let mut runs: Vec<(T, T)> = Vec::new();
+    for &number in numbers {
+        match runs.last_mut() {
+            Some((_, last)) if (*last).into() + 1 == number.into() => *last = number,
+            _ => runs.push((number, number)),
+        }
+    }
+    let run = |&(first, last): &(T, T)| {
+        if first.into() == last.into() { first.to_string() } else { format!("{first}{separator}{last}") }
+    };
+    runs.iter().map(run).collect::<Vec<_>>().join(", ")
+}
+
+/// A name and its value, as in `B0=7`.
+///
+/// # Errors
+/// Says that `name` and `value` are expected, and shows the example.
+pub fn setting<'t>(text: &'t str, name: &str, value: &str, example: &str) -> Result<(&'t str, &'t str), String> {
+    text.split_once('=').ok_or_else(|| format!("{name}, '=' and {value} are expected, as in {example}"))
+}
+
+/// The state of a signal: `on` or `1`, `off` or `0`.
+///
+/// # Errors
+/// Anything else.
+pub fn state(text: &str) -> Result<bool, String> {
+    match text {
+        "on" | "1" => Ok(true),
+        "off" | "0" => Ok(false),
+        _ => Err(format!("'{text}' is no state; there are on and off")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_in_decimal_and_hexadecimal() {
+        for (text, number) in [("0", 0), ("-5", -5), ("+5", 5), ("007", 7), ("0xFf", 255), ("0X10", 16), ("-0x10", -16)]
+        {
+            assert_eq!(integer(text), Some(number), "{text}");
+        }
+        for junk in ["", "-", "0x", "x10", "1_0", "0x1g", "--1", "0x-1", " 1", "1.0", "99999999999999999999"] {
+            assert_eq!(integer(junk), None, "{junk}");
+        }
+    }
+
+    #[test]
+    fn unsigned_numbers_and_codes_fit_their_type() {
+        assert_eq!(
+            [unsigned::<u8>("255"), unsigned("0xff"), unsigned("256"), unsigned("+1")],
+            [Some(255), Some(255), None, None]
+        );
+        assert_eq!(
+            [code::<u8>("28"), code("0xfF"), code("100"), code("+1"), code("")],
+            [Some(0x28), Some(255), None, None, None]
+        );
+    }
+
+    #[test]
+    fn ranges_have_two_ends_in_their_order() {
+        let read = |text: &str| unsigned::<u16>(text).ok_or_else(|| format!("not {text}"));
+        assert_eq!(range("7", read), Ok(7..=7));
+        assert_eq!(
+            [range("1..5", read), range("1-5", read), range("0x1..0x5", read)],
+            [Ok(1..=5), Ok(1..=5), Ok(1..=5)]
+        );
+        let wrong = |text| range(text, read).unwrap_err();
+        assert_eq!(wrong("5-2"), "the range ends before it begins; did you mean 2-5?");
+        assert_eq!([wrong("1..x"), wrong("-3"), wrong("")], ["not x", "not ", "not "]);
+    }
+
+    #[test]
+    fn numbers_show_as_ranges_where_they_follow() {
+        assert_eq!(runs(&once([7, 2, 3, 2, 4]), ".."), "7, 2..4");
+        assert_eq!(runs(&[1_u16, 3, 4], "-"), "1, 3-4");
+        assert_eq!(runs::<u16>(&[], "-"), "");
+    }
+
+    #[test]
+    fn settings_and_states_say_what_is_expected() {
+        assert_eq!(setting("B0=7=8", "a variable", "a value", "B0=255"), Ok(("B0", "7=8")));
+        let error = setting("B0", "a variable", "a value", "B0=255").unwrap_err();
+        assert_eq!(error, "a variable, '=' and a value are expected, as in B0=255");
+        assert_eq!((state("on"), state("0")), (Ok(true), Ok(false)));
+        assert_eq!(state("2").unwrap_err(), "'2' is no state; there are on and off");
+    }
+}

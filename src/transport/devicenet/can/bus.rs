@@ -1,0 +1,118 @@
+//! A bus in this process: any number of nodes, with the time that every bit takes and the arbitration of CAN. Without a
+//! clock: whoever drives it says what time it is.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use super::{Bitrate, Frame};
+
+/// A bus.
+#[derive(Debug)]
+pub struct Bus {
+    bitrate: Bitrate,
+    queues: Vec<VecDeque<(Duration, Frame)>>,
+    /// When the frame that was on it last ends.
+    free: Duration,
+    /// The frame that is on it, who sends it, and when it ends.
+    current: Option<(Duration, usize, Frame)>,
+    /// What frames had it for, all in all.
+    busy: Duration,
+}
+
+/// A frame that has passed: to all nodes but its sender.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Passed {
+    /// When its last bit had.
+    pub at: Duration,
+    /// The node that sent it.
+    pub from: usize,
+    /// The frame.
+    pub frame: Frame,
+}
+
+impl Bus {
+    /// A bus with so many nodes.
+    pub fn new(bitrate: Bitrate, nodes: usize) -> Self {
+        let queues = vec![VecDeque::new(); nodes];
+        Self { bitrate, queues, free: Duration::ZERO, current: None, busy: Duration::ZERO }
+    }
+
+    /// A node has this to send.
+    pub fn send(&mut self, now: Duration, node: usize, frame: Frame) {
+        if let Some(queue) = self.queues.get_mut(node) {
+            queue.push_back((now, frame));
+        }
+    }
+
+    /// The next frame that has passed by `now`; call until there is none.
+    pub fn pass(&mut self, now: Duration) -> Option<Passed> {
+        self.arbitrate(now);
+        let (at, from, frame) = self.current.filter(|(end, ..)| *end <= now)?;
+        self.current = None;
+        self.free = at;
+        Some(Passed { at, from, frame })
+    }
+
+    /// When the next frame will have passed, if there is one.
+    pub fn wake(&self) -> Option<Duration> {
+        let first = || self.queues.iter().filter_map(|queue| queue.front().map(|(at, _)| (*at).max(self.free))).min();
+        self.current.map(|(end, ..)| end).or_else(first)
+    }
+
+    /// How long frames had it, all in all.
+    pub const fn busy(&self) -> Duration {
+        self.busy
+    }
+
+    /// Of all that wait when it is free, the lowest identifier begins.
+    fn arbitrate(&mut self, now: Duration) {
+        if self.current.is_some() {
+            return;
+        }
+        let begin = self.queues.iter().filter_map(|queue| queue.front().map(|(at, _)| (*at).max(self.free))).min();
+        let Some(begin) = begin.filter(|begin| *begin <= now) else { return };
+        let waiting = self.queues.iter().enumerate().filter_map(|(node, queue)| {
+            queue.front().filter(|(at, _)| *at <= begin).map(|(_, frame)| (frame.id(), node))
+        });
+        let Some((_, node)) = waiting.min() else { return };
+        if let Some((_, frame)) = self.queues.get_mut(node).and_then(VecDeque::pop_front) {
+            let time = frame.time(self.bitrate);
+            self.busy += time;
+            self.current = Some((begin + time, node, frame));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_lowest_identifier_goes_first_and_frames_follow_each_other() {
+        let frame = |id| Frame::new(id, &[0x55; 8]).unwrap();
+        let mut bus = Bus::new(Bitrate::K500, 3);
+        bus.send(Duration::ZERO, 0, frame(0x42D));
+        bus.send(Duration::ZERO, 1, frame(0x3C5));
+        bus.send(Duration::from_micros(1), 2, frame(0x001));
+        let all = Duration::from_secs(1);
+        let passed: Vec<Passed> = std::iter::from_fn(|| bus.pass(all)).collect();
+        let ids: Vec<u16> = passed.iter().map(|passed| passed.frame.id()).collect();
+        // 001 came while 3C5 had begun.
+        assert_eq!(ids, [0x3C5, 0x001, 0x42D]);
+        assert_eq!(passed[0].at, frame(0x3C5).time(Bitrate::K500));
+        assert_eq!(passed[2].at, bus.busy());
+        assert_eq!(bus.wake(), None);
+    }
+
+    #[test]
+    fn nothing_passes_before_its_time() {
+        let frame = Frame::new(0x42D, &[]).unwrap();
+        let mut bus = Bus::new(Bitrate::K125, 2);
+        bus.send(Duration::from_millis(1), 0, frame);
+        assert_eq!(bus.wake(), Some(Duration::from_millis(1)));
+        assert_eq!(bus.pass(Duration::from_millis(1)), None);
+        let end = Duration::from_millis(1) + frame.time(Bitrate::K125);
+        assert_eq!(bus.wake(), Some(end));
+        assert_eq!(bus.pass(end).map(|passed| passed.from), Some(0));
+    }
+}

@@ -1,0 +1,337 @@
+//! CAN: frames with 11-bit identifiers, and what carries them.
+
+use std::fmt;
+use std::future::Future;
+use std::pin::Pin;
+use std::time::Duration;
+
+pub mod bus;
+pub mod pipe;
+pub mod slcan;
+pub mod slcan_port;
+#[cfg(target_os = "linux")]
+pub mod socketcan;
+
+pub use self::slcan_port::SlcanPort;
+
+/// Most bytes of a frame.
+pub const MOST_DATA: usize = 8;
+/// The highest identifier of 11 bits.
+pub const HIGHEST_ID: u16 = 0x7FF;
+
+/// A data frame with an 11-bit identifier.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Frame {
+    id: u16,
+    len: u8,
+    data: [u8; MOST_DATA],
+}
+
+impl Frame {
+    /// A frame; `None` if the identifier has more than 11 bits or the data more than 8 bytes.
+    pub fn new(id: u16, data: &[u8]) -> Option<Self> {
+        if id > HIGHEST_ID || data.len() > MOST_DATA {
+            return None;
+        }
+        let mut frame = Self { id, len: u8::try_from(data.len()).ok()?, data: [0; MOST_DATA] };
+        frame.data[..data.len()].copy_from_slice(data);
+        Some(frame)
+    }
+
+    /// The identifier.
+    pub const fn id(&self) -> u16 {
+        self.id
+    }
+
+    /// What it carries.
+    pub fn data(&self) -> &[u8] {
+        self.data.get(..usize::from(self.len)).unwrap_or_default()
+    }
+
+    /// Bits on the wire, with stuffed ones and the pause behind it (ISO 11898-1).
+    pub fn bits(&self) -> u32 {
+        // Delimiter of the checksum, acknowledgement with its own, end of frame, pause.
+        const UNSTUFFED: u32 = 1 + 2 + 7 + 3;
+        let mut stream = Stuffed::default();
+        // Start, identifier, data frame, short identifier, reserved, length.
+        stream.push(u32::from(self.id), 12);
+        stream.push(u32::from(self.len), 3 + 4);
+        for byte in self.data() {
+            stream.push(u32::from(*byte), 8);
+        }
+        let checksum = u32::from(stream.checksum);
+        stream.push(checksum, 15);
+        stream.bits + UNSTUFFED
+    }
+
+    /// How long it has the bus.
+    pub fn time(&self, bitrate: Bitrate) -> Duration {
+        Duration::from_nanos(u64::from(self.bits()) * 1_000_000_000 / u64::from(bitrate.bits_per_second()))
+    }
+
+    /// As link type 227 has it: the identifier with its high byte first, the length, three zeros, the data.
+    pub fn to_capture(&self) -> Vec<u8> {
+        let mut bytes = u32::from(self.id).to_be_bytes().to_vec();
+        bytes.extend([self.len, 0, 0, 0]);
+        bytes.extend(self.data());
+        bytes
+    }
+
+    /// Reads that; `None` for what is no data frame with an 11-bit identifier.
+    pub fn from_capture(bytes: &[u8]) -> Option<Self> {
+        let (head, data) = bytes.split_at_checked(8)?;
+        let id = u32::from_be_bytes([head[0], head[1], head[2], head[3]]);
+        Self::new(u16::try_from(id).ok()?, data.get(..usize::from(head[4]))?)
+    }
+
+    /// Reads a line of a `candump -l` log, `(1700000000.123456) can0 42D#0102`, or of `candump`, `can0 42D [2] 01 02`:
+    /// the time where there is one, and the frame.
+    pub fn from_candump(line: &str) -> Option<(Option<Duration>, Self)> {
+        let mut words = line.split_whitespace().peekable();
+        let time = words.next_if(|word| word.starts_with('(')).and_then(|word| {
+            let seconds: f64 = word.trim_matches(['(', ')']).parse().ok()?;
+            Duration::try_from_secs_f64(seconds).ok()
+        });
+        let _interface = words.next()?;
+        let word = words.next()?;
+        let (id, data) = if let Some((id, data)) = word.split_once('#') {
+            (id, data.to_owned())
+        } else {
+            let len: usize = words.next()?.strip_prefix('[')?.strip_suffix(']')?.parse().ok()?;
+            (word, words.take(len.min(MOST_DATA)).collect())
+        };
+        if id.len() != 3 || data.len() % 2 == 1 {
+            return None;
+        }
+        let pairs = data.as_bytes().chunks(2);
+        let bytes: Option<Vec<u8>> =
+            pairs.map(|pair| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok()).collect();
+        Some((time, Self::new(u16::from_str_radix(id, 16).ok()?, &bytes?)?))
+    }
+}
+
+/// As candump writes it: `42D#0102`.
+impl fmt::Display for Frame {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:03X}#", self.id)?;
+        self.data().iter().try_for_each(|byte| write!(f, "{byte:02X}"))
+    }
+}
+
+impl fmt::Debug for Frame {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
+    }
+}
+
+/// Counts bits with the stuffed ones: after five equal ones comes the other.
+#[derive(Debug, Default)]
+struct Stuffed {
+    bits: u32,
+    /// The last bit, and how often it came in a row.
+    run: (bool, u8),
+    checksum: u16,
+}
+
+impl Stuffed {
+    fn push(&mut self, value: u32, count: u32) {
+        /// Of the checksum of 15 bits.
+        const POLYNOMIAL: u16 = 0x4599;
+        for at in (0..count).rev() {
+            let bit = value >> at & 1 == 1;
+            let carry = (self.checksum >> 14 & 1 == 1) != bit;
+            self.checksum = self.checksum << 1 & 0x7FFF;
+            if carry {
+                self.checksum ^= POLYNOMIAL;
+            }
+            self.bits += 1;
+            self.run = if self.run.0 == bit && self.run.1 > 0 { (bit, self.run.1 + 1) } else { (bit, 1) };
+            if self.run.1 == 5 {
+                self.bits += 1;
+                self.run = (!bit, 1);
+            }
+        }
+    }
+}
+
+/// How fast a DeviceNet runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Bitrate {
+    /// 125 kbit/s.
+    K125,
+    /// 250 kbit/s.
+    K250,
+    /// 500 kbit/s.
+    K500,
+}
+
+impl Bitrate {
+    /// All of them, slow ones first, as attribute 2 of the DeviceNet object counts them.
+    pub const ALL: [Self; 3] = [Self::K125, Self::K250, Self::K500];
+
+    /// Bits a second.
+    pub const fn bits_per_second(self) -> u32 {
+        match self {
+            Self::K125 => 125_000,
+            Self::K250 => 250_000,
+            Self::K500 => 500_000,
+        }
+    }
+
+    /// As switches are labelled: `125k`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::K125 => "125k",
+            Self::K250 => "250k",
+            Self::K500 => "500k",
+        }
+    }
+}
+
+impl fmt::Display for Bitrate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} kbit/s", self.bits_per_second() / 1000)
+    }
+}
+
+/// How an adapter gets on with its bus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum BusState {
+    /// As it should be.
+    #[default]
+    Active,
+    /// Errors happen now and then.
+    Warning,
+    /// Many errors; often nobody else is there to acknowledge anything.
+    Passive,
+    /// It has taken itself off the bus.
+    Off,
+}
+
+/// What an adapter tells of itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Health {
+    /// How it gets on with its bus.
+    pub state: BusState,
+    /// How often received frames were lost in it.
+    pub overruns: u64,
+    /// How often it did not take a frame to send.
+    pub rejected: u64,
+}
+
+/// What comes from an adapter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Heard {
+    /// A frame from the bus.
+    Frame(Frame),
+    /// Its health changed.
+    Health(Health),
+}
+
+/// Why an adapter does not do what it should.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum PortError {
+    /// It could not be opened.
+    #[error("{path}: {why}")]
+    Open {
+        /// Which.
+        path: String,
+        /// Why not, in words.
+        why: String,
+        /// What to do about it.
+        advice: &'static str,
+    },
+    /// It is no adapter, or cannot be set as it must be.
+    #[error("{path}: {why}")]
+    Setup {
+        /// Which.
+        path: String,
+        /// What it does not do.
+        why: String,
+    },
+    /// It was there, and is gone.
+    #[error("{path} is gone: {why}")]
+    Gone {
+        /// Which.
+        path: String,
+        /// How that showed.
+        why: String,
+    },
+    /// It takes no more frames.
+    #[error("{path} takes no more frames to send")]
+    Stuck {
+        /// Which.
+        path: String,
+    },
+}
+
+/// Something that is waited for.
+pub type Waiting<'a, T> = Pin<Box<dyn Future<Output = T> + Send + 'a>>;
+
+/// An adapter on a bus: an end of an in-process bus, SLCAN, SocketCAN.
+pub trait CanPort: fmt::Debug + Send {
+    /// Hands over a frame, which leaves after those before it.
+    ///
+    /// # Errors
+    /// When the adapter is gone or takes no more.
+    fn send(&mut self, frame: &Frame) -> Result<(), PortError>;
+
+    /// Waits for what comes next. The future may be dropped.
+    ///
+    /// # Errors
+    /// When the adapter is gone.
+    fn next(&mut self) -> Waiting<'_, Result<Heard, PortError>>;
+
+    /// What is known of its health.
+    fn health(&self) -> Health;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(id: u16, data: &[u8]) -> Frame {
+        Frame::new(id, data).unwrap()
+    }
+
+    #[test]
+    fn only_what_fits_is_a_frame() {
+        assert_eq!(Frame::new(0x800, &[]), None);
+        assert_eq!(Frame::new(0, &[0; 9]), None);
+        assert_eq!(frame(0x42F, &[0, 0x7C, 2, 0xEE, 0xFF, 0xC0, 0]).to_string(), "42F#007C02EEFFC000");
+    }
+
+    /// Between 47 + 8n bits and (34 + 8n - 1) / 4 more.
+    #[test]
+    fn bits_lie_between_none_and_all_stuffed() {
+        for len in 0..=8usize {
+            let least = 47 + 8 * u32::try_from(len).unwrap();
+            let most = least + (34 + 8 * u32::try_from(len).unwrap() - 1) / 4;
+            for fill in [0, 0xFF, 0x55, 0x3C, 0xF8] {
+                for id in [0, 0x2AA, 0x42D, 0x7EF] {
+                    let bits = frame(id, &vec![fill; len]).bits();
+                    assert!((least..=most).contains(&bits), "{len} {fill:x} {id:x}: {bits}");
+                }
+            }
+        }
+        // All 34 up to the end of the checksum are zeros: a stuffed one after every five.
+        assert_eq!(frame(0, &[]).bits(), 47 + 34 / 5);
+    }
+
+    #[test]
+    fn captures_and_logs_hold_frames() {
+        let frame = frame(0x42D, &[0, 1, 2]);
+        let bytes = frame.to_capture();
+        assert_eq!(bytes, [0, 0, 4, 0x2D, 3, 0, 0, 0, 0, 1, 2]);
+        assert_eq!(Frame::from_capture(&bytes), Some(frame));
+        assert_eq!(Frame::from_capture(&bytes[..10]), None);
+        assert_eq!(Frame::from_capture(&[0x80, 0, 4, 0x2D, 0, 0, 0, 0]), None, "an extended identifier");
+        let time = Duration::from_millis(1500);
+        assert_eq!(Frame::from_candump("(1.500000) can0 42D#000102"), Some((Some(time), frame)));
+        assert_eq!(Frame::from_candump("  can0  42D   [3]  00 01 02"), Some((None, frame)));
+        for wrong in ["", "can0", "can0 42D", "can0 42D#0", "can0 0000042D#00", "can0 42D#R", "can0 42D [x]", "can0 é#"]
+        {
+            assert_eq!(Frame::from_candump(wrong), None, "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! A stream of bytes both ways whose ends are queues, so that writing never waits for reading: a serial port with a
+//! thread for each way, or a TCP connection with a task.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use serialport::SerialPort;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::TcpStream;
+use tokio::sync::mpsc::{Receiver, Sender, UnboundedReceiver, UnboundedSender, channel, unbounded_channel};
+
+use crate::vanished;
+
+/// Most bytes read at a time, and pieces that wait to be taken.
+const PIECE: usize = 4096;
+const PIECES: usize = 64;
+/// How long a thread waits for bytes before it looks whether anybody still wants them.
+const SLICE: Duration = Duration::from_millis(20);
+/// How long a port may take no byte.
+const STUCK: Duration = Duration::from_secs(2);
+
+/// The stream.
+#[derive(Debug)]
+pub struct Pipe {
+    writer: Writer,
+    arriving: Receiver<io::Result<Vec<u8>>>,
+}
+
+/// What has bytes written to a stream.
+#[derive(Debug, Clone)]
+pub struct Writer {
+    out: UnboundedSender<Vec<u8>>,
+    waiting: Arc<AtomicUsize>,
+}
+
+/// Its other end.
+struct End {
+    leaving: UnboundedReceiver<Vec<u8>>,
+    waiting: Arc<AtomicUsize>,
+    arrived: Sender<io::Result<Vec<u8>>>,
+}
+
+fn pair() -> (Pipe, End) {
+    let (out, leaving) = unbounded_channel();
+    let (arrived, arriving) = channel(PIECES);
+    let waiting = Arc::new(AtomicUsize::new(0));
+    let writer = Writer { out, waiting: Arc::clone(&waiting) };
+    (Pipe { writer, arriving }, End { leaving, waiting, arrived })
+}
+
+impl Pipe {
+    /// Over a TCP connection, by tasks of this runtime.
+    ///
+    /// # Errors
+    /// When the connection is gone already.
+    pub fn tcp(stream: TcpStream) -> io::Result<Self> {
+        stream.set_nodelay(true)?;
+        let (pipe, mut end) = pair();
+        let (mut reader, mut writer) = stream.into_split();
+        let arrived = end.arrived.clone();
+        tokio::spawn(async move {
+            loop {
+                let mut bytes = vec![0; PIECE];
+                let read = tokio::select! {
+                    read = reader.read(&mut bytes) => read,
+                    () = arrived.closed() => return,
+                };
+                let read = match read {
+                    Ok(0) => Err(vanished("the other end closed the connection")),
+                    Ok(len) => {
+                        bytes.truncate(len);
+                        Ok(bytes)
+                    }
+                    Err(error) => Err(vanished(error)),
+                };
+                let is_end = read.is_err();
+                if arrived.send(read).await.is_err() || is_end {
+                    return;
+                }
+            }
+        });
+        tokio::spawn(async move {
+            while let Some(bytes) = end.leaving.recv().await {
+                // That it is gone, the reader tells.
+                if writer.write_all(&bytes).await.is_err() {
+                    return;
+                }
+                end.waiting.fetch_sub(bytes.len(), Ordering::Relaxed);
+            }
+        });
+        Ok(pipe)
+    }
+
+    /// Over a serial port.
+    ///
+    /// # Errors
+    /// When it cannot be had twice, for both ways.
+    pub fn serial(mut writer: Box<dyn SerialPort>) -> io::Result<Self> {
+        let mut reader = writer.try_clone()?;
+        reader.set_timeout(SLICE)?;
+        writer.set_timeout(STUCK)?;
+        let (pipe, mut end) = pair();
+        let arrived = end.arrived.clone();
+        thread::Builder::new().name("slcan-read".to_owned()).spawn(move || {
+            while !arrived.is_closed() {
+                let mut bytes = vec![0; PIECE];
+                let read = match reader.read(&mut bytes) {
+                    Ok(0) => Err(vanished("its end was reached")),
+                    Ok(len) => {
+                        bytes.truncate(len);
+                        Ok(bytes)
+                    }
+                    Err(error) if matches!(error.kind(), io::ErrorKind::TimedOut | io::ErrorKind::Interrupted) => {
+                        continue;
+                    }
+                    Err(error) => Err(vanished(error)),
+                };
+                let is_end = read.is_err();
+                if arrived.blocking_send(read).is_err() || is_end {
+                    return;
+                }
+            }
+        })?;
+        thread::Builder::new().name("slcan-write".to_owned()).spawn(move || {
+            while let Some(bytes) = end.leaving.blocking_recv() {
+                if let Err(error) = writer.write_all(&bytes) {
+                    // Nobody may be there to hear it.
+                    let _ = end.arrived.blocking_send(Err(vanished(error)));
+                    return;
+                }
+                end.waiting.fetch_sub(bytes.len(), Ordering::Relaxed);
+            }
+        })?;
+        Ok(pipe)
+    }
+
+    /// What has bytes written to it.
+    pub const fn writer(&self) -> &Writer {
+        &self.writer
+    }
+
+    /// Waits for bytes. The future may be dropped.
+    ///
+    /// # Errors
+    /// When the other end is gone.
+    pub async fn read(&mut self) -> io::Result<Vec<u8>> {
+        self.arriving.recv().await.unwrap_or_else(|| Err(vanished("it was closed")))
+    }
+}
+
+impl Writer {
+    /// One whose bytes whoever has the queue writes, and tells with [`written`](Self::written).
+    pub fn queue() -> (Self, UnboundedReceiver<Vec<u8>>) {
+        let (out, leaving) = unbounded_channel();
+        (Self { out, waiting: Arc::default() }, leaving)
+    }
+
+    /// So many bytes have been written.
+    pub fn written(&self, len: usize) {
+        self.waiting.fetch_sub(len, Ordering::Relaxed);
+    }
+
+    /// Has bytes written, after those before them. That the other end is gone, [`Pipe::read`] tells.
+    pub fn write(&self, bytes: &[u8]) {
+        self.waiting.fetch_add(bytes.len(), Ordering::Relaxed);
+        let _ = self.out.send(bytes.to_vec());
+    }
+
+    /// Bytes that have not been written yet.
+    pub fn waiting(&self) -> usize {
+        self.waiting.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,286 @@
+//! SLCAN, the lines of Lawicel's adapters: frames and commands as ASCII that ends with CR. Both ends of it.
+
+use super::{Bitrate, Frame, MOST_DATA};
+
+/// Ends a line, and says yes.
+pub const CR: u8 = 0x0D;
+/// Says no; it ends a line, too.
+pub const BELL: u8 = 0x07;
+/// Longest line there is: an extended frame with its timestamp is shorter.
+const MOST_LINE: usize = 32;
+
+/// Flags of an adapter, as `F` tells them.
+pub mod flag {
+    /// The queue of received frames is full.
+    pub const RECEIVE_FULL: u8 = 0x01;
+    /// The queue of frames to send is full.
+    pub const SEND_FULL: u8 = 0x02;
+    /// Errors are counted.
+    pub const WARNING: u8 = 0x04;
+    /// Received frames were lost.
+    pub const OVERRUN: u8 = 0x08;
+    /// So many errors that it only whispers.
+    pub const PASSIVE: u8 = 0x20;
+    /// An error on the bus.
+    pub const BUS_ERROR: u8 = 0x80;
+}
+
+/// The command that sets a bit rate.
+pub const fn bitrate_command(bitrate: Bitrate) -> &'static [u8] {
+    match bitrate {
+        Bitrate::K125 => b"S4\r",
+        Bitrate::K250 => b"S5\r",
+        Bitrate::K500 => b"S6\r",
+    }
+}
+
+/// A frame as a line, to the adapter or from it.
+pub fn emit(frame: &Frame) -> Vec<u8> {
+    let mut line = format!("t{:03X}{}", frame.id(), frame.data().len());
+    for byte in frame.data() {
+        line.push_str(&format!("{byte:02X}"));
+    }
+    line.push('\r');
+    line.into_bytes()
+}
+
+/// What an adapter says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Said {
+    /// A frame from the bus.
+    Frame(Frame),
+    /// A frame that DeviceNet does not have: extended, or remote.
+    Other,
+    /// Its flags.
+    Flags(u8),
+    /// Its version, or its number: it is there.
+    About(String),
+    /// Yes; also to a frame that it took.
+    Done,
+    /// No.
+    No,
+}
+
+/// What it is told.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Command {
+    /// A bit rate, by the digit of its command.
+    Bitrate(u8),
+    /// On the bus.
+    Open,
+    /// On the bus, but not to be heard.
+    Listen,
+    /// Off the bus.
+    Close,
+    /// Send this.
+    Send(Frame),
+    /// Send something that DeviceNet does not have; whether it is extended.
+    SendOther {
+        /// Answered with `Z`.
+        is_extended: bool,
+    },
+    /// Which version?
+    Version,
+    /// Which number?
+    Number,
+    /// Which flags?
+    Flags,
+    /// Received frames with a time behind them, or without.
+    Timestamps(bool),
+    /// Filters and the like, which are taken and not looked at.
+    Setting,
+    /// An empty line.
+    Empty,
+    /// Something else.
+    Unknown,
+}
+
+/// Puts lines together.
+#[derive(Debug, Clone, Default)]
+pub struct Lines {
+    line: Vec<u8>,
+    is_long: bool,
+}
+
+/// A line: how it ended, and its text. One that is too long has none.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Line {
+    /// Whether it ended with [`BELL`].
+    pub is_bell: bool,
+    /// What stood before.
+    pub text: String,
+}
+
+impl Lines {
+    /// Takes a byte; a line, if it ends one. LF is passed over, for those who put it behind CR.
+    pub fn push(&mut self, byte: u8) -> Option<Line> {
+        match byte {
+            CR | BELL => {
+                let text = String::from_utf8_lossy(&std::mem::take(&mut self.line)).into_owned();
+                let is_long = std::mem::take(&mut self.is_long);
+                Some(Line { is_bell: byte == BELL, text: if is_long { "?".to_owned() } else { text } })
+            }
+            b'\n' => None,
+            _ if self.line.len() >= MOST_LINE => {
+                self.is_long = true;
+                None
+            }
+            _ => {
+                self.line.push(byte);
+                None
+            }
+        }
+    }
+}
+
+impl Line {
+    /// As an adapter's; `None` for what has no meaning.
+    pub fn said(&self) -> Option<Said> {
+        if self.is_bell {
+            return Some(Said::No);
+        }
+        let text = self.text.as_str();
+        match text.as_bytes().first() {
+            None | Some(b'z' | b'Z') if text.len() <= 1 => Some(Said::Done),
+            Some(b'F') if text.len() == 3 => u8::from_str_radix(text.get(1..)?, 16).ok().map(Said::Flags),
+            Some(b'V' | b'N') => Some(Said::About(text.to_owned())),
+            Some(b'T' | b'r' | b'R') => Some(Said::Other),
+            // What is in front of a frame is the rest of a line that got lost.
+            _ => text.match_indices('t').find_map(|(at, _)| frame(text.get(at..)?, true)).map(Said::Frame),
+        }
+    }
+
+    /// As one to an adapter.
+    pub fn command(&self) -> Command {
+        if self.is_bell {
+            return Command::Unknown;
+        }
+        let text = self.text.as_str();
+        match text.as_bytes() {
+            [] => Command::Empty,
+            [b'S', digit @ b'0'..=b'8'] => Command::Bitrate(digit - b'0'),
+            b"O" => Command::Open,
+            b"L" => Command::Listen,
+            b"C" => Command::Close,
+            b"V" | b"v" => Command::Version,
+            b"N" => Command::Number,
+            b"F" => Command::Flags,
+            b"Z0" => Command::Timestamps(false),
+            b"Z1" => Command::Timestamps(true),
+            [b't', ..] => frame(text, false).map_or(Command::Unknown, Command::Send),
+            [b'r', ..] if text.len() == 5 => Command::SendOther { is_extended: false },
+            [b'T' | b'R', ..] if text.len() >= 10 => Command::SendOther { is_extended: true },
+            [b'M' | b'm' | b's' | b'X' | b'U' | b'W', ..] => Command::Setting,
+            _ => Command::Unknown,
+        }
+    }
+}
+
+/// `tIIILDD..`, from an adapter maybe with a timestamp of four digits behind it.
+fn frame(text: &str, with_time: bool) -> Option<Frame> {
+    let id = u16::from_str_radix(text.get(1..4)?, 16).ok()?;
+    let len: usize = text.get(4..5)?.parse().ok()?;
+    let rest = text.get(5..)?;
+    if len > MOST_DATA || !(rest.len() == 2 * len || with_time && rest.len() == 2 * len + 4) {
+        return None;
+    }
+    let byte = |at: usize| u8::from_str_radix(rest.get(2 * at..2 * at + 2)?, 16).ok();
+    let data: Option<Vec<u8>> = (0..len).map(byte).collect();
+    Frame::new(id, &data?)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn lines(bytes: &[u8]) -> Vec<Line> {
+        let mut lines = Lines::default();
+        bytes.iter().filter_map(|byte| lines.push(*byte)).collect()
+    }
+
+    fn said(bytes: &[u8]) -> Vec<Option<Said>> {
+        lines(bytes).iter().map(Line::said).collect()
+    }
+
+    #[test]
+    fn an_adapter_is_understood() {
+        let frame = Frame::new(0x42D, &[0, 1, 0xFF]).unwrap();
+        assert_eq!(emit(&frame), b"t42D30001FF\r");
+        let empty = Frame::new(0x42D, &[]).unwrap();
+        let all =
+            b"t42D30001FF\rt42D30001FF1A2B\rt42D0\r\r\x07z\rZ\rF2C\rV1013\rNA123\rT000004200\rxxt42D0\rt42D9\rtt\r";
+        let expected = [
+            Some(Said::Frame(frame)),
+            Some(Said::Frame(frame)),
+            Some(Said::Frame(empty)),
+            Some(Said::Done),
+            Some(Said::No),
+            Some(Said::Done),
+            Some(Said::Done),
+            Some(Said::Flags(0x2C)),
+            Some(Said::About("V1013".to_owned())),
+            Some(Said::About("NA123".to_owned())),
+            Some(Said::Other),
+            Some(Said::Frame(empty)),
+            None,
+            None,
+        ];
+        assert_eq!(said(all), expected);
+    }
+
+    #[test]
+    fn an_adapter_is_told() {
+        let frame = Frame::new(0x42F, &[0]).unwrap();
+        let commands: Vec<Command> =
+            lines(b"C\rS6\r\rO\rO\rL\rt42F100\rt42F1001A2B\rr42F0\rT0000042F0\rV\rN\rF\rZ1\rM00000000\rS9\rq\r")
+                .iter()
+                .map(Line::command)
+                .collect();
+        let expected = [
+            Command::Close,
+            Command::Bitrate(6),
+            Command::Empty,
+            Command::Open,
+            Command::Open,
+            Command::Listen,
+            Command::Send(frame),
+            // Only an adapter puts a time behind it.
+            Command::Unknown,
+            Command::SendOther { is_extended: false },
+            Command::SendOther { is_extended: true },
+            Command::Version,
+            Command::Number,
+            Command::Flags,
+            Command::Timestamps(true),
+            Command::Setting,
+            Command::Unknown,
+            Command::Unknown,
+        ];
+        assert_eq!(commands, expected);
+    }
+
+    #[test]
+    fn a_line_without_end_takes_no_room() {
+        let mut noise = vec![b't'; 10_000];
+        noise.extend(b"\rt42D0\r");
+        assert_eq!(said(&noise), [None, Some(Said::Frame(Frame::new(0x42D, &[]).unwrap()))]);
+    }
+
+    proptest! {
+        #[test]
+        fn frames_come_back(id in 0u16..=0x7FF, data in proptest::collection::vec(any::<u8>(), 0..=8)) {
+            let frame = Frame::new(id, &data).unwrap();
+            prop_assert_eq!(said(&emit(&frame)), [Some(Said::Frame(frame))]);
+            prop_assert_eq!(lines(&emit(&frame))[0].command(), Command::Send(frame));
+        }
+
+        #[test]
+        fn no_bytes_panic(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+            for line in lines(&bytes) {
+                let _ = (line.said(), line.command());
+            }
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! An adapter that speaks SLCAN, on a serial port or behind TCP.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use tokio::time::{Instant, sleep_until, timeout_at};
+
+use super::pipe::Pipe;
+use super::slcan::{Lines, Said, bitrate_command, emit, flag};
+use super::{Bitrate, BusState, CanPort, Frame, Health, Heard, PortError, Waiting};
+
+/// Silence after which what is left of an earlier use has been read.
+const QUIET: Duration = Duration::from_millis(50);
+/// How long an adapter may take to answer a command.
+const ANSWER: Duration = Duration::from_millis(300);
+/// Between questions how it is.
+const FLAGS: Duration = Duration::from_secs(1);
+/// Bytes that wait to be written beyond which the adapter takes no more.
+const MOST_WAITING: usize = 16 * 1024;
+
+/// The adapter.
+#[derive(Debug)]
+pub struct SlcanPort {
+    path: String,
+    pipe: Pipe,
+    lines: Lines,
+    said: VecDeque<Said>,
+    health: Health,
+    /// When to ask for its flags; `None` if it does not tell them.
+    flags_due: Option<Instant>,
+}
+
+impl SlcanPort {
+    /// Sets up an adapter at the other end of a stream: off the bus, bit rate, on the bus; or on the bus to listen only.
+    ///
+    /// # Errors
+    /// When nothing answers as such an adapter does, or it refuses.
+    pub async fn start(path: String, pipe: Pipe, bitrate: Bitrate, listens: bool) -> Result<Self, PortError> {
+        let mut port = Self {
+            path,
+            pipe,
+            lines: Lines::default(),
+            said: VecDeque::new(),
+            health: Health::default(),
+            flags_due: None,
+        };
+        // Ends whatever line an earlier use has left.
+        port.write(b"\r\r\r")?;
+        port.write(b"C\r")?;
+        while port.read(Instant::now() + QUIET).await? {}
+        port.said.clear();
+        let about = port.ask(b"V\r", |said| matches!(said, Said::About(_))).await?;
+        let rate = port.ask(bitrate_command(bitrate), |said| *said == Said::Done).await?;
+        if rate == Some(Said::No) {
+            return Err(port.wrong(&format!("the adapter does not take {bitrate}")));
+        }
+        let open = if listens { b"L\r" } else { b"O\r" };
+        let opened = port.ask(open, |said| *said == Said::Done).await?;
+        match (about, rate, opened) {
+            (_, _, Some(Said::No)) => {
+                let what = if listens { "listen only" } else { "go on the bus" };
+                return Err(port.wrong(&format!("the adapter refuses to {what}")));
+            }
+            (None, None, None) => return Err(port.wrong("nothing answers as an SLCAN adapter does")),
+            _ => {}
+        }
+        if let Some(Said::Flags(flags)) = port.ask(b"F\r", |said| matches!(said, Said::Flags(_))).await? {
+            port.flagged(flags);
+            port.flags_due = Some(Instant::now() + FLAGS);
+        }
+        Ok(port)
+    }
+
+    /// Sends a command; what answers it: what is looked for, or no. Frames that come meanwhile are kept.
+    async fn ask(&mut self, command: &[u8], wanted: impl Fn(&Said) -> bool) -> Result<Option<Said>, PortError> {
+        let before = self.said.len();
+        self.write(command)?;
+        let until = Instant::now() + ANSWER;
+        loop {
+            let is_answer = |said: &Said| wanted(said) || *said == Said::No;
+            if let Some(at) = (before..self.said.len()).find(|at| self.said.get(*at).is_some_and(is_answer)) {
+                return Ok(self.said.remove(at));
+            }
+            if !self.read(until).await? {
+                return Ok(None);
+            }
+        }
+    }
+
+    fn wrong(&self, why: &str) -> PortError {
+        PortError::Setup { path: self.path.clone(), why: why.to_owned() }
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
+        if self.pipe.writer().waiting() > MOST_WAITING {
+            return Err(PortError::Stuck { path: self.path.clone() });
+        }
+        // Why it is gone, reading tells.
+        self.pipe.writer().write(bytes);
+        Ok(())
+    }
+
+    /// Reads what there is; whether anything came in time.
+    async fn read(&mut self, until: Instant) -> Result<bool, PortError> {
+        let Ok(read) = timeout_at(until, self.pipe.read()).await else { return Ok(false) };
+        let bytes = read.map_err(|error| PortError::Gone { path: self.path.clone(), why: error.to_string() })?;
+        let Self { lines, said, .. } = self;
+        said.extend(bytes.iter().filter_map(|byte| lines.push(*byte)).filter_map(|line| line.said()));
+        Ok(true)
+    }
+
+    fn flagged(&mut self, flags: u8) {
+        // There is no flag for bus-off: an adapter that is has all three.
+        const OFF: u8 = flag::BUS_ERROR | flag::PASSIVE | flag::WARNING;
+        self.health.state = match flags {
+            _ if flags & OFF == OFF => BusState::Off,
+            _ if flags & flag::PASSIVE != 0 => BusState::Passive,
+            _ if flags & flag::WARNING != 0 => BusState::Warning,
+            _ => BusState::Active,
+        };
+        self.health.overruns += u64::from(flags & (flag::OVERRUN | flag::RECEIVE_FULL) != 0);
+        self.health.rejected += u64::from(flags & flag::SEND_FULL != 0);
+    }
+
+    async fn wait(&mut self) -> Result<Heard, PortError> {
+        loop {
+            while let Some(said) = self.said.pop_front() {
+                let before = self.health;
+                match said {
+                    Said::Frame(frame) => return Ok(Heard::Frame(frame)),
+                    Said::Flags(flags) => self.flagged(flags),
+                    Said::No => self.health.rejected += 1,
+                    Said::Other | Said::About(_) | Said::Done => {}
+                }
+                if self.health != before {
+                    return Ok(Heard::Health(self.health));
+                }
+            }
+            let due = self.flags_due;
+            tokio::select! {
+                read = self.pipe.read() => {
+                    let bytes =
+                        read.map_err(|error| PortError::Gone { path: self.path.clone(), why: error.to_string() })?;
+                    let Self { lines, said, .. } = self;
+                    said.extend(bytes.iter().filter_map(|byte| lines.push(*byte)).filter_map(|line| line.said()));
+                }
+                () = async { sleep_until(due.unwrap_or_else(Instant::now)).await }, if due.is_some() => {
+                    self.flags_due = Some(Instant::now() + FLAGS);
+                    self.write(b"F\r")?;
+                }
+            }
+        }
+    }
+}
+
+impl CanPort for SlcanPort {
+    fn send(&mut self, frame: &Frame) -> Result<(), PortError> {
+        self.write(&emit(frame))
+    }
+
+    fn next(&mut self) -> Waiting<'_, Result<Heard, PortError>> {
+        Box::pin(self.wait())
+    }
+
+    fn health(&self) -> Health {
+        self.health
+    }
+}
+
+impl Drop for SlcanPort {
+    /// Off the bus: an adapter that is left on it goes on acknowledging.
+    fn drop(&mut self) {
+        self.pipe.writer().write(b"C\r");
+    }
+}

@@ -1,0 +1,156 @@
+//! An interface of Linux's own CAN (`can0`). Bit rate and state are the administrator's.
+
+use std::collections::VecDeque;
+use std::io;
+
+use socketcan::tokio::CanSocket;
+use socketcan::{CanError, CanFrame, EmbeddedFrame as _, Id, SocketOptions as _, StandardId};
+
+use super::{BusState, CanPort, Frame, Health, Heard, PortError, Waiting};
+
+/// Frames that wait to be sent beyond which the interface takes no more.
+const MOST_WAITING: usize = 256;
+/// How an interface is set up.
+const ADVICE: &str = "set the interface up: `ip link set can0 up type can bitrate 500000 restart-ms 100` (as root; the bit \
+     rate is that of the bus)";
+/// Numbers of errors of the system that `io::ErrorKind` does not name.
+const NO_DEVICE: i32 = 19;
+const NO_FAMILY: i32 = 97;
+const IS_DOWN: i32 = 100;
+const NO_BUFFER: i32 = 105;
+
+/// The interface.
+pub struct SocketCan {
+    interface: String,
+    socket: CanSocket,
+    leaving: VecDeque<CanFrame>,
+    health: Health,
+}
+
+impl std::fmt::Debug for SocketCan {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "SocketCan {}", self.interface)
+    }
+}
+
+impl SocketCan {
+    /// Opens an interface.
+    ///
+    /// # Errors
+    /// When there is none of that name, or no CAN at all.
+    pub fn open(interface: &str) -> Result<Self, PortError> {
+        let failed = |error: &io::Error| {
+            let (why, advice) = match error.raw_os_error() {
+                Some(NO_DEVICE) => ("there is no such interface".to_owned(), ADVICE),
+                Some(NO_FAMILY) => (
+                    "this system knows no CAN".to_owned(),
+                    "load the module can_raw, or use an SLCAN adapter: slcan://",
+                ),
+                _ => (error.to_string(), ADVICE),
+            };
+            PortError::Open { path: interface.to_owned(), why, advice }
+        };
+        let socket = CanSocket::open(interface).map_err(|error| failed(&error))?;
+        socket.set_error_filter_accept_all().map_err(|error| failed(&error))?;
+        Ok(Self { interface: interface.to_owned(), socket, leaving: VecDeque::new(), health: Health::default() })
+    }
+
+    fn gone(&self, error: &io::Error) -> PortError {
+        let why = match error.raw_os_error() {
+            Some(IS_DOWN) => "the interface is down: `ip link set can0 up` (as root)".to_owned(),
+            _ => error.to_string(),
+        };
+        PortError::Gone { path: self.interface.clone(), why }
+    }
+
+    async fn wait(&mut self) -> Result<Heard, PortError> {
+        loop {
+            let first = self.leaving.front().copied();
+            let read = tokio::select! {
+                written = async {
+                    match first {
+                        Some(frame) => self.socket.write_frame(frame).await,
+                        None => std::future::pending().await,
+                    }
+                } => {
+                    match written {
+                        // The queue of the interface is full: it counts as not taken, as with other adapters.
+                        Err(error) if error.raw_os_error() == Some(NO_BUFFER) => self.health.rejected += 1,
+                        written => written.map_err(|error| self.gone(&error))?,
+                    }
+                    self.leaving.pop_front();
+                    continue;
+                }
+                read = self.socket.read_frame() => read,
+            };
+            match read.map_err(|error| self.gone(&error))? {
+                CanFrame::Data(data) => {
+                    if let Id::Standard(id) = data.id()
+                        && let Some(frame) = Frame::new(id.as_raw(), data.data())
+                    {
+                        return Ok(Heard::Frame(frame));
+                    }
+                }
+                CanFrame::Remote(_) => {}
+                CanFrame::Error(error) => {
+                    let before = self.health;
+                    self.learn(&CanError::from(error));
+                    if self.health != before {
+                        return Ok(Heard::Health(self.health));
+                    }
+                }
+            }
+        }
+    }
+
+    fn learn(&mut self, error: &CanError) {
+        use socketcan::errors::ControllerProblem as Problem;
+        match error {
+            CanError::BusOff => self.health.state = BusState::Off,
+            CanError::Restarted => self.health.state = BusState::Active,
+            CanError::ControllerProblem(problem) => match problem {
+                Problem::Active => self.health.state = BusState::Active,
+                Problem::ReceiveErrorWarning | Problem::TransmitErrorWarning => self.health.state = BusState::Warning,
+                Problem::ReceiveErrorPassive | Problem::TransmitErrorPassive => self.health.state = BusState::Passive,
+                Problem::ReceiveBufferOverflow => self.health.overruns += 1,
+                Problem::TransmitBufferOverflow => self.health.rejected += 1,
+                Problem::Unspecified => {}
+            },
+            CanError::NoAck if self.health.state == BusState::Active => self.health.state = BusState::Warning,
+            _ => {}
+        }
+    }
+}
+
+impl CanPort for SocketCan {
+    fn send(&mut self, frame: &Frame) -> Result<(), PortError> {
+        if self.leaving.len() >= MOST_WAITING {
+            return Err(PortError::Stuck { path: self.interface.clone() });
+        }
+        let id = StandardId::new(frame.id());
+        self.leaving.extend(id.and_then(|id| CanFrame::new(id, frame.data())));
+        Ok(())
+    }
+
+    fn next(&mut self) -> Waiting<'_, Result<Heard, PortError>> {
+        Box::pin(self.wait())
+    }
+
+    fn health(&self) -> Health {
+        self.health
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn an_interface_that_is_not_there_is_told_with_what_to_do() {
+        let error = SocketCan::open("there-is-none0").unwrap_err();
+        let PortError::Open { path, why, advice } = error else { panic!("{error:?}") };
+        assert_eq!(path, "there-is-none0");
+        assert!(why == "there is no such interface" || why == "this system knows no CAN", "{why}");
+        assert!(advice.contains("ip link") || advice.contains("slcan"), "{advice}");
+    }
+}

@@ -1,0 +1,89 @@
+//! Who has the connections of the predefined set.
+
+use std::time::Duration;
+
+use super::super::Now;
+use super::super::wire::{Mac, connection, general, owner};
+
+/// The explicit connection is let go of after four times its packet rate of 2500 ms.
+const EXPLICIT_PATIENCE: Duration = Duration::from_secs(10);
+
+/// What is allocated, and to whom.
+#[derive(Debug, Default)]
+pub(super) struct Allocation {
+    held: Option<(u8, Mac)>,
+    explicit_until: Now,
+}
+
+/// Why something is not allocated or released: general and additional code.
+pub(super) type Refusal = (u8, u8);
+
+const KNOWN: u8 = connection::EXPLICIT | connection::POLL;
+
+impl Allocation {
+    pub(super) const fn master(&self) -> Option<Mac> {
+        match self.held {
+            Some((_, master)) => Some(master),
+            None => None,
+        }
+    }
+
+    /// What is allocated.
+    pub(super) fn choice(&self) -> u8 {
+        self.held.map_or(0, |(choice, _)| choice)
+    }
+
+    /// Whether the explicit connection is this master's.
+    pub(super) fn is_explicit_of(&self, mac: Mac) -> bool {
+        self.held.is_some_and(|(choice, master)| master == mac && choice & connection::EXPLICIT != 0)
+    }
+
+    pub(super) fn explicit_until(&self) -> Option<Now> {
+        self.held.map(|_| self.explicit_until)
+    }
+
+    /// Something came from the master.
+    pub(super) fn refresh(&mut self, now: Now) {
+        self.explicit_until = now + EXPLICIT_PATIENCE;
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.held = None;
+    }
+
+    pub(super) fn allocate(&mut self, now: Now, choice: u8, by: Mac, data_mac: u8) -> Result<(), Refusal> {
+        if data_mac != by.number() {
+            return Err((general::INVALID_PARAMETER, owner::NONE));
+        }
+        if self.master().is_some_and(|master| master != by) {
+            return Err((general::CONFLICT, owner::ANOTHER_MASTER));
+        }
+        if choice == 0 || choice & !KNOWN != 0 {
+            return Err((general::NO_RESOURCE, owner::INVALID_CHOICE));
+        }
+        if choice & self.choice() != 0 {
+            return Err((general::ALREADY, owner::INVALID_CHOICE));
+        }
+        if (choice | self.choice()) & connection::EXPLICIT == 0 {
+            return Err((general::CONFLICT, owner::INVALID_CHOICE));
+        }
+        self.held = Some((choice | self.choice(), by));
+        self.refresh(now);
+        Ok(())
+    }
+
+    pub(super) fn release(&mut self, choice: u8, by: Mac) -> Result<(), Refusal> {
+        if self.master().is_some_and(|master| master != by) {
+            return Err((general::CONFLICT, owner::ANOTHER_MASTER));
+        }
+        if choice == 0 || choice & !KNOWN != 0 {
+            return Err((general::NO_RESOURCE, owner::INVALID_CHOICE));
+        }
+        if choice & !self.choice() != 0 {
+            return Err((general::ALREADY, owner::INVALID_CHOICE));
+        }
+        let left = self.choice() & !choice;
+        self.held = self.held.filter(|_| left != 0).map(|(_, master)| (left, master));
+        Ok(())
+    }
+}

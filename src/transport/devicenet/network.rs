@@ -1,0 +1,581 @@
+//! A thread behind each adapter of this process, which runs the master: polls leave on time whatever the rest of the
+//! program does, so that a prompt that waits for a person does not make a robot stop.
+
+use std::collections::{BTreeMap, HashMap};
+use std::fmt;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use serialport::{DataBits, Parity, StopBits};
+use tokio::net::TcpStream;
+use tokio::runtime::Builder;
+use tokio::sync::{Notify, oneshot, watch};
+use tokio::time::{Instant, sleep, sleep_until, timeout};
+
+use super::Now;
+use super::can::pipe::Pipe;
+use super::can::{Bitrate, CanPort, Frame, Health, Heard, PortError, SlcanPort};
+use super::error::Error;
+use super::monitor::{Monitor, Sight};
+use super::scanner::{Found, Identity, Reply, Scanner, State, Token, View};
+use super::settings::Settings;
+use super::wire::{Answer, Mac, Request};
+use crate::image::tap::Passed;
+pub use crate::image::tap::Tap;
+use crate::serial::{self, Line};
+
+/// Between tries to open an adapter again.
+const REOPEN: Duration = Duration::from_secs(1);
+/// How long a connection to a server of SLCAN may take.
+const CONNECT: Duration = Duration::from_secs(5);
+/// What an adapter gets to take the last command.
+const FAREWELL: Duration = Duration::from_millis(20);
+/// The lines between two looks whether something passes.
+const LISTENED: Duration = Duration::from_millis(50);
+
+/// Where an adapter is.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Place {
+    /// SLCAN on a serial port; the rate is that of the port, which USB adapters do not look at.
+    Serial {
+        /// `/dev/ttyACM0`, `COM3`.
+        path: String,
+        /// Bits a second.
+        baud: u32,
+    },
+    /// SLCAN behind TCP.
+    Tcp {
+        /// Name or address.
+        host: String,
+        /// Port.
+        port: u16,
+    },
+    /// An interface of Linux.
+    SocketCan {
+        /// `can0`.
+        interface: String,
+    },
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Serial { path, .. } => f.write_str(path),
+            Self::Tcp { host, port } => write!(f, "{host}:{port}"),
+            Self::SocketCan { interface } => f.write_str(interface),
+        }
+    }
+}
+
+/// An adapter and how it is used.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Adapter {
+    /// Where it is.
+    pub place: Place,
+    /// The bit rate of the bus.
+    pub bitrate: Bitrate,
+    /// Who the master on it is; `None` to listen only, so that not even an acknowledgement leaves.
+    pub identity: Option<Identity>,
+}
+
+/// An adapter that is open. It is cheap to clone; it is closed with the last clone and the last connection.
+#[derive(Debug, Clone)]
+pub struct Network {
+    owner: Arc<Owner>,
+}
+
+#[derive(Debug)]
+struct Owner {
+    inner: Arc<Inner>,
+    thread: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug)]
+struct Inner {
+    adapter: Adapter,
+    start: Instant,
+    wake: Notify,
+    last: AtomicU64,
+    state: Mutex<Inside>,
+    /// Counts what happens on the bus, for those who wait for something.
+    news: watch::Sender<u64>,
+}
+
+/// What the thread and its callers share.
+#[derive(Debug)]
+struct Inside {
+    /// `None` where it only listens.
+    scanner: Option<Scanner>,
+    monitor: Monitor,
+    health: Health,
+    views: BTreeMap<u64, watch::Sender<View>>,
+    asked: HashMap<Token, oneshot::Sender<Result<Answer, Error>>>,
+    found: Option<oneshot::Sender<Vec<Found>>>,
+    taps: Vec<Tap>,
+    /// Why the adapter is not there at present.
+    trouble: Option<Error>,
+    frames: u64,
+    is_over: bool,
+}
+
+impl Network {
+    /// Opens an adapter, or shares one that this process has open already. What passes goes to the tap, too, as long as the
+    /// adapter is open.
+    ///
+    /// # Errors
+    /// When it cannot be opened, or is used otherwise already.
+    pub async fn open(adapter: &Adapter, tap: Tap) -> Result<Self, Error> {
+        // Held while one is opened, so that who wants the same meanwhile shares it.
+        static SHARED: tokio::sync::Mutex<Vec<Weak<Owner>>> = tokio::sync::Mutex::const_new(Vec::new());
+        let mut shared = SHARED.lock().await;
+        {
+            shared.retain(|owner| owner.strong_count() > 0);
+            let same = |owner: &Arc<Owner>| owner.inner.adapter.place == adapter.place;
+            if let Some(owner) = shared.iter().filter_map(Weak::upgrade).find(same) {
+                let other = &owner.inner.adapter;
+                // Who only listens can do so beside a master.
+                let fits = adapter.identity.is_none() || adapter.identity == other.identity;
+                if !fits || adapter.bitrate != other.bitrate {
+                    let place = &adapter.place;
+                    return Err(Error::Settings(format!(
+                        "{place} is in use with another bit rate or master MAC; one adapter has one of each"
+                    )));
+                }
+                if tap.is_open() {
+                    owner.inner.lock().taps.push(tap);
+                }
+                return Ok(Self { owner });
+            }
+        }
+        let network = Self::start(adapter.clone(), tap).await?;
+        shared.push(Arc::downgrade(&network.owner));
+        Ok(network)
+    }
+
+    /// Opens an adapter for this caller alone.
+    async fn start(adapter: Adapter, tap: Tap) -> Result<Self, Error> {
+        let inside = Inside {
+            scanner: adapter.identity.map(Scanner::new),
+            monitor: Monitor::default(),
+            health: Health::default(),
+            views: BTreeMap::new(),
+            asked: HashMap::new(),
+            found: None,
+            taps: vec![tap],
+            trouble: None,
+            frames: 0,
+            is_over: false,
+        };
+        let inner = Arc::new(Inner {
+            adapter,
+            start: Instant::now(),
+            wake: Notify::new(),
+            last: AtomicU64::new(1),
+            state: Mutex::new(inside),
+            news: watch::channel(0).0,
+        });
+        let (opened, is_open) = oneshot::channel();
+        let failed = |error: &std::io::Error| Error::Settings(format!("a thread for the adapter: {error}"));
+        let runtime = Builder::new_current_thread().enable_all().build().map_err(|error| failed(&error))?;
+        let shared = Arc::clone(&inner);
+        let work = move || runtime.block_on(run(shared, opened));
+        let thread = thread::Builder::new().name("devicenet".to_owned()).spawn(work).map_err(|error| failed(&error))?;
+        let owner = Arc::new(Owner { inner, thread: Some(thread) });
+        is_open.await.unwrap_or(Err(Error::Ended))?;
+        Ok(Self { owner })
+    }
+
+    /// Opens a connection with a slave, and holds it until it is closed or dropped.
+    ///
+    /// # Errors
+    /// When the slave does not answer or refuses: nothing is tried twice. Later losses are not errors but states of the
+    /// view.
+    pub async fn connect(&self, settings: Settings) -> Result<Connection, Error> {
+        let inner = &self.owner.inner;
+        let number = inner.last.fetch_add(1, Ordering::Relaxed);
+        let views = {
+            let mut state = inner.lock();
+            if let Some(trouble) = &state.trouble {
+                return Err(trouble.clone());
+            }
+            let scanner = state.scanner.as_mut().ok_or_else(|| Error::Settings(ONLY_LISTENS.to_owned()))?;
+            scanner.open(number, settings)?;
+            let view = scanner.view(number).cloned().ok_or(Error::Ended)?;
+            let (sender, views) = watch::channel(view);
+            state.views.insert(number, sender);
+            views
+        };
+        inner.wake.notify_one();
+        let mut connection = Connection { network: self.clone(), number, views };
+        // What does not come about is released first.
+        let view = connection.until(|view| !matches!(view.state, State::Opening | State::Closing)).await;
+        match (view.state, view.error) {
+            (State::Closed, Some(error)) => Err(error),
+            (State::Closed, None) => Err(Error::Ended),
+            _ => Ok(connection),
+        }
+    }
+
+    /// Looks who is on the bus, without owning anybody.
+    ///
+    /// # Errors
+    /// When the own MAC is taken, or the adapter fails.
+    pub async fn find(&self) -> Result<Vec<Found>, Error> {
+        let inner = &self.owner.inner;
+        let (sender, found) = oneshot::channel();
+        {
+            let now = inner.now();
+            let mut state = inner.lock();
+            let scanner = state.scanner.as_mut().ok_or_else(|| Error::Settings(ONLY_LISTENS.to_owned()))?;
+            scanner.find(now);
+            state.found = Some(sender);
+        }
+        inner.wake.notify_one();
+        let found = found.await;
+        let trouble = inner.lock().trouble.clone();
+        found.map_err(|_| trouble.unwrap_or(Error::Ended))
+    }
+
+    /// Listens to what a master and this slave say to each other, for at most `longest`; what was seen.
+    pub async fn listen(&self, slave: Mac, longest: Duration) -> Sight {
+        let until = Instant::now() + longest;
+        loop {
+            let sight = self.owner.inner.lock().monitor.sight(slave);
+            if sight.is_whole() || Instant::now() >= until {
+                return sight;
+            }
+            sleep(LISTENED).await;
+        }
+    }
+
+    /// What passes between a master and this slave, as it was seen last.
+    pub fn sight(&self, slave: Mac) -> Sight {
+        self.owner.inner.lock().monitor.sight(slave)
+    }
+
+    /// The moment, on the clock of what is seen.
+    pub fn now(&self) -> Now {
+        self.owner.inner.now()
+    }
+
+    /// Waits for something to happen on the bus; returns at once if it has since `seen`, which it brings up to date.
+    pub async fn changed(&self, seen: &mut u64) {
+        let mut news = self.owner.inner.news.subscribe();
+        // The sender lives as long as this.
+        let now = news.wait_for(|count| count != seen).await.map_or(*seen, |count| *count);
+        *seen = now;
+    }
+
+    /// Why the adapter is not there at present.
+    pub fn trouble(&self) -> Option<Error> {
+        self.owner.inner.lock().trouble.clone()
+    }
+
+    /// How the adapter is, and how many frames came from the bus.
+    pub fn health(&self) -> (Health, u64) {
+        let state = self.owner.inner.lock();
+        (state.health, state.frames)
+    }
+}
+
+const ONLY_LISTENS: &str = "the adapter only listens";
+
+/// A connection that is held. Dropping it closes it, as long as the process lives to do so.
+#[derive(Debug)]
+pub struct Connection {
+    network: Network,
+    number: u64,
+    views: watch::Receiver<View>,
+}
+
+impl Connection {
+    /// What there is to see now.
+    pub fn view(&self) -> View {
+        self.views.borrow().clone()
+    }
+
+    /// Waits for something new. After the view that says that the connection is closed nothing comes any more.
+    pub async fn changed(&mut self) -> View {
+        if self.views.changed().await.is_err() {
+            return std::future::pending().await;
+        }
+        self.views.borrow_and_update().clone()
+    }
+
+    /// Waits until the view is so. It never is again once the connection is closed.
+    pub async fn until(&mut self, mut condition: impl FnMut(&View) -> bool) -> View {
+        loop {
+            let view = self.views.borrow_and_update().clone();
+            if condition(&view) || view.state == State::Closed || self.views.changed().await.is_err() {
+                return view;
+            }
+        }
+    }
+
+    /// Shows this image from the next poll on; see [`Scanner::set_image`].
+    ///
+    /// # Errors
+    /// If the connection is not open in this generation, or the image has another size.
+    pub fn set_image(&self, generation: u32, image: &[u8]) -> Result<u64, Error> {
+        let changed = self.with(|scanner, _| scanner.set_image(self.number, generation, image));
+        changed.unwrap_or(Err(Error::Ended))
+    }
+
+    /// Asks something of the slave. A refusal is an answer.
+    ///
+    /// # Errors
+    /// When nothing comes that could be read.
+    pub async fn ask(&self, request: Request) -> Result<Answer, Error> {
+        let inner = &self.network.owner.inner;
+        let token = Token(inner.last.fetch_add(1, Ordering::Relaxed));
+        let (sender, answer) = oneshot::channel();
+        inner.lock().asked.insert(token, sender);
+        self.with(|scanner, _| scanner.ask(self.number, token, request));
+        answer.await.unwrap_or(Err(Error::Ended))
+    }
+
+    /// Closes it: the slave's connections are released. Says if the slave did not confirm that.
+    pub async fn close(mut self) -> Result<(), Error> {
+        let before = self.view().error;
+        self.with(|scanner, now| scanner.close(now, self.number));
+        let view = self.until(|view| view.state == State::Closed).await;
+        view.error.filter(|error| before.as_ref() != Some(error)).map_or(Ok(()), Err)
+    }
+
+    /// The adapter that it goes over.
+    pub const fn network(&self) -> &Network {
+        &self.network
+    }
+
+    fn with<T>(&self, change: impl FnOnce(&mut Scanner, Now) -> T) -> Option<T> {
+        let inner = &self.network.owner.inner;
+        let now = inner.now();
+        let result = inner.lock().scanner.as_mut().map(|scanner| change(scanner, now));
+        inner.wake.notify_one();
+        result
+    }
+}
+
+impl Drop for Connection {
+    fn drop(&mut self) {
+        self.with(|scanner, now| scanner.close(now, self.number));
+    }
+}
+
+impl Drop for Owner {
+    fn drop(&mut self) {
+        self.inner.lock().is_over = true;
+        self.inner.wake.notify_one();
+        // It releases what is still held before it ends; who drops the last of it on that thread must not wait for it.
+        if let Some(thread) = self.thread.take().filter(|thread| thread.thread().id() != thread::current().id()) {
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Inner {
+    fn now(&self) -> Now {
+        self.start.elapsed()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Inside> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Inside {
+    /// Shows what has changed, and hands over answers.
+    fn publish(&mut self) {
+        let Some(scanner) = &mut self.scanner else { return };
+        for number in scanner.changed() {
+            if let (Some(view), Some(views)) = (scanner.view(number), self.views.get(&number)) {
+                views.send_replace(view.clone());
+            }
+        }
+        while let Some(Reply { token, result, .. }) = scanner.reply() {
+            if let Some(answer) = self.asked.remove(&token) {
+                // Who asked may have gone.
+                let _ = answer.send(result);
+            }
+        }
+        if let Some(found) = scanner.found()
+            && let Some(sender) = self.found.take()
+        {
+            let _ = sender.send(found);
+        }
+        if scanner.failure().is_some() {
+            self.trouble = scanner.failure().cloned();
+            self.found = None;
+        }
+        for number in scanner.clear() {
+            self.views.remove(&number);
+        }
+    }
+
+    fn is_finished(&self) -> bool {
+        self.is_over && self.scanner.as_ref().is_none_or(Scanner::is_idle)
+    }
+}
+
+/// Has a frame recorded.
+fn pass(taps: &[Tap], frame: &Frame) {
+    for tap in taps {
+        tap.pass(|| Passed::Frame(frame.to_capture()));
+    }
+}
+
+/// Opens the adapter, and again after every loss as long as there is a connection that waits for it.
+async fn run(inner: Arc<Inner>, opened: oneshot::Sender<Result<(), Error>>) {
+    let mut port = match open(&inner.adapter).await {
+        Ok(port) => port,
+        Err(error) => {
+            // Who wanted it may have gone.
+            let _ = opened.send(Err(Error::Port(error)));
+            return;
+        }
+    };
+    let _ = opened.send(Ok(()));
+    loop {
+        let Err(error) = exchange(&inner, port.as_mut()).await else {
+            drop(port);
+            sleep(FAREWELL).await;
+            return;
+        };
+        {
+            let now = inner.now();
+            let mut state = inner.lock();
+            state.trouble = Some(Error::Port(error.clone()));
+            state.monitor = Monitor::default();
+            if let Some(scanner) = &mut state.scanner {
+                scanner.fail(now, &Error::Port(error));
+            }
+            state.publish();
+        }
+        inner.news.send_modify(|count| *count += 1);
+        drop(port);
+        port = loop {
+            if inner.lock().is_over {
+                return;
+            }
+            let _ = timeout(REOPEN, inner.wake.notified()).await;
+            sleep(REOPEN / 4).await;
+            inner.lock().publish();
+            if let Ok(port) = open(&inner.adapter).await {
+                break port;
+            }
+        };
+        let mut state = inner.lock();
+        state.trouble = None;
+        if let Some(scanner) = &mut state.scanner {
+            scanner.restart();
+        }
+    }
+}
+
+/// Moves frames until all is over, or the adapter is lost.
+async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError> {
+    loop {
+        let wake = {
+            let now = inner.now();
+            let mut state = inner.lock();
+            state.health = port.health();
+            let Inside { scanner, taps, .. } = &mut *state;
+            if let Some(scanner) = scanner {
+                scanner.handle_health(now, port.health());
+                while let Some(frame) = scanner.poll(now) {
+                    // First, so that no record has an answer before what it answers.
+                    pass(taps, &frame);
+                    port.send(&frame)?;
+                }
+            }
+            let wake = scanner.as_ref().and_then(Scanner::wake);
+            state.publish();
+            if state.is_finished() {
+                return Ok(());
+            }
+            wake
+        };
+        let heard = tokio::select! {
+            heard = port.next() => Some(heard?),
+            () = async {
+                match wake {
+                    Some(wake) => sleep_until(inner.start + wake).await,
+                    None => std::future::pending().await,
+                }
+            } => None,
+            () = inner.wake.notified() => None,
+        };
+        let Some(heard) = heard else { continue };
+        let now = inner.now();
+        {
+            let mut state = inner.lock();
+            let Inside { scanner, monitor, taps, frames, .. } = &mut *state;
+            match heard {
+                Heard::Frame(frame) => {
+                    *frames += 1;
+                    pass(taps, &frame);
+                    monitor.hear(now, &frame);
+                    if let Some(scanner) = scanner {
+                        scanner.handle(now, &frame);
+                    }
+                }
+                // It is looked at before anything else is done.
+                Heard::Health(_) => {}
+            }
+        }
+        inner.news.send_modify(|count| *count += 1);
+    }
+}
+
+async fn open(adapter: &Adapter) -> Result<Box<dyn CanPort>, PortError> {
+    let listens = adapter.identity.is_none();
+    let name = adapter.place.to_string();
+    let failed = |why: String, advice| PortError::Open { path: name.clone(), why, advice };
+    let pipe = match &adapter.place {
+        Place::Serial { path, baud } => {
+            let line = Line {
+                path: path.clone(),
+                baud: *baud,
+                data_bits: DataBits::Eight,
+                parity: Parity::None,
+                stop_bits: StopBits::One,
+            };
+            let port = serial::open_port(&line).map_err(|error| failed(error.to_string(), serial_advice(&error)))?;
+            Pipe::serial(port).map_err(|error| failed(error.to_string(), "plug the adapter in again"))?
+        }
+        Place::Tcp { host, port } => {
+            let advice = "check host and port, and that the SLCAN server runs";
+            let connected = timeout(CONNECT, TcpStream::connect((host.as_str(), *port))).await;
+            let stream = connected.map_err(|_| failed("no answer".to_owned(), advice))?;
+            let stream = stream.map_err(|error| match error.kind() {
+                std::io::ErrorKind::ConnectionRefused => failed("nobody listens there".to_owned(), advice),
+                _ => failed(error.to_string(), advice),
+            })?;
+            Pipe::tcp(stream).map_err(|error| failed(error.to_string(), advice))?
+        }
+        Place::SocketCan { interface } => return socket_can(interface),
+    };
+    Ok(Box::new(SlcanPort::start(name, pipe, adapter.bitrate, listens).await?))
+}
+
+#[cfg(target_os = "linux")]
+fn socket_can(interface: &str) -> Result<Box<dyn CanPort>, PortError> {
+    Ok(Box::new(super::can::socketcan::SocketCan::open(interface)?))
+}
+
+#[cfg(not(target_os = "linux"))]
+fn socket_can(interface: &str) -> Result<Box<dyn CanPort>, PortError> {
+    let why = "only Linux has CAN interfaces".to_owned();
+    Err(PortError::Open { path: interface.to_owned(), why, advice: "use an SLCAN adapter: slcan://" })
+}
+
+const fn serial_advice(error: &serial::OpenError) -> &'static str {
+    match error {
+        serial::OpenError::Absent => "plug the adapter in, and check the name of its port: `armctl robots discover`",
+        serial::OpenError::Busy => "end the other program, or reach the robot through its session",
+        serial::OpenError::Forbidden => "on Linux, join the group that owns the port (dialout)",
+        _ => "check the port and its baud rate",
+    }
+}

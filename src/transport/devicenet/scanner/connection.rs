@@ -1,0 +1,510 @@
+//! The master's end of a connection with a slave: allocates it, finds its sizes, polls, notices its loss, opens it again.
+//!
+//! Every opening is a generation. What is to be shown names the generation it is meant for: after a loss the slave gets
+//! the resting image until somebody who knows of the loss says otherwise. So nothing that was meant for the time before
+//! can happen a second time.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::polling::{Heard, Polling};
+use super::transaction::{Outcome, Requester};
+use super::view::{Input, State, Statistics, View};
+use super::{Bus, Token};
+use crate::devicenet::Now;
+use crate::devicenet::can::Frame;
+use crate::devicenet::error::Error;
+use crate::devicenet::settings::{Purpose, Settings};
+use crate::devicenet::wire::{Answer, Id, Mac, Request, class, connection, general, owner};
+
+/// Pause before a lost connection is opened again, one after the other; the last one again and again.
+const BACKOFF: [Duration; 3] = [Duration::from_secs(1), Duration::from_secs(2), Duration::from_secs(5)];
+/// The slave lets go of an explicit connection that is silent for 10 s.
+const KEEP_ALIVE: Duration = Duration::from_secs(3);
+const ALLOCATION: &str = "the allocation of its connections";
+const OWNER: &str = "who has its connections";
+const RELEASE: &str = "the release of its connections";
+const PRODUCED: &str = "the size of its image";
+const CONSUMED: &str = "the size of the image to it";
+const RATE: &str = "the packet rate";
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    /// Before the master is on line.
+    New,
+    /// The connections are being allocated; whether they were found to be this master's already.
+    Allocating {
+        again: bool,
+    },
+    /// What this master's MAC had before is asked.
+    AskingOwner,
+    /// It is being released.
+    Freeing,
+    /// The size of the image from the slave is asked.
+    AskingProduced,
+    /// The size of the image to it, too; that from it is known.
+    AskingConsumed(u16),
+    /// The packet rate is set, which brings the connection up.
+    SettingRate,
+    Open,
+    /// The connections are being released; then all ends, or it is opened again.
+    Releasing {
+        again: bool,
+    },
+    /// Until the next try.
+    Waiting(Now),
+    Ended,
+}
+
+/// What a request of a caller came to.
+pub(super) type Reply = (Token, Result<Answer, Error>);
+
+/// A connection.
+#[derive(Debug)]
+pub(super) struct Connection {
+    settings: Settings,
+    own: Mac,
+    phase: Phase,
+    requester: Requester,
+    polling: Option<Polling>,
+    image: Vec<u8>,
+    revision: u64,
+    is_over: bool,
+    tries: usize,
+    /// What callers want asked.
+    asks: VecDeque<(Token, Request)>,
+    /// Whose answer is waited for; `None` while the connection asks for itself.
+    asking: Option<Token>,
+    replies: VecDeque<Reply>,
+    keep_alive: Now,
+    view: View,
+    has_changed: bool,
+}
+
+impl Connection {
+    pub(super) fn new(own: Mac, settings: Settings) -> Self {
+        let view = View {
+            state: State::Opening,
+            generation: 0,
+            size: None,
+            input: None,
+            sent: 0,
+            error: None,
+            rate: None,
+            statistics: Statistics::default(),
+        };
+        Self {
+            requester: Requester::new(own, settings.slave, settings.timeout),
+            settings,
+            own,
+            phase: Phase::New,
+            polling: None,
+            image: Vec::new(),
+            revision: 0,
+            is_over: false,
+            tries: 0,
+            asks: VecDeque::new(),
+            asking: None,
+            replies: VecDeque::new(),
+            keep_alive: Now::ZERO,
+            view,
+            has_changed: true,
+        }
+    }
+
+    pub(super) const fn slave(&self) -> Mac {
+        self.settings.slave
+    }
+
+    pub(super) const fn view(&self) -> &View {
+        &self.view
+    }
+
+    pub(super) const fn take_changed(&mut self) -> bool {
+        std::mem::replace(&mut self.has_changed, false)
+    }
+
+    pub(super) fn is_finished(&self) -> bool {
+        self.phase == Phase::Ended && self.replies.is_empty()
+    }
+
+    /// Shows this image from the next poll on; see [`Scanner::set_image`](super::Scanner::set_image).
+    pub(super) fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, Error> {
+        match self.view.state {
+            State::Open if self.view.generation == generation => {}
+            State::Closing | State::Closed => return Err(Error::Ended),
+            _ => return Err(Error::Outdated),
+        }
+        if image.len() != self.image.len() {
+            let (len, size) = (image.len(), self.image.len());
+            return Err(Error::Settings(format!("the image has {size} bytes, not {len}")));
+        }
+        self.image.copy_from_slice(image);
+        self.revision += 1;
+        Ok(self.revision)
+    }
+
+    /// Asks something of the slave once the connection is open.
+    pub(super) fn ask(&mut self, token: Token, request: Request) {
+        if self.phase == Phase::Ended || self.is_over {
+            self.replies.push_back((token, Err(Error::Ended)));
+        } else {
+            self.asks.push_back((token, request));
+        }
+    }
+
+    pub(super) fn reply(&mut self) -> Option<Reply> {
+        self.replies.pop_front()
+    }
+
+    /// Ends it: the connections are released.
+    pub(super) fn close(&mut self, now: Now) {
+        if std::mem::replace(&mut self.is_over, true) {
+            return;
+        }
+        match self.phase {
+            Phase::New | Phase::Waiting(_) => self.finish(None),
+            Phase::Releasing { .. } | Phase::Ended => {}
+            Phase::Open => {
+                self.polling = None;
+                self.requester.cancel();
+                self.release(now, false);
+            }
+            // The answer that is awaited comes first.
+            _ => self.show(State::Closing),
+        }
+    }
+
+    /// The adapter or the whole bus is lost.
+    pub(super) fn fail(&mut self, now: Now, error: Error) {
+        self.requester.cancel();
+        match self.phase {
+            Phase::Ended => {}
+            _ if self.is_over => self.finish(Some(error)),
+            _ if self.view.generation == 0 => self.finish(Some(error)),
+            Phase::Waiting(_) => self.set_error(error),
+            _ => self.retreat(now, error),
+        }
+    }
+
+    /// A frame of this slave.
+    pub(super) fn take(&mut self, now: Now, id: Id, bytes: &[u8], bus: &Bus) {
+        match id {
+            Id::Answer(_) => {
+                if let Some(outcome) = self.requester.take(now, bytes) {
+                    self.done(now, outcome, bus);
+                }
+            }
+            Id::PollAnswer(_) => {
+                let Some(polling) = &mut self.polling else { return };
+                let Heard::Image(image, change) = polling.hear(now, bytes, &mut self.view.statistics) else { return };
+                self.tries = 0;
+                if let Some(change) = change {
+                    self.view.sent = change;
+                }
+                let before = self.view.input.as_ref().filter(|input| *input.image == *image);
+                let image = before.map_or_else(|| image.into(), |input| Arc::clone(&input.image));
+                self.view.input = Some(Input { image, at: now, generation: self.view.generation });
+                self.has_changed = true;
+            }
+            _ => {}
+        }
+    }
+
+    /// Does what is due; frames to send come out.
+    pub(super) fn poll(&mut self, now: Now, bus: &Bus, out: &mut VecDeque<Frame>) {
+        if let Some(outcome) = self.requester.expire(now) {
+            self.done(now, outcome, bus);
+        }
+        match self.phase {
+            Phase::New => self.allocate(now, false),
+            Phase::Waiting(until) if now >= until => self.allocate(now, false),
+            Phase::Open => self.serve(now, bus, out),
+            _ => {}
+        }
+        out.extend(std::iter::from_fn(|| self.requester.send()));
+    }
+
+    pub(super) fn wake(&self) -> Option<Now> {
+        let own = match self.phase {
+            Phase::New => Some(Now::ZERO),
+            Phase::Waiting(until) => Some(until),
+            Phase::Open if !self.requester.is_busy() => {
+                Some(if self.asks.is_empty() { self.keep_alive } else { Now::ZERO })
+            }
+            _ => None,
+        };
+        let polling = self.polling.as_ref().map(|polling| polling.next().min(polling.until()));
+        [own, polling, self.requester.wake()].into_iter().flatten().min()
+    }
+
+    /// Polls, keeps the explicit connection alive, and asks what callers want.
+    fn serve(&mut self, now: Now, bus: &Bus, out: &mut VecDeque<Frame>) {
+        if let Some(polling) = &mut self.polling {
+            if now >= polling.until() {
+                let (mac, after) = (self.settings.slave, polling.patience());
+                let is_bus_alive = bus.is_alive_without(mac, now.saturating_sub(after));
+                return self.retreat(now, Error::Lost { mac, after, is_bus_alive, state: bus.health.state });
+            }
+            out.extend(polling.poll(now, &self.image, self.revision, &mut self.view.statistics));
+        }
+        if self.requester.is_busy() {
+            return;
+        }
+        if let Some((token, request)) = self.asks.pop_front() {
+            self.asking = Some(token);
+            self.requester.ask(now, &request, true);
+        } else if now >= self.keep_alive {
+            self.requester.ask(now, &Request::get(class::DEVICENET, 1, ALLOCATION_ATTRIBUTE), true);
+        }
+    }
+
+    /// A request has come to its end.
+    fn done(&mut self, now: Now, outcome: Outcome, bus: &Bus) {
+        self.keep_alive = now + KEEP_ALIVE;
+        let mac = self.settings.slave;
+        let state = bus.health.state;
+        let answer = |what| match &outcome {
+            Outcome::Answer(Answer::Done { data, .. }) => Ok(data.clone()),
+            Outcome::Answer(Answer::Refused { general, additional }) => {
+                Err(Error::Refused { what, mac, general: *general, additional: *additional })
+            }
+            Outcome::Silent => {
+                Err(Error::Silent { mac, what, is_bus_alive: bus.is_alive_without(mac, Now::ZERO), state })
+            }
+            Outcome::Senseless(why) => Err(Error::Senseless { mac, what, why }),
+        };
+        match self.phase {
+            Phase::Allocating { again } => self.allocated(now, again, answer(ALLOCATION)),
+            Phase::AskingOwner => self.owned(now, &answer(OWNER)),
+            Phase::Freeing => match answer(RELEASE) {
+                Ok(_) => self.allocate(now, true),
+                Err(error) => self.give_up(now, error, false),
+            },
+            Phase::AskingProduced => match answer(PRODUCED).and_then(|data| word(&data, mac, PRODUCED)) {
+                Ok(produced) => {
+                    self.request(
+                        now,
+                        Phase::AskingConsumed(produced),
+                        &Request::get(class::CONNECTION, 2, CONSUMED_SIZE),
+                    );
+                }
+                Err(error) => self.give_up(now, error, true),
+            },
+            Phase::AskingConsumed(produced) => {
+                let sized = answer(CONSUMED).and_then(|data| word(&data, mac, CONSUMED));
+                match sized.and_then(|consumed| self.sized(produced, consumed)) {
+                    Ok(rate) => {
+                        let request = Request::set(class::CONNECTION, 2, PACKET_RATE, &rate.to_le_bytes());
+                        self.request(now, Phase::SettingRate, &request);
+                    }
+                    Err(error) => self.give_up(now, error, true),
+                }
+            }
+            Phase::SettingRate => match answer(RATE).and_then(|data| word(&data, mac, RATE)) {
+                Ok(0) => self.give_up(now, Error::Senseless { mac, what: RATE, why: "it is 0" }, true),
+                Ok(rate) => self.opened(now, rate),
+                Err(error) => self.give_up(now, error, true),
+            },
+            Phase::Open => {
+                if let Some(token) = self.asking.take() {
+                    let reply = match outcome {
+                        Outcome::Answer(answer) => Ok(answer),
+                        _ => answer("a question").map(|data| Answer::Done { service: 0, data }),
+                    };
+                    self.replies.push_back((token, reply));
+                }
+            }
+            Phase::Releasing { again: true } => self.pause(now),
+            Phase::Releasing { again: false } => {
+                // A slave that is silent lets go by itself; that is worth a word, not an error of the link.
+                let error = answer(RELEASE).err().filter(|error| !matches!(error, Error::Refused { .. }));
+                self.finish(error);
+            }
+            Phase::New | Phase::Waiting(_) | Phase::Ended => {}
+        }
+    }
+
+    fn allocate(&mut self, now: Now, again: bool) {
+        if self.is_over {
+            return self.finish(None);
+        }
+        let request = Request::allocate(self.choice(), self.own);
+        self.phase = Phase::Allocating { again };
+        self.requester.ask(now, &request, false);
+    }
+
+    fn allocated(&mut self, now: Now, again: bool, answer: Result<Vec<u8>, Error>) {
+        match answer {
+            Ok(_) if self.is_over => self.release(now, false),
+            Ok(_) => match &self.settings.purpose {
+                Purpose::Images(_) => {
+                    self.request(now, Phase::AskingProduced, &Request::get(class::CONNECTION, 2, PRODUCED_SIZE));
+                }
+                Purpose::Messages { .. } => self.opened(now, 0),
+            },
+            Err(Error::Refused { additional: owner::ANOTHER_MASTER, mac, .. }) => {
+                self.give_up(now, Error::Owned { mac }, false);
+            }
+            // A process with this MAC has died, or the answer to the first try was lost.
+            Err(Error::Refused { general: general::ALREADY, .. }) if !again => {
+                let request = Request::get(class::DEVICENET, 1, ALLOCATION_ATTRIBUTE);
+                self.request(now, Phase::AskingOwner, &request);
+            }
+            Err(error) => self.give_up(now, error, false),
+        }
+    }
+
+    /// Who has the connections: {choice, master}.
+    fn owned(&mut self, now: Now, answer: &Result<Vec<u8>, Error>) {
+        let mac = self.settings.slave;
+        match answer.as_deref() {
+            Ok([choice, master, ..]) if *master == self.own.number() && *choice != 0 => {
+                self.request(now, Phase::Freeing, &Request::release(*choice));
+            }
+            Ok([_, master, ..]) if Mac::new(*master).is_some() => self.give_up(now, Error::Owned { mac }, false),
+            Ok([_, _, ..]) => self.allocate(now, true),
+            Ok(_) => self.give_up(now, Error::Senseless { mac, what: OWNER, why: "it is too short" }, false),
+            // It has let go of the explicit connection, and kept the other.
+            Err(Error::Silent { .. }) => {
+                self.phase = Phase::Freeing;
+                self.requester.ask(now, &Request::release(connection::POLL), false);
+            }
+            Err(error) => self.give_up(now, error.clone(), false),
+        }
+    }
+
+    /// The profile that these sizes are of; the packet rate to set.
+    fn sized(&mut self, produced: u16, consumed: u16) -> Result<u16, Error> {
+        let mac = self.settings.slave;
+        let Purpose::Images(images) = &self.settings.purpose else { return Err(Error::Ended) };
+        let fits = |len: usize| len == usize::from(produced) && len == usize::from(consumed);
+        let Some(profile) = images.profiles.iter().find(|profile| fits(profile.resting.len())) else {
+            let sizes = images.profiles.iter().map(|profile| format!("{} of {}", profile.name, profile.resting.len()));
+            let known = sizes.collect::<Vec<_>>().join(", ");
+            return Err(Error::Size { mac, produced, consumed, known });
+        };
+        if self.view.size.is_some_and(|size| size != profile.resting.len()) {
+            let known = format!("the {} from before", self.view.size.unwrap_or_default());
+            return Err(Error::Size { mac, produced, consumed, known });
+        }
+        self.image.clone_from(&profile.resting);
+        self.view.size = Some(profile.resting.len());
+        Ok(u16::try_from(images.rate.as_millis()).unwrap_or(u16::MAX))
+    }
+
+    /// It is up, with this packet rate.
+    fn opened(&mut self, now: Now, rate: u16) {
+        if self.is_over {
+            return self.release(now, false);
+        }
+        self.phase = Phase::Open;
+        self.view.generation += 1;
+        if let (Purpose::Images(images), Some(size)) = (&self.settings.purpose, self.view.size) {
+            let rate = Duration::from_millis(rate.into());
+            self.view.rate = Some(rate);
+            self.polling = Some(Polling::new(now, self.settings.slave, size, images.cycle, rate));
+            // What is shown now is the resting image: a change of this generation.
+            self.revision += 1;
+        }
+        self.show(State::Open);
+    }
+
+    /// Opening has failed. What was allocated is released.
+    fn give_up(&mut self, now: Now, error: Error, is_allocated: bool) {
+        let again = self.view.generation > 0 && !self.is_over;
+        self.set_error(error);
+        if is_allocated {
+            self.release(now, again);
+        } else if again {
+            self.pause(now);
+        } else {
+            self.finish(None);
+        }
+    }
+
+    /// It was up, and is lost: released if anybody hears it, and opened again.
+    fn retreat(&mut self, now: Now, error: Error) {
+        self.polling = None;
+        self.requester.cancel();
+        self.drop_asks(&error);
+        let can_hear = matches!(error, Error::Lost { .. });
+        self.set_error(error);
+        self.show(State::Lost);
+        if can_hear {
+            self.release(now, true);
+        } else {
+            self.pause(now);
+        }
+    }
+
+    fn release(&mut self, now: Now, again: bool) {
+        if !again {
+            self.show(State::Closing);
+        }
+        let request = Request::release(self.choice());
+        self.request(now, Phase::Releasing { again }, &request);
+    }
+
+    fn pause(&mut self, now: Now) {
+        if self.is_over {
+            return self.finish(None);
+        }
+        let wait = BACKOFF.get(self.tries).or(BACKOFF.last()).copied().unwrap_or_default();
+        self.tries += 1;
+        self.phase = Phase::Waiting(now + wait);
+        self.show(State::Lost);
+    }
+
+    fn finish(&mut self, error: Option<Error>) {
+        if let Some(error) = error {
+            self.set_error(error);
+        }
+        self.polling = None;
+        self.requester.cancel();
+        self.drop_asks(&Error::Ended);
+        self.phase = Phase::Ended;
+        self.show(State::Closed);
+    }
+
+    fn drop_asks(&mut self, error: &Error) {
+        let asked = self.asking.take().into_iter().chain(self.asks.drain(..).map(|(token, _)| token));
+        self.replies.extend(asked.map(|token| (token, Err(error.clone()))));
+    }
+
+    fn request(&mut self, now: Now, phase: Phase, request: &Request) {
+        self.phase = phase;
+        self.requester.ask(now, request, true);
+    }
+
+    const fn choice(&self) -> u8 {
+        match self.settings.purpose {
+            Purpose::Images(_) | Purpose::Messages { with_poll: true } => connection::EXPLICIT | connection::POLL,
+            Purpose::Messages { with_poll: false } => connection::EXPLICIT,
+        }
+    }
+
+    fn set_error(&mut self, error: Error) {
+        self.view.error = Some(error);
+        self.has_changed = true;
+    }
+
+    fn show(&mut self, state: State) {
+        self.view.state = state;
+        self.has_changed = true;
+    }
+}
+
+/// Attribute 5 of the DeviceNet object: {choice, master}.
+const ALLOCATION_ATTRIBUTE: u8 = 5;
+/// Attributes of a connection.
+const PRODUCED_SIZE: u8 = 7;
+const CONSUMED_SIZE: u8 = 8;
+const PACKET_RATE: u8 = 9;
+
+/// An answer of two bytes.
+fn word(data: &[u8], mac: Mac, what: &'static str) -> Result<u16, Error> {
+    let bytes = data.try_into().map_err(|_| Error::Senseless { mac, what, why: "it has not two bytes" })?;
+    Ok(u16::from_le_bytes(bytes))
+}

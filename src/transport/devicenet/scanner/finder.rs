@@ -1,0 +1,137 @@
+//! Who is on the bus, without owning anybody: every node on line answers the question whether its MAC is free.
+//!
+//! A node that is about to go on line takes that question, too, for another node's that wants its MAC, and stays off.
+//! So it begins with listening for longer than the pause between such a node's own questions, and leaves those alone
+//! that were heard asking.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use super::Identity;
+use crate::devicenet::Now;
+use crate::devicenet::can::Frame;
+use crate::devicenet::wire::{DuplicateCheck, Id, Mac};
+
+/// A node asks twice, a second apart, and is on line a second later.
+const LISTEN: Duration = Duration::from_millis(1200);
+const GOING_ON_LINE: Duration = Duration::from_millis(2200);
+/// Between questions: a slow adapter must keep up.
+const PAUSE: Duration = Duration::from_millis(10);
+/// How long the last one may take to answer.
+const LINGER: Duration = Duration::from_millis(300);
+/// How often each MAC is asked.
+const ROUNDS: u8 = 2;
+
+/// A node that was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Found {
+    /// Its MAC.
+    pub mac: Mac,
+    /// Its maker.
+    pub vendor: u16,
+    /// Its serial number.
+    pub serial: u32,
+    /// Whether it answered; else it was only heard asking whether its MAC is free.
+    pub is_on_line: bool,
+}
+
+/// A search.
+#[derive(Debug)]
+pub(super) struct Finder {
+    own: Identity,
+    due: Now,
+    /// When the last question left.
+    asked: Now,
+    /// What is left to ask, the last first.
+    left: Vec<Mac>,
+    /// Nodes that are about to go on line, and when they will be.
+    booting: BTreeMap<Mac, Now>,
+    found: BTreeMap<Mac, Found>,
+}
+
+impl Finder {
+    pub(super) fn new(now: Now, own: Identity) -> Self {
+        let round = || Mac::all().filter(|mac| *mac != own.mac);
+        let mut left: Vec<Mac> = (0..ROUNDS).flat_map(|_| round()).collect();
+        left.reverse();
+        Self { own, due: now + LISTEN, asked: now, left, booting: BTreeMap::new(), found: BTreeMap::new() }
+    }
+
+    pub(super) const fn wake(&self) -> Now {
+        self.due
+    }
+
+    pub(super) fn is_over(&self, now: Now) -> bool {
+        self.left.is_empty() && now >= self.due
+    }
+
+    pub(super) fn found(self) -> Vec<Found> {
+        self.found.into_values().collect()
+    }
+
+    /// The next question, if one is due.
+    pub(super) fn poll(&mut self, now: Now) -> Option<Frame> {
+        if now < self.due {
+            return None;
+        }
+        while let Some(mac) = self.left.pop() {
+            let is_booting = self.booting.get(&mac).is_some_and(|until| now < *until);
+            let is_known = self.found.get(&mac).is_some_and(|found| found.is_on_line);
+            if is_booting || is_known {
+                continue;
+            }
+            self.due = now + PAUSE;
+            self.asked = now;
+            let check = DuplicateCheck { is_answer: false, port: 0, vendor: self.own.vendor, serial: self.own.serial };
+            return Frame::new(Id::Duplicate(mac).emit(), &check.emit());
+        }
+        self.due = self.due.max(self.asked + LINGER);
+        None
+    }
+
+    /// A message of the check from somebody else.
+    pub(super) fn heard(&mut self, now: Now, mac: Mac, check: DuplicateCheck) {
+        let DuplicateCheck { is_answer, vendor, serial, .. } = check;
+        if !is_answer {
+            self.booting.insert(mac, now + GOING_ON_LINE);
+        }
+        let is_on_line = is_answer || self.found.get(&mac).is_some_and(|found| found.is_on_line);
+        if mac != self.own.mac {
+            self.found.insert(mac, Found { mac, vendor, serial, is_on_line });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    #[test]
+    fn a_node_that_goes_on_line_is_left_alone() {
+        let mac = |number| Mac::new(number).unwrap();
+        let own = Identity { mac: mac(0), vendor: 0xFFFF, serial: 1 };
+        let mut finder = Finder::new(Now::ZERO, own);
+        let check = |is_answer| DuplicateCheck { is_answer, port: 0, vendor: 636, serial: 9 };
+        finder.heard(MS * 100, mac(5), check(false));
+        let (mut now, mut asked) = (Now::ZERO, Vec::new());
+        while !finder.is_over(now) {
+            now = now.max(finder.wake());
+            if let Some(frame) = finder.poll(now) {
+                assert!(now >= LISTEN, "listens first");
+                asked.push(frame.id());
+                if frame.id() == Id::Duplicate(mac(7)).emit() {
+                    finder.heard(now, mac(7), check(true));
+                }
+            }
+            assert!(now < MS * 5000);
+        }
+        let times = |number| asked.iter().filter(|id| **id == Id::Duplicate(mac(number)).emit()).count();
+        // 7 answered at once, 5 was about to go on line, the own MAC is nobody else's.
+        assert_eq!((times(0), times(5), times(7), times(8)), (0, 0, 1, 2));
+        let found: Vec<(u8, bool)> =
+            finder.found().iter().map(|found| (found.mac.number(), found.is_on_line)).collect();
+        assert_eq!(found, [(5, false), (7, true)]);
+    }
+}

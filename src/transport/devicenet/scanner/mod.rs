@@ -1,0 +1,353 @@
+//! The master: its own MAC, and connections with any number of slaves, on one adapter. Without sockets and without a
+//! clock.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::time::Duration;
+
+use super::Now;
+use super::can::{BusState, Frame, Health};
+use super::error::Error;
+use super::settings::Settings;
+use super::wire::{Answer, DuplicateCheck, Id, Mac, Request};
+
+mod connection;
+mod finder;
+mod polling;
+mod transaction;
+mod view;
+
+use self::connection::Connection;
+use self::finder::Finder;
+pub use self::finder::Found;
+pub use self::view::{Input, State, Statistics, View};
+
+/// Between the questions whether a MAC is free, and before the master is on line.
+const CHECK: Duration = Duration::from_secs(1);
+/// Questions whether a MAC is free.
+const CHECKS: u8 = 2;
+
+/// Tells the questions of callers apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Token(
+    /// Any number.
+    pub u64,
+);
+
+/// What a question of a caller came to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Reply {
+    /// The connection it was asked on.
+    pub connection: u64,
+    /// The question.
+    pub token: Token,
+    /// The answer.
+    pub result: Result<Answer, Error>,
+}
+
+/// Who the master is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Identity {
+    /// Its MAC.
+    pub mac: Mac,
+    /// Its maker.
+    pub vendor: u16,
+    /// Its serial number.
+    pub serial: u32,
+}
+
+/// What is known of the bus.
+#[derive(Debug)]
+pub(crate) struct Bus {
+    /// How the adapter is.
+    pub(crate) health: Health,
+    /// When each MAC was last heard.
+    heard: [Option<Now>; 64],
+}
+
+impl Bus {
+    /// Whether any node but this one was heard since then.
+    pub(crate) fn is_alive_without(&self, mac: Mac, since: Now) -> bool {
+        let others = self.heard.iter().enumerate().filter(|(number, _)| *number != usize::from(mac.number()));
+        others.filter_map(|(_, heard)| *heard).any(|heard| heard >= since)
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Phase {
+    /// Before the first poll, or since the adapter was opened anew.
+    New,
+    /// Asked so often whether the MAC is free; the next step is due then.
+    Checking(u8, Now),
+    OnLine,
+    /// Not on the bus, and why.
+    Failed(Error),
+}
+
+/// The master.
+#[derive(Debug)]
+pub struct Scanner {
+    identity: Identity,
+    phase: Phase,
+    bus: Bus,
+    connections: BTreeMap<u64, Connection>,
+    finder: Option<Finder>,
+    found: Option<Vec<Found>>,
+    outbox: VecDeque<Frame>,
+    replies: VecDeque<Reply>,
+}
+
+impl Scanner {
+    /// A master before it is on line.
+    pub const fn new(identity: Identity) -> Self {
+        let health = Health { state: BusState::Active, overruns: 0, rejected: 0 };
+        Self {
+            identity,
+            phase: Phase::New,
+            bus: Bus { health, heard: [None; 64] },
+            connections: BTreeMap::new(),
+            finder: None,
+            found: None,
+            outbox: VecDeque::new(),
+            replies: VecDeque::new(),
+        }
+    }
+
+    /// Who it is.
+    pub const fn identity(&self) -> Identity {
+        self.identity
+    }
+
+    /// Whether it has found its MAC to be free.
+    pub fn is_on_line(&self) -> bool {
+        self.phase == Phase::OnLine
+    }
+
+    /// Opens a connection under this number, which must be new.
+    ///
+    /// # Errors
+    /// If none can be as the settings say, or the slave is connected already.
+    pub fn open(&mut self, number: u64, settings: Settings) -> Result<(), Error> {
+        settings.check(self.identity.mac)?;
+        if let Phase::Failed(error) = &self.phase {
+            return Err(error.clone());
+        }
+        if self.connections.values().any(|connection| connection.slave() == settings.slave) {
+            let mac = settings.slave;
+            return Err(Error::Settings(format!("this process has a connection with MAC {mac} already")));
+        }
+        self.connections.insert(number, Connection::new(self.identity.mac, settings));
+        Ok(())
+    }
+
+    /// What there is to see of a connection; `None` once it has ended and was cleared away.
+    pub fn view(&self, number: u64) -> Option<&View> {
+        self.connections.get(&number).map(Connection::view)
+    }
+
+    /// The connections that have something new to see since this was last asked.
+    pub fn changed(&mut self) -> Vec<u64> {
+        self.connections
+            .iter_mut()
+            .filter_map(|(number, connection)| connection.take_changed().then_some(*number))
+            .collect()
+    }
+
+    /// Shows this image from the next poll on, and says which change it was: the slave has taken it when the view's
+    /// `sent` is as high.
+    ///
+    /// # Errors
+    /// If the connection is not open in this generation, or the image has another size.
+    pub fn set_image(&mut self, number: u64, generation: u32, image: &[u8]) -> Result<u64, Error> {
+        self.connections.get_mut(&number).ok_or(Error::Ended)?.set_image(generation, image)
+    }
+
+    /// Asks something of the slave; [`reply`](Self::reply) has the answer.
+    pub fn ask(&mut self, number: u64, token: Token, request: Request) {
+        match self.connections.get_mut(&number) {
+            Some(connection) => connection.ask(token, request),
+            None => self.replies.push_back(Reply { connection: number, token, result: Err(Error::Ended) }),
+        }
+    }
+
+    /// An answer to a question.
+    pub fn reply(&mut self) -> Option<Reply> {
+        self.replies.pop_front()
+    }
+
+    /// Ends a connection.
+    pub fn close(&mut self, now: Now, number: u64) {
+        if let Some(connection) = self.connections.get_mut(&number) {
+            connection.close(now);
+        }
+    }
+
+    /// Looks which MACs answer, without owning anybody; [`found`](Self::found) has them.
+    pub fn find(&mut self, now: Now) {
+        self.found = None;
+        self.finder = Some(Finder::new(now, self.identity));
+    }
+
+    /// What the last search has found, once it is over.
+    pub fn found(&mut self) -> Option<Vec<Found>> {
+        self.found.take()
+    }
+
+    /// Why it is not on the bus and will not be.
+    pub const fn failure(&self) -> Option<&Error> {
+        match &self.phase {
+            Phase::Failed(error) => Some(error),
+            _ => None,
+        }
+    }
+
+    /// The adapter was opened, or opened anew: the MAC is checked before anything else.
+    pub fn restart(&mut self) {
+        self.phase = Phase::New;
+        self.bus.health = Health::default();
+        self.outbox.clear();
+    }
+
+    /// The adapter is gone. Connections that were open wait until it is back.
+    pub fn fail(&mut self, now: Now, error: &Error) {
+        for connection in self.connections.values_mut() {
+            connection.fail(now, error.clone());
+        }
+        (self.finder, self.phase) = (None, Phase::Failed(error.clone()));
+        self.outbox.clear();
+        self.gather();
+    }
+
+    /// The adapter tells how it is.
+    pub fn handle_health(&mut self, now: Now, health: Health) {
+        let was_off = std::mem::replace(&mut self.bus.health, health).state == BusState::Off;
+        if health.state == BusState::Off && !was_off {
+            for connection in self.connections.values_mut() {
+                connection.fail(now, Error::BusOff);
+            }
+            self.gather();
+        }
+    }
+
+    /// A frame from the bus.
+    pub fn handle(&mut self, now: Now, frame: &Frame) {
+        let Some(id) = Id::parse(frame.id()) else { return };
+        if let Some(heard) = id.sender().and_then(|mac| self.bus.heard.get_mut(usize::from(mac.number()))) {
+            *heard = Some(now);
+        }
+        match id {
+            Id::Duplicate(mac) => {
+                if let Some(check) = DuplicateCheck::parse(frame.data()) {
+                    self.checked(now, mac, check);
+                }
+            }
+            Id::Answer(mac) | Id::PollAnswer(mac) => {
+                let Self { connections, bus, .. } = self;
+                if let Some(connection) = connections.values_mut().find(|connection| connection.slave() == mac) {
+                    connection.take(now, id, frame.data(), bus);
+                }
+                self.gather();
+            }
+            _ => {}
+        }
+    }
+
+    /// A frame to send at `now`; call until there is none.
+    pub fn poll(&mut self, now: Now) -> Option<Frame> {
+        if self.outbox.is_empty() {
+            self.advance(now);
+        }
+        self.outbox.pop_front()
+    }
+
+    /// When to call again at the latest.
+    pub fn wake(&self) -> Option<Now> {
+        if !self.outbox.is_empty() {
+            return Some(Now::ZERO);
+        }
+        match self.phase {
+            Phase::New => Some(Now::ZERO),
+            Phase::Checking(_, due) => Some(due),
+            // Until the adapter is back on the bus.
+            Phase::OnLine if self.bus.health.state == BusState::Off => None,
+            Phase::OnLine => {
+                let connections = self.connections.values().filter_map(Connection::wake);
+                connections.chain(self.finder.as_ref().map(Finder::wake)).min()
+            }
+            Phase::Failed(_) => None,
+        }
+    }
+
+    /// Forgets connections that have ended and were seen to.
+    pub fn clear(&mut self) -> Vec<u64> {
+        let is_ended = |(number, connection): (&u64, &Connection)| connection.is_finished().then_some(*number);
+        let ended: Vec<u64> = self.connections.iter().filter_map(is_ended).collect();
+        self.connections.retain(|number, _| !ended.contains(number));
+        ended
+    }
+
+    /// Whether there is no connection and no search.
+    pub fn is_idle(&self) -> bool {
+        self.connections.is_empty() && self.finder.is_none()
+    }
+
+    fn advance(&mut self, now: Now) {
+        match self.phase {
+            Phase::New => self.ask_for_mac(now, 0),
+            Phase::Checking(CHECKS, due) if now >= due => self.phase = Phase::OnLine,
+            Phase::Checking(asked, due) if now >= due => self.ask_for_mac(now, asked),
+            _ => {}
+        }
+        if self.phase != Phase::OnLine || self.bus.health.state == BusState::Off {
+            return;
+        }
+        let Self { connections, bus, outbox, .. } = self;
+        for connection in connections.values_mut() {
+            connection.poll(now, bus, outbox);
+        }
+        if let Some(finder) = &mut self.finder {
+            self.outbox.extend(finder.poll(now));
+            if finder.is_over(now) {
+                self.found = self.finder.take().map(Finder::found);
+            }
+        }
+        self.gather();
+    }
+
+    fn ask_for_mac(&mut self, now: Now, asked: u8) {
+        self.outbox.extend(self.check(false));
+        self.phase = Phase::Checking(asked + 1, now + CHECK);
+    }
+
+    fn check(&self, is_answer: bool) -> Option<Frame> {
+        let Identity { mac, vendor, serial } = self.identity;
+        let check = DuplicateCheck { is_answer, port: 0, vendor, serial };
+        Frame::new(Id::Duplicate(mac).emit(), &check.emit())
+    }
+
+    /// Somebody asks whether a MAC is free, or says that it is not.
+    fn checked(&mut self, now: Now, mac: Mac, check: DuplicateCheck) {
+        if let Some(finder) = &mut self.finder {
+            finder.heard(now, mac, check);
+        }
+        if mac != self.identity.mac {
+            return;
+        }
+        match self.phase {
+            Phase::New | Phase::Checking(..) => {
+                let DuplicateCheck { vendor, serial, .. } = check;
+                let error = Error::Duplicate { mac, vendor, serial };
+                self.fail(now, &error);
+            }
+            Phase::OnLine if !check.is_answer => self.outbox.extend(self.check(true)),
+            Phase::OnLine | Phase::Failed(_) => {}
+        }
+    }
+
+    fn gather(&mut self) {
+        for (number, connection) in &mut self.connections {
+            while let Some((token, result)) = connection.reply() {
+                self.replies.push_back(Reply { connection: *number, token, result });
+            }
+        }
+    }
+}

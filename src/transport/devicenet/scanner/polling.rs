@@ -1,0 +1,177 @@
+//! The poll: an image out, an image in, in a rhythm that does not drift.
+
+use std::time::Duration;
+
+use crate::devicenet::Now;
+use crate::devicenet::can::Frame;
+use crate::devicenet::wire::{Assembler, Id, Mac, Piece, split};
+
+use super::view::Statistics;
+
+/// Packet rates without an answer after which a slave is lost, as it gives up the master after as many.
+pub(super) const WATCHDOG: u32 = 4;
+/// Most answers that are still thought to be on their way.
+const MOST_OWED: u8 = 2;
+
+/// The exchange of one generation.
+#[derive(Debug)]
+pub(super) struct Polling {
+    slave: Mac,
+    cycle: Duration,
+    rate: Duration,
+    due: Now,
+    /// When the poll left that waits for its answer.
+    asked: Option<Now>,
+    /// How long an answer took the last time, from poll to its last frame.
+    round_trip: Duration,
+    /// Polls that were given up and may still be answered: such an answer says nothing of the polls behind them.
+    owed: u8,
+    /// The change that the last poll carried.
+    carried: u64,
+    assembler: Assembler,
+    heard: Now,
+}
+
+/// What a frame of an answer came to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Heard {
+    /// Nothing yet.
+    Nothing,
+    /// An image, and the change that the slave has taken with the poll that it answers, where that is sure.
+    Image(Vec<u8>, Option<u64>),
+}
+
+impl Polling {
+    pub(super) fn new(now: Now, slave: Mac, size: usize, cycle: Duration, rate: Duration) -> Self {
+        Self {
+            slave,
+            cycle,
+            rate,
+            due: now,
+            asked: None,
+            round_trip: rate / 4,
+            owed: 0,
+            carried: 0,
+            assembler: Assembler::new(size),
+            heard: now,
+        }
+    }
+
+    /// How long a slave may be silent.
+    pub(super) fn patience(&self) -> Duration {
+        self.rate * WATCHDOG
+    }
+
+    /// When it is lost if nothing comes.
+    pub(super) fn until(&self) -> Now {
+        self.heard + self.patience()
+    }
+
+    /// When to poll next.
+    pub(super) fn next(&self) -> Now {
+        // A slow adapter must not be handed polls faster than it carries them.
+        let given_up = self.asked.map(|asked| asked + self.cycle.max(self.round_trip * 2).min(self.rate));
+        given_up.map_or(self.due, |given_up| self.due.max(given_up))
+    }
+
+    /// The frames of a poll with this image, if one is due.
+    pub(super) fn poll(&mut self, now: Now, image: &[u8], change: u64, counted: &mut Statistics) -> Vec<Frame> {
+        if now < self.next() {
+            return Vec::new();
+        }
+        if self.asked.is_some() {
+            counted.missed += 1;
+            self.owed = (self.owed + 1).min(MOST_OWED);
+        }
+        // What is left of an older answer must not be put together with the next one.
+        self.assembler = Assembler::new(image.len());
+        self.asked = Some(now);
+        self.carried = change;
+        counted.sent += 1;
+        self.due += self.cycle;
+        while self.due <= now {
+            self.due += self.cycle;
+            counted.skipped += 1;
+        }
+        let id = Id::Poll(self.slave).emit();
+        split(image).iter().filter_map(|bytes| Frame::new(id, bytes)).collect()
+    }
+
+    /// A frame of the slave's answer.
+    pub(super) fn hear(&mut self, now: Now, bytes: &[u8], counted: &mut Statistics) -> Heard {
+        match self.assembler.take(bytes) {
+            Piece::Part => Heard::Nothing,
+            Piece::Idle | Piece::Wrong => {
+                counted.wrong += 1;
+                Heard::Nothing
+            }
+            Piece::Whole(image) => {
+                // Doubled, or so late that it was given up: it may be older than what was seen since.
+                let Some(asked) = self.asked.take() else {
+                    counted.late += 1;
+                    return Heard::Nothing;
+                };
+                counted.received += 1;
+                self.heard = now;
+                self.round_trip = now.saturating_sub(asked);
+                let is_sure = self.owed == 0;
+                self.owed = self.owed.saturating_sub(1);
+                Heard::Image(image, is_sure.then_some(self.carried))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    fn polling() -> (Polling, Statistics) {
+        (Polling::new(Now::ZERO, Mac::new(5).unwrap(), 4, MS * 20, MS * 100), Statistics::default())
+    }
+
+    #[test]
+    fn polls_keep_their_rhythm() {
+        let (mut polling, mut counted) = polling();
+        for at in [0, 20, 41, 60, 85, 100] {
+            let now = MS * at;
+            assert_eq!(polling.poll(now, &[0; 4], 1, &mut counted).len(), 1, "{at}");
+            assert!(polling.poll(now, &[0; 4], 1, &mut counted).is_empty());
+            assert!(matches!(polling.hear(now + MS, &[0; 4], &mut counted), Heard::Image(..)));
+        }
+        assert_eq!((counted.sent, counted.received, counted.skipped), (6, 6, 0));
+        // Behind a pause it goes on in the same rhythm, and catches nothing up.
+        assert_eq!(polling.poll(MS * 190, &[0; 4], 1, &mut counted).len(), 1);
+        assert_eq!((polling.due, counted.skipped), (MS * 200, 3));
+    }
+
+    /// An answer that may be that to an older poll does not tell that the newest was taken.
+    #[test]
+    fn a_late_answer_confirms_nothing() {
+        let (mut polling, mut counted) = polling();
+        polling.poll(Now::ZERO, &[0; 4], 1, &mut counted);
+        let again = polling.next();
+        assert!(again >= MS * 20);
+        polling.poll(again, &[1; 4], 2, &mut counted);
+        assert_eq!(polling.hear(again + MS, &[7; 4], &mut counted), Heard::Image(vec![7; 4], None));
+        // The one to the newest poll, or the same once more: nobody can tell.
+        assert_eq!(polling.hear(again + MS, &[8; 4], &mut counted), Heard::Nothing);
+        let next = polling.next();
+        polling.poll(next, &[1; 4], 2, &mut counted);
+        assert_eq!(polling.hear(next + MS, &[8; 4], &mut counted), Heard::Image(vec![8; 4], Some(2)));
+        assert_eq!((counted.missed, counted.late), (1, 1));
+    }
+
+    #[test]
+    fn a_slow_adapter_sets_the_pace() {
+        let (mut polling, mut counted) = polling();
+        polling.poll(Now::ZERO, &[0; 4], 1, &mut counted);
+        polling.hear(MS * 30, &[0; 4], &mut counted);
+        assert_eq!(polling.next(), MS * 20, "overdue");
+        polling.poll(MS * 30, &[0; 4], 1, &mut counted);
+        assert_eq!(polling.next(), MS * 90, "twice the round trip of 30 ms");
+        assert_eq!(polling.until(), MS * 430);
+    }
+}

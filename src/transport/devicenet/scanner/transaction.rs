@@ -1,0 +1,328 @@
+//! One explicit request after the other, and its answer: in fragments, acknowledged, repeated once.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use crate::devicenet::Now;
+use crate::devicenet::can::{Frame, MOST_DATA};
+use crate::devicenet::wire::{Answer, Format, Fragment, Header, Id, Kind, Mac, Request};
+
+/// Bytes of a message in a fragment, behind header and fragment byte.
+const PART: usize = MOST_DATA - 2;
+/// Longest answer that is put together.
+const MOST_ANSWER: usize = 512;
+/// In an acknowledgement: the fragment was taken.
+const TAKEN: u8 = 0;
+/// How often a request or a fragment leaves at most.
+const TRIES: u8 = 2;
+
+/// How a request came to its end.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Outcome {
+    /// It was answered.
+    Answer(Answer),
+    /// It was not.
+    Silent,
+    /// It was answered, but not so that it could be read.
+    Senseless(&'static str),
+}
+
+/// Asks a slave.
+#[derive(Debug)]
+pub(super) struct Requester {
+    own: Mac,
+    slave: Mac,
+    patience: Duration,
+    xid: bool,
+    current: Option<Transaction>,
+    /// The last fragment of an answer that was taken: it comes again if its acknowledgement was lost.
+    taken: Option<u8>,
+    outbox: VecDeque<Frame>,
+}
+
+#[derive(Debug)]
+struct Transaction {
+    service: u8,
+    /// The request behind its header.
+    body: Vec<u8>,
+    destination: Id,
+    /// The fragment that waits for its acknowledgement; `None` once all of the request has left.
+    sending: Option<usize>,
+    tries: u8,
+    deadline: Now,
+    /// The answer as far as it has come, and the count of the fragment that came last.
+    answer: Option<(Vec<u8>, u8)>,
+}
+
+impl Requester {
+    pub(super) const fn new(own: Mac, slave: Mac, patience: Duration) -> Self {
+        Self { own, slave, patience, xid: true, current: None, taken: None, outbox: VecDeque::new() }
+    }
+
+    /// Whether a request is on its way.
+    pub(super) const fn is_busy(&self) -> bool {
+        self.current.is_some()
+    }
+
+    /// Sends a request: on the explicit connection, or without one.
+    pub(super) fn ask(&mut self, now: Now, request: &Request, is_connected: bool) {
+        let Some(body) = request.emit(Format::Byte8Byte8) else { return };
+        self.xid = !self.xid;
+        self.taken = None;
+        let destination = if is_connected { Id::Request(self.slave) } else { Id::Unconnected(self.slave) };
+        let deadline = now + self.patience;
+        let service = request.service;
+        self.current =
+            Some(Transaction { service, body, destination, sending: None, tries: TRIES, deadline, answer: None });
+        self.begin(now);
+    }
+
+    /// Gives up whatever is on its way.
+    pub(super) fn cancel(&mut self) {
+        self.current = None;
+        self.outbox.clear();
+    }
+
+    /// A frame to send.
+    pub(super) fn send(&mut self) -> Option<Frame> {
+        self.outbox.pop_front()
+    }
+
+    /// When to call [`expire`](Self::expire).
+    pub(super) fn wake(&self) -> Option<Now> {
+        if self.outbox.is_empty() { self.current.as_ref().map(|current| current.deadline) } else { Some(Now::ZERO) }
+    }
+
+    /// Repeats what was not answered in time, or gives up.
+    pub(super) fn expire(&mut self, now: Now) -> Option<Outcome> {
+        let current = self.current.as_mut().filter(|current| now >= current.deadline)?;
+        current.tries -= 1;
+        if current.tries == 0 {
+            self.current = None;
+            return Some(Outcome::Silent);
+        }
+        current.deadline = now + self.patience;
+        match current.sending {
+            Some(index) => self.fragment(index),
+            None => self.begin(now),
+        }
+        None
+    }
+
+    /// Takes a frame of the slave's explicit answers.
+    pub(super) fn take(&mut self, now: Now, bytes: &[u8]) -> Option<Outcome> {
+        let (first, body) = bytes.split_first()?;
+        let header = Header::parse(*first);
+        // The xid tells an answer that comes late or twice from the one that is waited for.
+        if header.mac != self.own || header.xid != self.xid {
+            return None;
+        }
+        if !header.is_fragment {
+            // Heartbeats and shutdowns are no answers.
+            return self.answered(Answer::parse(body)?);
+        }
+        let (second, part) = body.split_first()?;
+        let Fragment { kind, count } = Fragment::parse(*second);
+        if kind == Kind::Acknowledge {
+            return self.acknowledged(now, count, part.first().copied()?);
+        }
+        let Some(current) = &mut self.current else {
+            if self.taken == Some(count) && kind == Kind::Last {
+                self.acknowledge(count);
+            }
+            return None;
+        };
+        current.deadline = now + self.patience;
+        match &mut current.answer {
+            // It comes again if its acknowledgement was lost.
+            Some((_, last)) if *last == count => {}
+            Some((answer, last)) if kind != Kind::First && count == (*last + 1) % 64 => {
+                answer.extend(part);
+                *last = count;
+            }
+            None if kind == Kind::First && count == 0 => current.answer = Some((part.to_vec(), 0)),
+            // What is missing comes again, or the whole answer does.
+            _ => return None,
+        }
+        self.acknowledge(count);
+        let current = self.current.as_ref()?;
+        let (answer, last) = current.answer.as_ref()?;
+        if answer.len() > MOST_ANSWER {
+            self.current = None;
+            return Some(Outcome::Senseless("it is too long"));
+        }
+        if kind != Kind::Last || *last != count {
+            return None;
+        }
+        self.taken = Some(count);
+        if let Some(answer) = Answer::parse(answer) {
+            self.answered(answer)
+        } else {
+            self.current = None;
+            Some(Outcome::Senseless("it is no answer"))
+        }
+    }
+
+    fn answered(&mut self, answer: Answer) -> Option<Outcome> {
+        let current = self.current.as_ref()?;
+        if let Answer::Done { service, .. } = answer
+            && (service != current.service || current.sending.is_some())
+        {
+            return None;
+        }
+        self.current = None;
+        Some(Outcome::Answer(answer))
+    }
+
+    fn acknowledged(&mut self, now: Now, count: u8, status: u8) -> Option<Outcome> {
+        let current = self.current.as_mut()?;
+        let index = current.sending.filter(|index| Fragment::of(*index, index + 2).count == count)?;
+        if status != TAKEN {
+            self.current = None;
+            return Some(Outcome::Senseless("the request is too long for it"));
+        }
+        (current.tries, current.deadline) = (TRIES, now + self.patience);
+        let next = index + 1;
+        if next * PART < current.body.len() {
+            current.sending = Some(next);
+            self.fragment(next);
+        } else {
+            current.sending = None;
+        }
+        None
+    }
+
+    fn begin(&mut self, now: Now) {
+        let header = Header { is_fragment: false, xid: self.xid, mac: self.own };
+        let Some(current) = &mut self.current else { return };
+        (current.answer, current.deadline) = (None, now + self.patience);
+        if current.body.len() < MOST_DATA {
+            let bytes = [&[header.emit()], current.body.as_slice()].concat();
+            self.outbox.extend(Frame::new(current.destination.emit(), &bytes));
+        } else {
+            current.sending = Some(0);
+            self.fragment(0);
+        }
+    }
+
+    fn fragment(&mut self, index: usize) {
+        let Some(current) = &self.current else { return };
+        let pieces = current.body.len().div_ceil(PART);
+        let part = current.body.chunks(PART).nth(index).unwrap_or_default();
+        let header = Header { is_fragment: true, xid: self.xid, mac: self.own };
+        let bytes = [&[header.emit(), Fragment::of(index, pieces).emit()], part].concat();
+        self.outbox.extend(Frame::new(current.destination.emit(), &bytes));
+    }
+
+    fn acknowledge(&mut self, count: u8) {
+        let header = Header { is_fragment: true, xid: self.xid, mac: self.own };
+        let fragment = Fragment { kind: Kind::Acknowledge, count };
+        self.outbox.extend(Frame::new(Id::Request(self.slave).emit(), &[header.emit(), fragment.emit(), TAKEN]));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devicenet::wire::{class, general, owner, service};
+
+    const NOW: Now = Now::ZERO;
+    const SECOND: Duration = Duration::from_secs(1);
+
+    fn requester() -> Requester {
+        Requester::new(Mac::new(1).unwrap(), Mac::new(5).unwrap(), SECOND)
+    }
+
+    fn sent(requester: &mut Requester) -> Vec<String> {
+        std::iter::from_fn(|| requester.send()).map(|frame| frame.to_string()).collect()
+    }
+
+    /// The name of ten characters, in fragments, each acknowledged.
+    #[test]
+    fn a_long_answer_is_put_together_and_acknowledged() {
+        let mut requester = requester();
+        requester.ask(NOW, &Request::get(class::IDENTITY, 1, 7), true);
+        assert_eq!(sent(&mut requester), ["42C#010E010107"]);
+        assert_eq!(requester.take(NOW, &[0x81, 0x00, 0x8E, 0x0A, 0x59, 0x52, 0x43, 0x58]), None);
+        assert_eq!(sent(&mut requester), ["42C#81C000"]);
+        let last = [0x81, 0x81, 0x20, 0x28, 0x73, 0x69, 0x6D, 0x29];
+        let data = [&[10], b"YRCX (sim)".as_slice()].concat();
+        let answer = Outcome::Answer(Answer::Done { service: service::GET, data });
+        assert_eq!(requester.take(NOW, &last), Some(answer));
+        assert_eq!(sent(&mut requester), ["42C#81C100"]);
+        // The acknowledgement was lost: it comes again, and is acknowledged again.
+        assert_eq!(requester.take(NOW, &last), None);
+        assert_eq!(sent(&mut requester), ["42C#81C100"]);
+    }
+
+    #[test]
+    fn a_fragment_that_comes_twice_counts_once() {
+        let mut requester = requester();
+        requester.ask(NOW, &Request::get(class::IDENTITY, 1, 7), true);
+        sent(&mut requester);
+        let first = [0x81, 0x00, 0x8E, 7, 1, 2, 3, 4];
+        assert_eq!(requester.take(NOW, &first), None);
+        assert_eq!(requester.take(NOW, &first), None);
+        assert_eq!(sent(&mut requester).len(), 2);
+        // One that overtook another is not taken.
+        assert_eq!(requester.take(NOW, &[0x81, 0x82, 9]), None);
+        assert!(sent(&mut requester).is_empty());
+        let Some(Outcome::Answer(Answer::Done { data, .. })) = requester.take(NOW, &[0x81, 0x81, 5, 6, 7]) else {
+            panic!("no answer")
+        };
+        assert_eq!(data, [7, 1, 2, 3, 4, 5, 6, 7]);
+    }
+
+    #[test]
+    fn a_long_request_goes_piece_by_piece() {
+        let mut requester = requester();
+        requester.ask(NOW, &Request::set(class::CONNECTION, 2, 16, &[1, 2, 3, 4]), true);
+        assert_eq!(sent(&mut requester), ["42C#8100100502100102"]);
+        assert_eq!(requester.take(NOW, &[0x81, 0xC1, 0]), None, "not this one's");
+        assert_eq!(requester.expire(SECOND), None);
+        assert_eq!(sent(&mut requester), ["42C#8100100502100102"], "once more");
+        assert_eq!(requester.take(SECOND, &[0x81, 0xC0, 0]), None);
+        assert_eq!(sent(&mut requester), ["42C#81810304"]);
+        assert_eq!(requester.take(SECOND, &[0x81, 0xC1, 0]), None);
+        let done = Answer::Done { service: service::SET, data: Vec::new() };
+        assert_eq!(requester.take(SECOND, &[0x01, 0x90]), Some(Outcome::Answer(done)));
+    }
+
+    #[test]
+    fn what_is_not_the_answer_is_passed_over() {
+        let mut requester = requester();
+        requester.ask(NOW, &Request::get(class::CONNECTION, 2, 7), true);
+        for other in [
+            &[0x41, 0x8E, 0x30, 0][..],
+            &[0x02, 0x8E, 0x30, 0],
+            &[0x01, 0xCB, 0],
+            &[0x01, service::HEARTBEAT, 1, 0, 3, 0, 0, 0],
+            &[0x01, service::SHUTDOWN, 1, 0, 0, 0],
+            &[],
+            &[0x01],
+            &[0x81],
+            &[0x81, 0xC0],
+        ] {
+            assert_eq!(requester.take(NOW, other), None, "{other:x?}");
+        }
+        assert!(matches!(requester.take(NOW, &[0x01, 0x8E, 0x30, 0]), Some(Outcome::Answer(_))));
+        // The next request has the other xid, so that this one's answer, doubled, is not taken for its.
+        requester.ask(NOW, &Request::get(class::CONNECTION, 2, 8), true);
+        assert_eq!(requester.take(NOW, &[0x01, 0x8E, 0x30, 0]), None);
+        let refused = Answer::Refused { general: general::NO_ATTRIBUTE, additional: owner::NONE };
+        assert_eq!(requester.take(NOW, &[0x41, 0x94, 0x14, 0xFF]), Some(Outcome::Answer(refused)));
+    }
+
+    #[test]
+    fn silence_is_told_after_two_tries() {
+        let mut requester = requester();
+        requester.ask(NOW, &Request::allocate(3, Mac::new(1).unwrap()), false);
+        assert_eq!(sent(&mut requester), ["42E#014B03010301"]);
+        assert_eq!(requester.wake(), Some(SECOND));
+        assert_eq!(requester.expire(SECOND / 2), None);
+        assert_eq!(requester.expire(SECOND), None);
+        assert_eq!(sent(&mut requester), ["42E#014B03010301"]);
+        assert_eq!(requester.expire(SECOND * 2), Some(Outcome::Silent));
+        assert!(!requester.is_busy());
+    }
+}

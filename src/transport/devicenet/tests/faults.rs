@@ -1,0 +1,113 @@
+//! A line that loses, doubles, delays and reorders frames.
+
+use std::time::Duration;
+
+use super::world::{LINK, Line, MS, SECOND, World, resting};
+use crate::devicenet::scanner::State;
+
+const KINDS: [Line; 5] = [
+    Line { drop: 100, double: 0, late: 0, swap: 0 },
+    Line { drop: 0, double: 300, late: 0, swap: 0 },
+    Line { drop: 0, double: 0, late: 200, swap: 0 },
+    Line { drop: 0, double: 0, late: 0, swap: 200 },
+    Line { drop: 100, double: 100, late: 100, swap: 100 },
+];
+
+/// Images are numbered. Each is shown, waited for and then followed by the next, as commands are; whatever the line does,
+/// the controller must see them in order, none again after a later one, and none be told to have been taken that was not.
+#[test]
+fn no_image_comes_twice_or_is_told_wrongly() {
+    for (kind, line) in KINDS.iter().enumerate() {
+        for seed in 0..16 {
+            for size in [48u16, 4] {
+                let context = format!("kind {kind}, seed {seed}, size {size}");
+                let mut world = World::linked(size, seed);
+                world.line = *line;
+                let mut number = 0u8;
+                let mut waits: Option<(u32, u64)> = None;
+                let end = world.now + SECOND * 2;
+                while world.now < end {
+                    world.run(MS);
+                    let view = world.view();
+                    if let Some((generation, change)) = waits {
+                        if view.generation != generation || view.state != State::Open {
+                            waits = None;
+                        } else if view.sent >= change {
+                            waits = None;
+                            assert_eq!(world.mirror().image[1], number, "{context}: told to have been taken");
+                        }
+                    } else if view.state == State::Open {
+                        number += 1;
+                        let mut image = resting(size.into());
+                        image[1..].fill(number);
+                        let change = world.scanner.set_image(LINK, view.generation, &image).unwrap();
+                        waits = Some((view.generation, change));
+                    }
+                }
+                let mut last = 0;
+                for (at, image) in &world.mirror().history {
+                    if *image == resting(size.into()) {
+                        continue;
+                    }
+                    assert!(image[1..].iter().all(|byte| *byte == image[1]) || size > 8, "{context}: {image:?}");
+                    assert!(image[1] >= last, "{context}: {} after {last} at {at:?}", image[1]);
+                    last = image[1];
+                }
+                assert!(number > 10, "{context}: only {number} images in 2 s");
+            }
+        }
+    }
+}
+
+/// A bus that loses one frame in a hundred, for half an hour of polls; the large images for a part of it, as they take
+/// this machine longer.
+#[test]
+fn half_an_hour_at_one_percent_loses_no_image_and_does_not_drift() {
+    polls_at_one_percent(4, SECOND * 1800);
+    polls_at_one_percent(48, SECOND * 180);
+}
+
+fn polls_at_one_percent(size: u16, time: Duration) {
+    let mut world = World::linked(size, 4);
+    world.line = Line { drop: 100, ..Line::default() };
+    let start = world.now;
+    let (mut shown, mut taken) = (0u32, 0u32);
+    while world.now < start + time {
+        let mut image = resting(size.into());
+        image[1..3].copy_from_slice(&shown.to_le_bytes()[..2]);
+        shown += 1;
+        let change = world.scanner.set_image(LINK, 1, &image).unwrap();
+        world.until(SECOND, |world| world.view().sent >= change);
+        taken += u32::from(world.mirror().image == image);
+        world.run(MS * 500);
+    }
+    let view = world.view();
+    assert_eq!((view.state, view.generation), (State::Open, 1), "{:?}", view.error);
+    assert_eq!(shown, taken);
+    // Those that were late because an answer was waited for aside, there is a poll every 20 ms.
+    let all = world.now.saturating_sub(start).as_millis() / 20;
+    assert!(
+        u128::from(view.statistics.sent + view.statistics.skipped).abs_diff(all) < 10,
+        "{:?} {all}",
+        view.statistics
+    );
+}
+
+/// What crosses the bus is what the bits allow: 14 frames and the gap between polls.
+#[test]
+fn an_exchange_takes_hardly_more_than_its_bits() {
+    let mut world = World::linked(48, 1);
+    world.trace.clear();
+    let busy = world.bus.busy();
+    world.run(SECOND);
+    let polls = world.trace.iter().filter(|(_, frame)| frame.id() == 0x42D && frame.data()[0] == 0).count();
+    assert_eq!(polls, 50);
+    let each = world.bus.busy().saturating_sub(busy) / 50;
+    assert!((MS * 3..MS * 4).contains(&each), "{each:?}");
+    // From the first bit of a poll to the last of its answer there is no more than that.
+    let first = world.trace.iter().position(|(_, frame)| frame.id() == 0x42D && frame.data()[0] == 0).unwrap();
+    let (begin, end) = (world.trace[first].0, world.trace[first + 13].0);
+    assert_eq!(world.trace[first + 13].1.id(), 0x3C5);
+    let took = end.saturating_sub(begin);
+    assert!(took < each * 11 / 10, "{took:?} {each:?}");
+}

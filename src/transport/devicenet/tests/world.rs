@@ -1,0 +1,236 @@
+//! A master and slaves on a bus in virtual time, with frames that get lost, doubled, late and out of order on their way
+//! to whoever receives them. Those of one identifier keep their order: one node sends them, one after the other.
+
+use std::collections::HashMap;
+use std::time::Duration;
+
+use fastrand::Rng;
+
+use crate::devicenet::Now;
+use crate::devicenet::can::bus::{Bus, Passed};
+use crate::devicenet::can::{Bitrate, Frame};
+use crate::devicenet::device::{Application, Device, Setup};
+use crate::devicenet::scanner::{Identity, Reply, Scanner, State, Token, View};
+use crate::devicenet::settings::{Images, Profile, Purpose, Settings};
+use crate::devicenet::wire::{Mac, Request};
+
+pub const MS: Duration = Duration::from_millis(1);
+pub const SECOND: Duration = Duration::from_secs(1);
+/// The connection of most tests.
+pub const LINK: u64 = 1;
+
+pub fn mac(number: u8) -> Mac {
+    Mac::new(number).unwrap()
+}
+
+/// Shows what it was shown, bit for bit, and counts.
+#[derive(Debug, Default)]
+pub struct Mirror {
+    pub image: Vec<u8>,
+    /// Every different image, in order, with when it came first.
+    pub history: Vec<(Now, Vec<u8>)>,
+    pub images: u64,
+    pub gone: Vec<Now>,
+}
+
+impl Application for Mirror {
+    fn image_out(&mut self, now: Now, image: &[u8]) {
+        self.images += 1;
+        if self.image != image {
+            self.image = image.to_vec();
+            self.history.push((now, image.to_vec()));
+        }
+    }
+
+    fn image_in(&mut self, _now: Now, image: &mut [u8]) {
+        for (shown, taken) in image.iter_mut().zip(&self.image) {
+            *shown = *taken;
+        }
+    }
+
+    fn master_gone(&mut self, now: Now) {
+        self.gone.push(now);
+    }
+}
+
+pub fn setup(number: u8, size: u16) -> Setup {
+    Setup {
+        mac: mac(number),
+        bitrate: Bitrate::K500,
+        vendor: 636,
+        device_type: 0,
+        product: 1,
+        revision: (1, 1),
+        serial: 0x00C0_FFEE,
+        name: "YRCX (sim)".to_owned(),
+        size,
+    }
+}
+
+/// The resting image of that size: one that is not all zeros.
+pub fn resting(size: usize) -> Vec<u8> {
+    let mut image = vec![0; size];
+    image[0] = 0x41;
+    image
+}
+
+pub fn images(number: u8) -> Settings {
+    let profiles = [("Normal", 48), ("Compact", 4)].map(|(name, size)| Profile { name, resting: resting(size) });
+    Settings { slave: mac(number), purpose: Purpose::Images(Images::usual(profiles.to_vec(), None)), timeout: SECOND }
+}
+
+/// Shares of frames, of 10,000, to which something happens on their way to one receiver.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Line {
+    pub drop: u16,
+    pub double: u16,
+    pub late: u16,
+    /// A little late, so that frames of other identifiers overtake.
+    pub swap: u16,
+}
+
+/// All of it.
+#[derive(Debug)]
+pub struct World {
+    pub now: Now,
+    pub scanner: Scanner,
+    pub devices: Vec<Device<Mirror>>,
+    pub bus: Bus,
+    pub line: Line,
+    /// Whether nothing passes any more.
+    pub is_cut: bool,
+    pub trace: Vec<(Now, Frame)>,
+    pub replies: Vec<Reply>,
+    rng: Rng,
+    /// Frames on their way: when, to which node.
+    arriving: Vec<(Now, usize, Frame)>,
+    /// When the last frame of an identifier reaches a node.
+    last: HashMap<(usize, u16), Now>,
+}
+
+impl World {
+    pub fn new(devices: Vec<Device<Mirror>>, seed: u64) -> Self {
+        let scanner = Scanner::new(Identity { mac: mac(1), vendor: 0xFFFF, serial: 7 });
+        Self {
+            now: Now::ZERO,
+            scanner,
+            bus: Bus::new(Bitrate::K500, devices.len() + 1),
+            devices,
+            line: Line::default(),
+            is_cut: false,
+            trace: Vec::new(),
+            replies: Vec::new(),
+            rng: Rng::with_seed(seed),
+            arriving: Vec::new(),
+            last: HashMap::new(),
+        }
+    }
+
+    /// A slave 5 that has been on line for long, with images of this size, and a link to it.
+    pub fn linked(size: u16, seed: u64) -> Self {
+        let mut world = Self::new(vec![Device::on_line(setup(5, size), Mirror::default())], seed);
+        world.scanner.open(LINK, images(5)).unwrap();
+        world.until(SECOND * 5, |world| world.view().state == State::Open);
+        world
+    }
+
+    pub fn view(&self) -> View {
+        self.scanner.view(LINK).unwrap().clone()
+    }
+
+    pub fn mirror(&mut self) -> &mut Mirror {
+        self.devices[0].application()
+    }
+
+    /// Runs until that is so, and says when; panics if it is not within `longest`.
+    pub fn until(&mut self, longest: Duration, mut condition: impl FnMut(&mut Self) -> bool) -> Now {
+        let end = self.now + longest;
+        while !condition(self) {
+            assert!(self.now < end, "{:?} {:?}\n{:?}", self.scanner.view(LINK), self.devices, self.trace.last());
+            self.step(end);
+        }
+        self.now
+    }
+
+    pub fn run(&mut self, time: Duration) {
+        let end = self.now + time;
+        while self.now < end {
+            self.step(end);
+        }
+    }
+
+    /// Asks on the link, and waits for the answer.
+    pub fn ask(&mut self, request: Request) -> Reply {
+        self.scanner.ask(LINK, Token(9), request);
+        self.until(SECOND * 30, |world| !world.replies.is_empty());
+        self.replies.remove(0)
+    }
+
+    /// On to the next thing that happens, but not beyond `end`.
+    fn step(&mut self, end: Now) {
+        let now = self.now;
+        while let Some(frame) = self.scanner.poll(now) {
+            self.bus.send(now, 0, frame);
+        }
+        while let Some(reply) = self.scanner.reply() {
+            self.replies.push(reply);
+        }
+        for (node, device) in self.devices.iter_mut().enumerate() {
+            while let Some(frame) = device.poll(now) {
+                self.bus.send(now, node + 1, frame);
+            }
+        }
+        while let Some(passed) = self.bus.pass(now) {
+            self.pass(passed);
+        }
+        let due: Vec<(Now, usize, Frame)> = self.arriving.extract_if(.., |(at, ..)| *at <= now).collect();
+        for (_, node, frame) in &due {
+            match node {
+                0 => self.scanner.handle(now, frame),
+                node => self.devices[node - 1].handle(now, frame),
+            }
+        }
+        if !due.is_empty() {
+            return;
+        }
+        let wakes = self.devices.iter().filter_map(Device::wake).chain(self.scanner.wake()).chain(self.bus.wake());
+        let next = wakes.chain(self.arriving.iter().map(|(at, ..)| *at)).min();
+        self.now = next.map_or(end, |next| next.clamp(now, end));
+        if self.now == now && next.is_some_and(|next| next <= now) {
+            // What is due at once has its turn at the top; nothing may be due for ever.
+            self.now += Duration::from_nanos(100);
+        }
+    }
+
+    fn pass(&mut self, passed: Passed) {
+        self.trace.push((passed.at, passed.frame));
+        if self.trace.len() > 200_000 {
+            self.trace.clear();
+        }
+        if self.is_cut {
+            return;
+        }
+        for node in 0..=self.devices.len() {
+            if node == passed.from {
+                continue;
+            }
+            let mut hits = |share: u16| self.rng.u16(0..10_000) < share;
+            let (drop, double, late, swap) =
+                (hits(self.line.drop), hits(self.line.double), hits(self.line.late), hits(self.line.swap));
+            if drop {
+                continue;
+            }
+            let delay = match (late, swap) {
+                (true, _) => MS * self.rng.u32(1..60),
+                (_, true) => MS * self.rng.u32(200..2000) / 1000,
+                _ => Duration::ZERO,
+            };
+            let last = self.last.entry((node, passed.frame.id())).or_default();
+            let at = (passed.at + delay).max(*last);
+            *last = at;
+            for _ in 0..=u8::from(double) {
+                self.arriving.push((at, node, passed.frame));
+            }
+        }
+    }
+}

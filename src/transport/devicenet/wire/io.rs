@@ -1,0 +1,171 @@
+//! Cyclic data: bare where it fits a frame, in fragments without acknowledgement where the connection is larger.
+
+use super::{Fragment, Kind};
+use crate::devicenet::can::MOST_DATA;
+
+/// Bytes of cyclic data in a fragment.
+const PART: usize = MOST_DATA - 1;
+
+/// The contents of the frames that carry `image`, whose size is that of the connection.
+pub fn split(image: &[u8]) -> Vec<Vec<u8>> {
+    if image.len() <= MOST_DATA {
+        return vec![image.to_vec()];
+    }
+    let pieces = image.len().div_ceil(PART);
+    let piece = |(index, part): (usize, &[u8])| {
+        let mut bytes = vec![Fragment::of(index, pieces).emit()];
+        bytes.extend(part);
+        bytes
+    };
+    image.chunks(PART).enumerate().map(piece).collect()
+}
+
+/// What a frame of cyclic data came to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Piece {
+    /// All of an image is there.
+    Whole(Vec<u8>),
+    /// More has to come.
+    Part,
+    /// Nothing was in it: the sender idles.
+    Idle,
+    /// It does not belong to what came before, or has a wrong size; what came before is dropped.
+    Wrong,
+}
+
+/// Puts fragments together, of a connection of a known size. A gap drops everything up to the next first fragment.
+#[derive(Debug, Clone)]
+pub struct Assembler {
+    size: usize,
+    parts: Vec<u8>,
+    /// The count that must come; `None` while a first fragment is waited for.
+    next: Option<u8>,
+}
+
+impl Assembler {
+    /// For images of this size.
+    pub const fn new(size: usize) -> Self {
+        Self { size, parts: Vec::new(), next: None }
+    }
+
+    /// Whether a fragment of an image is there and the rest is not.
+    pub const fn is_partial(&self) -> bool {
+        self.next.is_some()
+    }
+
+    /// Takes the contents of a frame.
+    pub fn take(&mut self, bytes: &[u8]) -> Piece {
+        let Some((first, part)) = bytes.split_first() else {
+            self.next = None;
+            return Piece::Idle;
+        };
+        if self.size <= MOST_DATA {
+            return if bytes.len() == self.size { Piece::Whole(bytes.to_vec()) } else { Piece::Wrong };
+        }
+        let Fragment { kind, count } = Fragment::parse(*first);
+        let expected = self.next.take();
+        match kind {
+            // A first one begins anew, even where the rest of another is missing.
+            Kind::First if count == 0 && part.len() < self.size => {
+                self.parts = part.to_vec();
+                self.next = Some(1);
+                Piece::Part
+            }
+            Kind::Middle if expected == Some(count) && self.parts.len() + part.len() < self.size => {
+                self.parts.extend(part);
+                self.next = Some((count + 1) % 64);
+                Piece::Part
+            }
+            Kind::Last if expected == Some(count) && self.parts.len() + part.len() == self.size => {
+                self.parts.extend(part);
+                Piece::Whole(std::mem::take(&mut self.parts))
+            }
+            _ => Piece::Wrong,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn an_image_of_48_bytes_takes_seven_frames() {
+        let image: Vec<u8> = (0..48).collect();
+        let frames = split(&image);
+        let heads: Vec<(u8, usize)> = frames.iter().map(|frame| (frame[0], frame.len() - 1)).collect();
+        assert_eq!(heads, [(0x00, 7), (0x41, 7), (0x42, 7), (0x43, 7), (0x44, 7), (0x45, 7), (0x86, 6)]);
+        let mut assembler = Assembler::new(48);
+        for frame in &frames[..6] {
+            assert_eq!(assembler.take(frame), Piece::Part);
+        }
+        assert_eq!(assembler.take(&frames[6]), Piece::Whole(image));
+    }
+
+    #[test]
+    fn an_image_of_4_bytes_is_bare() {
+        assert_eq!(split(&[1, 2, 3, 4]), [[1, 2, 3, 4]]);
+        let mut assembler = Assembler::new(4);
+        assert_eq!(assembler.take(&[1, 2, 3, 4]), Piece::Whole(vec![1, 2, 3, 4]));
+        assert_eq!(assembler.take(&[1, 2, 3]), Piece::Wrong);
+        assert_eq!(assembler.take(&[]), Piece::Idle);
+    }
+
+    /// Any loss, doubling or exchange of frames of an image spoils this image and no other.
+    #[test]
+    fn what_is_damaged_is_dropped_and_the_next_is_whole() {
+        let image: Vec<u8> = (0..48).collect();
+        let frames = split(&image);
+        for at in 0..7 {
+            let mut damaged = Vec::new();
+            let mut lost = frames.clone();
+            lost.remove(at);
+            damaged.push(lost);
+            let mut doubled = frames.clone();
+            doubled.insert(at, frames[at].clone());
+            damaged.push(doubled);
+            if at < 6 {
+                let mut swapped = frames.clone();
+                swapped.swap(at, at + 1);
+                damaged.push(swapped);
+            }
+            for frames_in in damaged {
+                let mut assembler = Assembler::new(48);
+                for frame in &frames_in {
+                    match assembler.take(frame) {
+                        // Only a doubled first or last one leaves a whole image behind.
+                        Piece::Whole(got) => assert_eq!(got, image),
+                        Piece::Part | Piece::Wrong => {}
+                        Piece::Idle => panic!("no frame was empty"),
+                    }
+                }
+                let whole = frames.iter().map(|frame| assembler.take(frame)).last();
+                assert_eq!(whole, Some(Piece::Whole(image.clone())), "{at} {frames_in:?}");
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn images_of_any_size_come_back(image in proptest::collection::vec(any::<u8>(), 1..600)) {
+            let mut assembler = Assembler::new(image.len());
+            let last = split(&image).iter().map(|frame| assembler.take(frame)).last();
+            prop_assert_eq!(last, Some(Piece::Whole(image)));
+        }
+
+        #[test]
+        fn no_frames_panic_or_give_another_size(
+            size in 0usize..64,
+            frames in proptest::collection::vec(proptest::collection::vec(any::<u8>(), 0..=8), 0..40),
+        ) {
+            let mut assembler = Assembler::new(size);
+            for frame in frames {
+                if let Piece::Whole(image) = assembler.take(&frame) {
+                    prop_assert_eq!(image.len(), size);
+                }
+            }
+        }
+    }
+}
